@@ -18,8 +18,8 @@
 struct writer {
     FILE *to;
     int is_flat; /* 1: normals are not written, as all faces are flat */
-    /* Indices, counted from 1, of the next mesh's first vertex, texture
-     * coordinate and normal. */
+    /* Indices, counted from 1, of the first vertex, texture coordinate and
+     * normal of the next mesh. */
     unsigned place, uv, normal;
 };
 
@@ -51,8 +51,8 @@ static int is_triangle(const struct aiFace *face)
     return face->mNumIndices == 3;
 }
 
-/* Returns whether the vertex normals N of FACE differ, so that the face's plane
- * does not determine them. */
+/* Returns whether the vertex normals N of FACE differ from each other, so that
+ * the plane of the face does not determine them. */
 static int is_smooth_face(const struct aiVector3D *n, const struct aiFace *face)
 {
     for (int k = 1; n && is_triangle(face) && k < 3; k++)
@@ -165,9 +165,9 @@ static const char *check_scene(const struct aiScene *scene,
     return refusal || n ? refusal : "has no triangles";
 }
 
-/* Reads the file PATH, cuts polygons into triangles, applies the transforms of
- * the file's nodes and merges equal vertices. Returns NULL, with the cause in
- * REFUSAL, if glint does not accept the mesh. */
+/* Reads the file PATH, divides polygons into triangles, applies the transforms
+ * of the file's nodes and merges equal vertices. Returns NULL, with the cause
+ * in REFUSAL, if glint does not accept the mesh. */
 static const struct aiScene *
 import_scene(const char *path, unsigned max_triangles, const char **refusal)
 {

@@ -3,7 +3,7 @@
  * assimp/assimp.h - reads PLY, STL, glTF and other meshes through Open Asset
  * Import (Assimp).
  *
- *     if (!glint_assimp_read(&data, &bytes, "cup.ply", most, &error))
+ *     if (!glint_assimp_read_mesh(&data, &bytes, "cup.ply", most, &error))
  *         ... the OBJ text data[bytes] ...; free(data);
  *
  * Assimp lives in a plug-in, glint-assimp.so, which is loaded when a mesh first
@@ -38,9 +38,9 @@ struct glint_assimp {
  * GLINT_E_UNSUPPORTED if there is no plug-in or the mesh has more than MAX
  * bytes or MAX_TRIANGLES triangles, GLINT_E_FORMAT if PATH is not a mesh,
  * GLINT_E_IO or GLINT_E_MEMORY. */
-enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
-                                    const char *path, size_t max,
-                                    unsigned max_triangles,
-                                    struct glint_error *error);
+enum glint_status glint_assimp_read_mesh(uint8_t **data, size_t *bytes,
+                                         const char *path, size_t max,
+                                         unsigned max_triangles,
+                                         struct glint_error *error);
 
 #endif

@@ -20,7 +20,7 @@
 #include "posix/plugin.h"
 
 enum {
-    SECONDS = 60, /* max CPU time that reading a mesh may cost */
+    SECONDS = 60, /* max CPU time, seconds, for reading a mesh */
     SIGNALS = 64, /* signal numbers are 1 .. SIGNALS */
     /* Max MiB of address space of the child process beyond that of glint. An
      * .stl of 2^20 triangles, the max of a scene, needs 2.1 GB. */
@@ -116,8 +116,8 @@ static pid_t start_import_process(const struct glint_assimp *face,
     return child;
 }
 
-/* Waits until CHILD has ended; if IS_WANTED is 0, kills it first. Returns the
- * reason why it failed, or NULL. */
+/* Waits until CHILD has ended; kills it first if IS_WANTED is 0. Returns the
+ * reason why CHILD failed, or NULL. */
 static const char *wait_for_import_process(pid_t child, int is_wanted)
 {
     int status = 0;
@@ -135,8 +135,8 @@ static const char *wait_for_import_process(pid_t child, int is_wanted)
 }
 
 /* Removes the status letter (m or x) from the child's output DATA[BYTES].
- * Returns GLINT_OK, or the error that the letter, the text after it, or FAILURE
- * states. */
+ * Returns GLINT_OK, or the error that the status letter, the text after it, or
+ * FAILURE states. */
 static enum glint_status check_import_result(uint8_t *data, size_t *bytes,
                                              const char *path,
                                              const char *failure,
@@ -166,7 +166,7 @@ static size_t read_little_endian_length(const uint8_t *b)
 /* Returns whether two nodes of the glTF in TEXT[BYTES] have the same child
  * node. The format forbids that, and Assimp copies shared nodes: ten levels of
  * ten shared children would become 10^10 nodes. */
-static int has_shared_node(const char *text, size_t bytes)
+static int has_node_with_two_parents(const char *text, size_t bytes)
 {
     static const char word[] = "\"children\"";
     uint8_t *const seen = calloc(MAX_NODES, 1);
@@ -210,7 +210,7 @@ static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
         if (read_little_endian_length(text - 8) < bytes)
             bytes = read_little_endian_length(text - 8);
     }
-    return has_shared_node((const char *)text, bytes)
+    return has_node_with_two_parents((const char *)text, bytes)
                ? "has a node that is the child of two others, which glTF "
                  "forbids"
                : NULL;
@@ -255,10 +255,10 @@ static enum glint_status check_mesh_file(const char *path,
                  : status;
 }
 
-enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
-                                    const char *path, size_t max,
-                                    unsigned max_triangles,
-                                    struct glint_error *error)
+enum glint_status glint_assimp_read_mesh(uint8_t **data, size_t *bytes,
+                                         const char *path, size_t max,
+                                         unsigned max_triangles,
+                                         struct glint_error *error)
 {
     const struct glint_assimp *const face = load_assimp_plugin(error);
     struct glint_input in = {.name = path};
@@ -281,7 +281,7 @@ enum glint_status glint_assimp_read(uint8_t **data, size_t *bytes,
     in.fd = pipe_fd[0];
     status = child < 0 ? glint_error_report(error, GLINT_E_MEMORY, path, "%s",
                                             strerror(errno))
-                       : glint_input_append(&in, data, bytes, max, error);
+                       : glint_input_read_rest(&in, data, bytes, max, error);
     glint_input_close(&in);
     if (child > 0) {
         failure = wait_for_import_process(child, status == GLINT_OK);

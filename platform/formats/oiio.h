@@ -24,7 +24,7 @@
  * is dropped; grey is stored as R = G = B. */
 struct glint_oiio_pixels {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
-    int is_float;      /* true: rgb is linear light in float; false: sRGB codes
+    int is_float;      /* true: rgb has linear light in float; false: sRGB codes
                           in unsigned char */
     void *rgb;         /* malloc'ed; the caller frees it */
 };
@@ -57,8 +57,8 @@ struct glint_oiio_options {
                     input file, or 95 */
     int drop_colours; /* true: ICC profile and cICP are not written, as they no
                          longer describe the pixels */
-    /* Output: text that lists the content of the input that the file type
-     * cannot hold; "" if it can hold all. */
+    /* Output: text that lists the content of the input file that the output's
+     * file type cannot hold; "" if it can hold everything. */
     char said[160];
 };
 
@@ -130,9 +130,9 @@ struct glint_oiio {
                                        const struct glint_oiio_layers *layers,
                                        struct glint_error *error);
 
-    /* Prints to standard error, if one of these functions is running, that
+    /* If one of these functions is running, prints to standard error that
      * OpenImageIO has aborted on the file, and returns 1; else returns 0.
-     * Async-signal-safe, for glint_at_death_in_library(). */
+     * Async-signal-safe, for glint_at_death_set_library_report(). */
     int (*report_abort)(void);
 };
 

@@ -22,7 +22,7 @@ enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
     if (!found) {
         found = glint_plugin_load(&plugin, error);
         if (found)
-            glint_at_death_in_library(found->report_abort);
+            glint_at_death_set_library_report(found->report_abort);
     }
     *oiio = found;
     pthread_mutex_unlock(&lock);

@@ -11,7 +11,7 @@ static uint8_t round_to_code(double value)
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value + 0.5);
 }
 
-void paint_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b)
+void paint_set_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b)
 {
     const bool hd = p->image->matrix == GLINT_MATRIX_BT709;
     const bool full = p->image->range == GLINT_RANGE_FULL;
@@ -35,7 +35,7 @@ static uint8_t *get_pixel_address(const struct glint_image *image, int plane,
     return image->plane[plane] + y * image->stride_bytes[plane] + x;
 }
 
-static void put_pixel_565(uint8_t *px, const uint8_t rgb[3])
+static void set_rgb565_pixel(uint8_t *px, const uint8_t rgb[3])
 {
     const int bits = rgb[0] >> 3 << 11 | rgb[1] >> 2 << 5 | rgb[2] >> 3;
 
@@ -44,7 +44,7 @@ static void put_pixel_565(uint8_t *px, const uint8_t rgb[3])
 }
 
 /* Sets the chroma of a pixel of I420, I422, I444, NV12 or NV21. */
-static void put_pixel_chroma(const struct paint *p, int x, int y)
+static void set_chroma_of_pixel(const struct paint *p, int x, int y)
 {
     const struct glint_image *image = p->image;
     const bool across = image->format != GLINT_I444;
@@ -64,7 +64,7 @@ static void put_pixel_chroma(const struct paint *p, int x, int y)
 
 /* Sets the luma of a pixel of YUYV or UYVY, and the chroma that it shares with
  * its neighbour. */
-static void put_pixel_packed(const struct paint *p, int x, int y)
+static void set_packed_pixel(const struct paint *p, int x, int y)
 {
     const int luma = p->image->format == GLINT_YUYV ? 0 : 1;
     uint8_t *pair = get_pixel_address(p->image, 0, x / 2 * 4, y);
@@ -74,7 +74,7 @@ static void put_pixel_packed(const struct paint *p, int x, int y)
     pair[3 - luma] = p->ycc[2];
 }
 
-static void put_pixel_rgb(const struct paint *p, int x, int y, int bytes,
+static void set_rgb_pixel(const struct paint *p, int x, int y, int bytes,
                           bool is_bgr)
 {
     uint8_t *px = get_pixel_address(p->image, 0, bytes * x, y);
@@ -83,29 +83,29 @@ static void put_pixel_rgb(const struct paint *p, int x, int y, int bytes,
         px[is_bgr ? 2 - i : i] = p->rgb[i];
 }
 
-static void put_pixel(const struct paint *p, int x, int y)
+static void set_pixel_to_colour(const struct paint *p, int x, int y)
 {
     if (x < 0 || y < 0 || x >= p->image->width || y >= p->image->height)
         return;
     switch (p->image->format) {
     case GLINT_RGB24:
-        put_pixel_rgb(p, x, y, 3, false);
+        set_rgb_pixel(p, x, y, 3, false);
         break;
     case GLINT_BGR24:
-        put_pixel_rgb(p, x, y, 3, true);
+        set_rgb_pixel(p, x, y, 3, true);
         break;
     case GLINT_XRGB8888:
-        put_pixel_rgb(p, x, y, 4, true);
+        set_rgb_pixel(p, x, y, 4, true);
         break;
     case GLINT_XBGR8888:
-        put_pixel_rgb(p, x, y, 4, false);
+        set_rgb_pixel(p, x, y, 4, false);
         break;
     case GLINT_RGB565:
-        put_pixel_565(get_pixel_address(p->image, 0, 2 * x, y), p->rgb);
+        set_rgb565_pixel(get_pixel_address(p->image, 0, 2 * x, y), p->rgb);
         break;
     case GLINT_YUYV:
     case GLINT_UYVY:
-        put_pixel_packed(p, x, y);
+        set_packed_pixel(p, x, y);
         break;
     case GLINT_GREY:
         *get_pixel_address(p->image, 0, x, y) = p->ycc[0];
@@ -114,34 +114,34 @@ static void put_pixel(const struct paint *p, int x, int y)
         break;
     default:
         *get_pixel_address(p->image, 0, x, y) = p->ycc[0];
-        put_pixel_chroma(p, x, y);
+        set_chroma_of_pixel(p, x, y);
     }
 }
 
 /* ------------------------------------------------------------------- shapes */
 
-void paint_fill(const struct paint *p, int x0, int y0, int x1, int y1)
+void paint_fill_rectangle(const struct paint *p, int x0, int y0, int x1, int y1)
 {
     for (int y = y0 < 0 ? 0 : y0; y < y1 && y < p->image->height; y++)
         for (int x = x0 < 0 ? 0 : x0; x < x1 && x < p->image->width; x++)
-            put_pixel(p, x, y);
+            set_pixel_to_colour(p, x, y);
 }
 
-void paint_box(const struct paint *p, int x, int y, int half)
+void paint_square_outline(const struct paint *p, int x, int y, int half)
 {
     const int d = p->line;
 
-    paint_fill(p, x - half, y - half, x + half + d, y - half + d);
-    paint_fill(p, x - half, y + half, x + half + d, y + half + d);
-    paint_fill(p, x - half, y - half, x - half + d, y + half + d);
-    paint_fill(p, x + half, y - half, x + half + d, y + half + d);
+    paint_fill_rectangle(p, x - half, y - half, x + half + d, y - half + d);
+    paint_fill_rectangle(p, x - half, y + half, x + half + d, y + half + d);
+    paint_fill_rectangle(p, x - half, y - half, x - half + d, y + half + d);
+    paint_fill_rectangle(p, x + half, y - half, x + half + d, y + half + d);
 }
 
 /* --------------------------------------------------------------------- text */
 
 /* Returns the glyph of character C: five rows of three pixels in 15 bits, the
  * top left pixel in the highest bit. */
-static uint16_t find_glyph(char c)
+static uint16_t find_glyph_of_character(char c)
 {
     static const uint16_t digits[10] = {075557, 026227, 071747, 071717, 055711,
                                         074717, 074757, 071122, 075757, 075717};
@@ -173,8 +173,8 @@ static void draw_glyph(const struct paint *p, int x, int y, uint16_t glyph)
 
     for (int i = 0; i < 15; i++)
         if (glyph >> (14 - i) & 1)
-            paint_fill(p, x + i % 3 * d, y + i / 3 * d, x + (i % 3 + 1) * d,
-                       y + (i / 3 + 1) * d);
+            paint_fill_rectangle(p, x + i % 3 * d, y + i / 3 * d,
+                                 x + (i % 3 + 1) * d, y + (i / 3 + 1) * d);
 }
 
 int paint_text_width(const struct paint *p, const char *text)
@@ -185,13 +185,13 @@ int paint_text_width(const struct paint *p, const char *text)
 void paint_text(const struct paint *p, int x, int y, const char *text)
 {
     for (int i = 0; text[i]; i++)
-        draw_glyph(p, x + 4 * i * p->line, y, find_glyph(text[i]));
+        draw_glyph(p, x + 4 * i * p->line, y, find_glyph_of_character(text[i]));
 }
 
 /* Sets CODE[0] and CODE[1] to the values of the even and odd bytes of PLANE in
  * a black picture. */
-static void set_black_code(const struct glint_image *image, int plane,
-                           uint8_t code[2])
+static void get_codes_of_black(const struct glint_image *image, int plane,
+                               uint8_t code[2])
 {
     const bool limited = !glint_image_is_rgb(image->format) &&
                          image->range == GLINT_RANGE_LIMITED;
@@ -203,7 +203,7 @@ static void set_black_code(const struct glint_image *image, int plane,
         code[0] = 128;
 }
 
-void paint_black(const struct glint_image *image)
+void paint_set_image_black(const struct glint_image *image)
 {
     for (int p = 0; p < glint_image_planes(image->format); p++) {
         const int rows =
@@ -212,7 +212,7 @@ void paint_black(const struct glint_image *image)
             glint_image_row_bytes(image->format, p, image->width);
         uint8_t code[2];
 
-        set_black_code(image, p, code);
+        get_codes_of_black(image, p, code);
         for (int y = 0; y < rows; y++) {
             uint8_t *row = image->plane[p] + y * image->stride_bytes[p];
 

@@ -22,7 +22,7 @@ static size_t skip_gif_blocks(const uint8_t *d, size_t n, size_t at)
     return at < n ? at + 1 : n;
 }
 
-static size_t gif_colour_table_bytes(uint8_t packed)
+static size_t get_gif_colour_table_bytes(uint8_t packed)
 {
     return packed & 0x80 ? (size_t)3 << ((packed & 7) + 1) : 0;
 }
@@ -34,14 +34,14 @@ static int count_gif_frames(const uint8_t *d, size_t n)
 
     if (n < 13 || memcmp(d, "GIF8", 4) != 0)
         return 0;
-    at = 13 + gif_colour_table_bytes(d[10]);
+    at = 13 + get_gif_colour_table_bytes(d[10]);
     while (at < n && d[at] != 0x3b) {
         if (d[at] == 0x21 && at + 2 < n) {
             at = skip_gif_blocks(d, n, at + 2);
         } else if (d[at] == 0x2c && at + 11 < n) {
             frames++;
-            at = skip_gif_blocks(d, n,
-                                 at + 11 + gif_colour_table_bytes(d[at + 9]));
+            at = skip_gif_blocks(
+                d, n, at + 11 + get_gif_colour_table_bytes(d[at + 9]));
         } else
             break;
     }
@@ -55,9 +55,10 @@ int glint_gif_count_frames(const char *name)
     size_t bytes = 0;
     int n = 0;
 
-    if (!glint_ends_in(name, ".gif"))
+    if (!glint_has_extension(name, ".gif"))
         return 0;
-    if (glint_input_slurp(&data, &bytes, name, 1 << 28, &error) == GLINT_OK)
+    if (glint_input_read_whole_file(&data, &bytes, name, 1 << 28, &error) ==
+        GLINT_OK)
         n = count_gif_frames(data, bytes);
     free(data);
     return n;
@@ -89,8 +90,8 @@ struct file_type {
 
 /* clang-format off */
 static const struct file_type types[] = {
-    /* extension, is native, is grey only, alpha; can hold 8 bits, 16 bits,
-     * half, float; bits of content: metadata 1, ICC 2, cICP 4 */
+    /* Columns: extension; is native; is grey only; alpha; can hold 8 bits, 16
+     * bits, half, float; bits of enum type_holds */
     {".ppm",  true,  false, ALPHA_NONE,          true,  true,  false, false, 0},
     {".pnm",  true,  false, ALPHA_NONE,          true,  true,  false, false, 0},
     {".pgm",  true,  true,  ALPHA_NONE,          true,  true,  false, false, 0},
@@ -114,8 +115,8 @@ static const struct file_type types[] = {
 
 /* ----------------------------------------------------------------- loading */
 
-/* A loaded picture: either image, with 8 bits, or floats; the other member is
- * zero. */
+/* A loaded picture. Either image (8 bits) or floats is set; the other member is
+ * all 0. */
 struct loaded {
     struct glint_image image; /* GLINT_RGB24 or GLINT_GREY */
     struct glint_float_image floats;
@@ -139,7 +140,7 @@ static const struct magic {
 
 /* Returns, for messages, the name of the file type that HEAD, the first BYTES
  * of a file, identify. */
-static const char *get_type_name(const uint8_t *head, size_t bytes)
+static const char *get_name_of_file_type(const uint8_t *head, size_t bytes)
 {
     for (size_t i = 0; i < sizeof magics / sizeof *magics; i++)
         if (bytes >= magics[i].n && !memcmp(head, magics[i].bytes, magics[i].n))
@@ -214,15 +215,16 @@ static enum glint_status read_picture_file(struct glint_input *in,
     if (*bytes >= 9 && !memcmp(*data, "YUV4MPEG2", 9))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "is a video, not a picture");
-    return glint_pnm_matches(*data, *bytes) || glint_pfm_matches(*data, *bytes)
-               ? glint_input_append(in, data, bytes, MAX_FILE_BYTES, error)
+    return glint_pnm_has_signature(*data, *bytes) ||
+                   glint_pfm_has_signature(*data, *bytes)
+               ? glint_input_read_rest(in, data, bytes, MAX_FILE_BYTES, error)
                : GLINT_OK;
 }
 
-static enum glint_status load_opened_picture(struct loaded *loaded,
-                                             struct glint_input *in,
-                                             uint8_t **data,
-                                             struct glint_error *error)
+static enum glint_status load_picture_from_input(struct loaded *loaded,
+                                                 struct glint_input *in,
+                                                 uint8_t **data,
+                                                 struct glint_error *error)
 {
     size_t bytes;
     enum glint_status status =
@@ -230,17 +232,17 @@ static enum glint_status load_opened_picture(struct loaded *loaded,
 
     if (status)
         return status;
-    if (glint_pnm_matches(*data, bytes))
+    if (glint_pnm_has_signature(*data, bytes))
         return glint_pnm_read(&loaded->image, *data, bytes, in->name, error);
-    if (glint_pfm_matches(*data, bytes))
+    if (glint_pfm_has_signature(*data, bytes))
         return glint_pfm_read(&loaded->floats, *data, bytes, in->name, error);
     glint_input_close(in);
     if (!strcmp(in->name, "standard input"))
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, in->name,
             "only PPM, PGM and PFM can be read from a pipe");
-    return load_picture_by_plugin(loaded, in->name, get_type_name(*data, bytes),
-                                  error);
+    return load_picture_by_plugin(loaded, in->name,
+                                  get_name_of_file_type(*data, bytes), error);
 }
 
 static enum glint_status load_picture(struct loaded *loaded, const char *path,
@@ -253,7 +255,7 @@ static enum glint_status load_picture(struct loaded *loaded, const char *path,
     memset(loaded, 0, sizeof *loaded);
     if (status)
         return status;
-    status = load_opened_picture(loaded, &in, &data, error);
+    status = load_picture_from_input(loaded, &in, &data, error);
     glint_input_close(&in);
     free(data);
     if (!status && !loaded->floats.rgb && !loaded->image.plane[0]) {
@@ -384,7 +386,7 @@ enum glint_status glint_picture_load_float(const char *path,
 /* ------------------------------------------------------------------ saving */
 
 /* Returns the file type of PATH's extension, or NULL if it is unknown. */
-static const struct file_type *find_extension_type(const char *path)
+static const struct file_type *find_type_of_extension(const char *path)
 {
     const char *const slash = strrchr(path, '/');
     const char *const extension = strrchr(slash ? slash : path, '.');
@@ -395,14 +397,14 @@ static const struct file_type *find_extension_type(const char *path)
     return NULL;
 }
 
-/* Returns the file type of PATH's extension, or NULL if it is unknown. For "-",
- * a pipe, returns PPM for pictures of KIND 8 bits and PFM for floats. */
+/* Returns the file type of PATH's extension, or NULL if it is unknown. For the
+ * pipe "-", returns PPM for pictures of KIND 8 bits and PFM for floats. */
 static const struct file_type *find_output_type(const char *path,
                                                 enum glint_picture_kind kind)
 {
     if (!strcmp(path, "-"))
         path = kind == GLINT_PICTURE_FLOAT ? "-.pfm" : "-.ppm";
-    return find_extension_type(path);
+    return find_type_of_extension(path);
 }
 
 bool glint_picture_is_float(const char *path)
@@ -519,7 +521,7 @@ glint_picture_save_float(const char *path,
 static void set_sample_layout(struct glint_samples *s, int width, int height,
                               enum glint_sample sample, int channels)
 {
-    const size_t bytes = glint_sample_bytes(sample);
+    const size_t bytes = glint_sample_get_bytes(sample);
 
     *s = (struct glint_samples){
         .width = width,
@@ -539,9 +541,9 @@ static void set_sample_layout(struct glint_samples *s, int width, int height,
                  : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
                                               : UINT32_MAX;
     if (glint_sample_is_float(sample))
-        glint_colours_set(&s->colours, GLINT_TONE_IS_LINEAR, 0, "linear");
+        glint_colours_set_bt709(&s->colours, GLINT_TONE_IS_LINEAR, 0, "linear");
     else
-        glint_colours_set(&s->colours, GLINT_TONE_IS_SRGB, 0, "sRGB");
+        glint_colours_set_bt709(&s->colours, GLINT_TONE_IS_SRGB, 0, "sRGB");
 }
 
 static size_t count_sample_bytes(const struct glint_samples *s)
@@ -553,7 +555,8 @@ static size_t count_sample_bytes(const struct glint_samples *s)
 
 /* Copies BYTES of 16-bit samples, from big-endian order to this machine's or
  * back. */
-static void swap_short_bytes(uint8_t *to, const uint8_t *from, size_t bytes)
+static void swap_bytes_of_16_bit_samples(uint8_t *to, const uint8_t *from,
+                                         size_t bytes)
 {
     const uint16_t one = 1;
     const bool swap = *(const uint8_t *)&one == 1;
@@ -566,8 +569,9 @@ static void swap_short_bytes(uint8_t *to, const uint8_t *from, size_t bytes)
 
 /* Copies the float rows of S in reverse order, and converts bytes between the
  * file's order, little-endian if LITTLE is set, and this machine's order. */
-static void swap_float_rows(uint8_t *to, const uint8_t *from,
-                            const struct glint_samples *s, bool little)
+static void reverse_order_of_float_rows(uint8_t *to, const uint8_t *from,
+                                        const struct glint_samples *s,
+                                        bool little)
 {
     const uint16_t one = 1;
     const bool swap = (*(const uint8_t *)&one == 1) != little;
@@ -607,9 +611,9 @@ static enum glint_status open_native_file(struct glint_kept *k,
     if (!k->own)
         return report_memory_shortage(error, k->path, s->width, s->height);
     if (k->is_pfm)
-        swap_float_rows(k->own, s->mem, s, h.little);
+        reverse_order_of_float_rows(k->own, s->mem, s, h.little);
     else
-        swap_short_bytes(k->own, s->mem, count_sample_bytes(s));
+        swap_bytes_of_16_bit_samples(k->own, s->mem, count_sample_bytes(s));
     s->mem = k->own;
     return GLINT_OK;
 }
@@ -622,16 +626,17 @@ static void update_native_file(struct glint_kept *k)
     uint8_t *const at = k->native + k->header_bytes;
 
     if (k->is_pfm)
-        swap_float_rows(at, k->own, &k->samples, k->is_little);
+        reverse_order_of_float_rows(at, k->own, &k->samples, k->is_little);
     else if (k->own)
-        swap_short_bytes(at, k->own, count_sample_bytes(&k->samples));
+        swap_bytes_of_16_bit_samples(at, k->own,
+                                     count_sample_bytes(&k->samples));
 }
 
 /* -----------------------------------------------------------------
- * gif_colour_table_bytes */
+ * get_gif_colour_table_bytes */
 
 /* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
-static void add_note(char notes[GLINT_KEPT_NOTES], const char *text)
+static void append_to_notes(char notes[GLINT_KEPT_NOTES], const char *text)
 {
     const size_t used = strlen(notes);
 
@@ -649,18 +654,18 @@ static bool set_colours_by_cicp(struct glint_colours *c, const int cicp[2])
         {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
 
     if (cicp[1] == 13)
-        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
     else if (cicp[1] == 8)
-        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_LINEAR, 0, "linear");
     else if (cicp[1] == 4 || cicp[1] == 5)
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, cicp[1] == 4 ? 2.2 : 2.8,
-                          "gamma");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_GAMMA,
+                                cicp[1] == 4 ? 2.2 : 2.8, "gamma");
     else if (cicp[1] == 16)
-        glint_colours_set(c, GLINT_TONE_IS_PQ, 0, "PQ");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_PQ, 0, "PQ");
     else if (cicp[1] == 18)
-        glint_colours_set(c, GLINT_TONE_IS_HLG, 0, "HLG");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_HLG, 0, "HLG");
     else if (cicp[1] == 1 || cicp[1] == 6 || cicp[1] == 14 || cicp[1] == 15)
-        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_BT709, 0, "BT.709");
     else
         return false;
     if (cicp[0] == 9)
@@ -678,28 +683,29 @@ static bool set_colours_by_name(struct glint_colours *c, const char *name)
     double gamma;
 
     if (strcasecmp(name, "sRGB") == 0)
-        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
     else if (strcasecmp(name, "linear") == 0 ||
              strncasecmp(name, "lin_", 4) == 0)
-        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_LINEAR, 0, "linear");
     else if (strcasecmp(name, "Rec709") == 0)
-        glint_colours_set(c, GLINT_TONE_IS_BT709, 0, "BT.709");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_BT709, 0, "BT.709");
     else if (strcasecmp(name, "AdobeRGB") == 0) {
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, 563 / 256.0, "Adobe RGB");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_GAMMA, 563 / 256.0,
+                                "Adobe RGB");
         return glint_colours_set_primaries(c, adobe);
     } else if (strncmp(name, "Gamma", 5) == 0 &&
                (gamma = glint_option_number(name + 5, &end)) > 0.1 &&
                gamma < 10)
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_GAMMA, gamma, "gamma");
     else
         return false;
     return true;
 }
 
 /* Sets the colours of K's samples from FACTS. A colour space that glint does
- * not know is treated as linear or sRGB, and k->note reports that. */
-static void set_file_colours(struct glint_kept *k,
-                             const struct glint_oiio_facts *facts)
+ * not know is treated as linear or sRGB, and k->note reports this. */
+static void set_colours_of_file(struct glint_kept *k,
+                                const struct glint_oiio_facts *facts)
 {
     struct glint_samples *const s = &k->samples;
     struct glint_colours *const c = &s->colours;
@@ -707,15 +713,16 @@ static void set_file_colours(struct glint_kept *k,
     bool known = true;
 
     if (k->is_float)
-        glint_colours_set(c, GLINT_TONE_IS_LINEAR, 0, "linear");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_LINEAR, 0, "linear");
     else
-        glint_colours_set(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_SRGB, 0, "sRGB");
     if (facts->cicp[1])
         known = k->has_cicp = set_colours_by_cicp(c, facts->cicp);
     else if (facts->icc)
-        known = k->has_icc = glint_icc_read(c, facts->icc, facts->icc_bytes);
+        known = k->has_icc =
+            glint_icc_read_colours(c, facts->icc, facts->icc_bytes);
     else if (facts->gamma > 0.1 && facts->gamma < 10)
-        glint_colours_set(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
+        glint_colours_set_bt709(c, GLINT_TONE_IS_GAMMA, facts->gamma, "gamma");
     else if (*facts->colour_space && !k->is_float)
         known = set_colours_by_name(c, facts->colour_space);
     if (!facts->icc && !facts->cicp[1] && facts->has_primaries)
@@ -727,7 +734,7 @@ static void set_file_colours(struct glint_kept *k,
              : facts->icc   ? "what its profile says"
                             : facts->colour_space,
              k->is_float ? "linear" : "sRGB");
-    add_note(k->note, text);
+    append_to_notes(k->note, text);
 }
 
 /* --------------------------------------------------------------- plug-in */
@@ -749,8 +756,8 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
     k->metadata = facts.metadata;
     if (*facts.note)
-        add_note(k->note, facts.note);
-    set_file_colours(k, &facts);
+        append_to_notes(k->note, facts.note);
+    set_colours_of_file(k, &facts);
     return GLINT_OK;
 }
 
@@ -769,11 +776,12 @@ static enum glint_status open_any_file(struct glint_kept *k,
     glint_input_close(&in);
     if (status)
         return status;
-    return glint_pnm_matches(k->native, k->native_bytes) ||
-                   glint_pfm_matches(k->native, k->native_bytes)
+    return glint_pnm_has_signature(k->native, k->native_bytes) ||
+                   glint_pfm_has_signature(k->native, k->native_bytes)
                ? open_native_file(k, error)
                : open_file_by_plugin(
-                     k, get_type_name(k->native, k->native_bytes), error);
+                     k, get_name_of_file_type(k->native, k->native_bytes),
+                     error);
 }
 
 enum glint_status glint_kept_open(struct glint_kept *kept, const char *path,
@@ -803,7 +811,7 @@ void glint_kept_close(struct glint_kept *kept)
 
 enum glint_status glint_kept_check(const char *path, struct glint_error *error)
 {
-    const struct file_type *const type = find_extension_type(path);
+    const struct file_type *const type = find_type_of_extension(path);
     const struct glint_oiio *oiio;
 
     if (!type)
@@ -826,7 +834,7 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
 
 bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path)
 {
-    const struct file_type *const type = find_extension_type(path);
+    const struct file_type *const type = find_type_of_extension(path);
 
     if (!type)
         return false;
@@ -843,12 +851,13 @@ enum glint_status glint_kept_copy_file(const struct glint_kept *kept,
 {
     uint8_t *data;
     size_t bytes;
-    enum glint_status status =
-        glint_input_slurp(&data, &bytes, kept->path, SIZE_MAX / 2, error);
+    enum glint_status status = glint_input_read_whole_file(
+        &data, &bytes, kept->path, SIZE_MAX / 2, error);
 
     if (status)
         return status;
-    status = glint_output_save(path, GLINT_OUTPUT_BINARY, data, bytes, error);
+    status =
+        glint_output_save_file(path, GLINT_OUTPUT_BINARY, data, bytes, error);
     free(data);
     return status;
 }
@@ -861,8 +870,9 @@ enum glint_status glint_kept_make_blank(struct glint_samples *blank,
                                          ? GLINT_SAMPLE_FLOAT
                                          : from->colour[0].sample;
 
-    set_sample_layout(blank, glint_samples_width(from),
-                      glint_samples_height(from), sample, has_alpha ? 4 : 3);
+    set_sample_layout(blank, glint_samples_get_width(from),
+                      glint_samples_get_height(from), sample,
+                      has_alpha ? 4 : 3);
     blank->mem = calloc((size_t)blank->width * (size_t)blank->height,
                         blank->pixel_bytes);
     return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
@@ -881,22 +891,24 @@ static void report_losses(struct glint_kept_options *options,
 {
 
     if (from->has_alpha && !to->has_alpha)
-        add_note(
+        append_to_notes(
             options->said,
             "the file type has no alpha: the picture is composited over black");
     if (has_light_above_white(from) && !has_light_above_white(to))
-        add_note(options->said,
-                 to->colour[0].sample == GLINT_SAMPLE_U8
-                     ? "light above white is clipped, and 8 bits remain"
-                     : "light above white is clipped, and 16 bits remain");
-    else if (glint_sample_bytes(from->colour[0].sample) > 1 &&
+        append_to_notes(
+            options->said,
+            to->colour[0].sample == GLINT_SAMPLE_U8
+                ? "light above white is clipped, and 8 bits remain"
+                : "light above white is clipped, and 16 bits remain");
+    else if (glint_sample_get_bytes(from->colour[0].sample) > 1 &&
              to->colour[0].sample == GLINT_SAMPLE_U8)
-        add_note(options->said, "8 bits remain");
+        append_to_notes(options->said, "8 bits remain");
 }
 
 /* Returns the sample type nearest to SAMPLE that files of TYPE can hold. */
-static enum glint_sample choose_sample_type(const struct file_type *type,
-                                            enum glint_sample sample)
+static enum glint_sample
+choose_nearest_sample_type(const struct file_type *type,
+                           enum glint_sample sample)
 {
     const bool is_float = glint_sample_is_float(sample);
 
@@ -926,9 +938,9 @@ static bool can_type_hold_colours(const struct glint_kept *k,
             (k->has_cicp && (type->holds & HOLDS_CICP)));
 }
 
-/* Converts the samples FROM to samples TO that files of TYPE can hold; the
- * caller frees to->mem. Sets *KEEPS if FROM has the colours of K and TYPE can
- * describe these; TO then has them, too. */
+/* Converts the samples FROM to samples TO, of a type that files of TYPE can
+ * hold; the caller frees to->mem. Sets *KEEPS if FROM has the colours of K and
+ * TYPE can describe these colours; then TO has them, too. */
 static enum glint_status
 convert_samples_for_type(const struct glint_kept *k, struct glint_samples *to,
                          const struct glint_samples *from,
@@ -939,8 +951,9 @@ convert_samples_for_type(const struct glint_kept *k, struct glint_samples *to,
                          (from->n_colours == 1 && !type->is_native) ||
                          (from->n_colours == 1 && type->takes_float);
 
-    set_sample_layout(to, glint_samples_width(from), glint_samples_height(from),
-                      choose_sample_type(type, from->colour[0].sample),
+    set_sample_layout(to, glint_samples_get_width(from),
+                      glint_samples_get_height(from),
+                      choose_nearest_sample_type(type, from->colour[0].sample),
                       (is_grey ? 1 : 3) + has_alpha);
     to->is_premultiplied = type->alpha != ALPHA_STRAIGHT;
     *keeps = from == &k->samples && can_type_hold_colours(k, type, to);
@@ -971,9 +984,9 @@ static enum glint_status write_native_file(struct glint_output *out,
     if (!data)
         return report_memory_shortage(error, out->name, s->width, s->height);
     if (type->takes_float)
-        swap_float_rows(data, s->mem, s, true);
+        reverse_order_of_float_rows(data, s->mem, s, true);
     else if (is_wide)
-        swap_short_bytes(data, s->mem, bytes);
+        swap_bytes_of_16_bit_samples(data, s->mem, bytes);
     else
         memcpy(data, s->mem, bytes);
     n = snprintf(header, sizeof header, "%s\n%d %d\n%s\n", kind, s->width,
@@ -1006,7 +1019,7 @@ write_kept(struct glint_kept *k, struct glint_output *out,
     if (status)
         return status;
     if (*how.said)
-        add_note(options->said, how.said);
+        append_to_notes(options->said, how.said);
     status = glint_output_write(out, data, bytes, error);
     free(data);
     return status;
@@ -1015,13 +1028,13 @@ write_kept(struct glint_kept *k, struct glint_output *out,
 /* Writes the samples FROM to OUT, converted to the file type of OUT's name,
  * with the metadata of K. Lists in options->said the content that the
  * conversion loses. */
-static enum glint_status save_converted(struct glint_kept *k,
-                                        struct glint_output *out,
-                                        const struct glint_samples *from,
-                                        struct glint_kept_options *options,
-                                        struct glint_error *error)
+static enum glint_status
+save_in_other_file_type(struct glint_kept *k, struct glint_output *out,
+                        const struct glint_samples *from,
+                        struct glint_kept_options *options,
+                        struct glint_error *error)
 {
-    const struct file_type *const type = find_extension_type(out->name);
+    const struct file_type *const type = find_type_of_extension(out->name);
     struct glint_samples to;
     enum glint_status status;
     bool keeps_colours;
@@ -1037,7 +1050,7 @@ static enum glint_status save_converted(struct glint_kept *k,
     if (k->metadata && *k->metadata && !(type->holds & HOLDS_METADATA)) {
         snprintf(text, sizeof text, "%s has no %s", type->extension,
                  k->metadata);
-        add_note(options->said, text);
+        append_to_notes(options->said, text);
     }
     status = type->is_native
                  ? write_native_file(out, &to, type, error)
@@ -1060,8 +1073,8 @@ enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
     if (status)
         return status;
     if (alone || !glint_kept_is_same_type(kept, path)) {
-        status = save_converted(kept, &out, alone ? alone : &kept->samples,
-                                options, error);
+        status = save_in_other_file_type(
+            kept, &out, alone ? alone : &kept->samples, options, error);
     } else if (kept->oiio) {
         status = write_kept(kept, &out, NULL, true, options, error);
     } else {

@@ -43,8 +43,8 @@ struct glint_kept {
     struct glint_samples samples;
     /* true: the file stores floats, so light above white is not clipped */
     bool is_float;
-    /* Text that lists the content that glint cannot preserve or does not know;
-     * "" if there is none. */
+    /* Text that lists the file's content that glint cannot preserve or does not
+     * know; "" if there is none. */
     char note[GLINT_KEPT_NOTES];
 
     /* Private. */
@@ -65,8 +65,8 @@ struct glint_kept {
 struct glint_kept_options {
     int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the quality of the
                     input file, or 95 */
-    /* Output: text that lists the content that was lost; "" if there is
-     * none. */
+    /* Output: text that lists the content that was lost when saving; "" if none
+     * was. */
     char said[GLINT_KEPT_NOTES];
 };
 

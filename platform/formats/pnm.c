@@ -18,7 +18,7 @@ static bool is_white_space(int c)
     return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-bool glint_pfm_matches(const void *data, size_t bytes)
+bool glint_pfm_has_signature(const void *data, size_t bytes)
 {
     const uint8_t *const d = data;
 
@@ -26,9 +26,9 @@ bool glint_pfm_matches(const void *data, size_t bytes)
            is_white_space(d[2]);
 }
 
-/* Copies the word of DATA[BYTES] at offset *AT to TOKEN, and moves *AT behind
+/* Copies the word at offset *AT of DATA[BYTES] to TOKEN, and moves *AT behind
  * the single white space that ends the word. Returns false if there is no such
- * word, or it is longer than TOKEN. */
+ * word, or if it is longer than TOKEN. */
 static bool read_header_word(char token[TOKEN_CHARS], const uint8_t *data,
                              size_t bytes, size_t *at)
 {
@@ -122,7 +122,7 @@ static bool skip_header_end(struct cursor *c)
     return c->at < c->end && is_white_space(*c->at++);
 }
 
-bool glint_pnm_matches(const void *data, size_t bytes)
+bool glint_pnm_has_signature(const void *data, size_t bytes)
 {
     const uint8_t *const d = data;
 
@@ -150,11 +150,11 @@ enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
                                         const char *name,
                                         struct glint_error *error)
 {
-    const bool is_pfm = glint_pfm_matches(data, bytes);
+    const bool is_pfm = glint_pfm_has_signature(data, bytes);
     struct glint_pnm_header h = {0};
     size_t need;
 
-    if (!is_pfm && !glint_pnm_matches(data, bytes))
+    if (!is_pfm && !glint_pnm_has_signature(data, bytes))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "not a binary PPM or PGM (P6, P5)");
     if (!(is_pfm ? read_pfm_header : read_pnm_header)(&h, data, bytes))
@@ -181,8 +181,8 @@ enum glint_status glint_pnm_header_read(struct glint_pnm_header *header,
     return GLINT_OK;
 }
 
-/* Scales N samples of SRC, 0 .. MAXIMUM, to 8 bits. A sample has 2 bytes if
- * MAXIMUM is above 255, else 1. */
+/* Scales N samples of SRC, 0 .. MAXIMUM, to 8 bits in DST. A sample of SRC has
+ * 2 bytes if MAXIMUM is above 255, else 1. */
 static void scale_samples_to_8_bits(uint8_t *dst, const uint8_t *src, size_t n,
                                     int maximum)
 {
@@ -290,7 +290,7 @@ enum glint_status glint_pfm_read(struct glint_float_image *floats,
     size_t n_pixels;
     float *rgb;
 
-    if (!glint_pfm_matches(data, bytes))
+    if (!glint_pfm_has_signature(data, bytes))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "not a PFM (PF, Pf)");
     status = glint_pnm_header_read(&h, data, bytes, name, error);

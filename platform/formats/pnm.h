@@ -25,8 +25,8 @@
 #include "glint/image.h"
 #include "posix/output.h"
 
-/* The header of a PNM or PFM. The samples follow it, in a PFM the bottom row
- * first. */
+/* The header of a PNM or PFM. The samples follow the header; those of a PFM
+ * begin with the bottom row. */
 struct glint_pnm_header {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
     int channels;      /* 3: R G B, or 1: grey */
@@ -37,8 +37,8 @@ struct glint_pnm_header {
 };
 
 /* Returns whether DATA begins like a P5 or P6, or like a PFM. */
-bool glint_pnm_matches(const void *data, size_t bytes);
-bool glint_pfm_matches(const void *data, size_t bytes);
+bool glint_pnm_has_signature(const void *data, size_t bytes);
+bool glint_pfm_has_signature(const void *data, size_t bytes);
 
 /* Reads the header of DATA[BYTES], a complete PNM or PFM. Returns the errors of
  * glint_pnm_read(). */

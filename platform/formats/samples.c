@@ -54,7 +54,7 @@ uint16_t glint_half_encode(float value)
                                             -1 - exponent));
 }
 
-size_t glint_sample_bytes(enum glint_sample sample)
+size_t glint_sample_get_bytes(enum glint_sample sample)
 {
     static const uint8_t bytes[] = {1, 2, 4, 2, 4, 8};
 
@@ -68,21 +68,21 @@ bool glint_sample_is_float(enum glint_sample sample)
 
 /* ------------------------------------------------------------------- places */
 
-static bool swaps_width_and_height(const struct glint_samples *s)
+static bool does_orientation_swap_sides(const struct glint_samples *s)
 {
     return s->orientation >= 5;
 }
 
-int glint_samples_width(const struct glint_samples *samples)
+int glint_samples_get_width(const struct glint_samples *samples)
 {
-    return swaps_width_and_height(samples) ? samples->window_height
-                                           : samples->window_width;
+    return does_orientation_swap_sides(samples) ? samples->window_height
+                                                : samples->window_width;
 }
 
-int glint_samples_height(const struct glint_samples *samples)
+int glint_samples_get_height(const struct glint_samples *samples)
 {
-    return swaps_width_and_height(samples) ? samples->window_width
-                                           : samples->window_height;
+    return does_orientation_swap_sides(samples) ? samples->window_width
+                                                : samples->window_height;
 }
 
 /* Returns the address of the pixel at (X, Y) of the upright display window, or
@@ -91,8 +91,8 @@ static uint8_t *find_upright_pixel(const struct glint_samples *s, int x, int y)
 {
     const int right = s->window_width - 1, bottom = s->window_height - 1;
     /* 64 bits, as a file may place its window at any position */
-    int64_t column = swaps_width_and_height(s) ? y : x,
-            row = swaps_width_and_height(s) ? x : y;
+    int64_t column = does_orientation_swap_sides(s) ? y : x,
+            row = does_orientation_swap_sides(s) ? x : y;
 
     if (s->orientation == 2 || s->orientation == 3 || s->orientation == 7 ||
         s->orientation == 8)
@@ -199,15 +199,15 @@ static void write_float_sample(const struct glint_sample_place *c,
         memcpy(pixel + c->offset, &value, sizeof value);
 }
 
-static uint32_t get_max_code(enum glint_sample sample)
+static uint32_t get_max_sample_code(enum glint_sample sample)
 {
     return sample == GLINT_SAMPLE_U8    ? UINT8_MAX
            : sample == GLINT_SAMPLE_U16 ? UINT16_MAX
                                         : UINT32_MAX;
 }
 
-/* Returns sample C of PIXEL, an integer divided by MAXIMUM, a float
- * unchanged. */
+/* Returns sample C of PIXEL: an integer sample divided by MAXIMUM, a float
+ * sample unchanged. */
 static double read_scaled_sample(const struct glint_sample_place *c,
                                  uint32_t maximum, const uint8_t *pixel)
 {
@@ -232,19 +232,20 @@ static double read_pixel_alpha(const struct glint_samples *s,
                                const uint8_t *pixel)
 {
     const double alpha =
-        s->has_alpha ? read_scaled_sample(&s->alpha,
-                                          get_max_code(s->alpha.sample), pixel)
-                     : 1;
+        s->has_alpha
+            ? read_scaled_sample(&s->alpha,
+                                 get_max_sample_code(s->alpha.sample), pixel)
+            : 1;
 
     return alpha > 0 ? fmin(alpha, 1) : 0;
 }
 
 /* ------------------------------------------------------------ linear light */
 
-/* Decodes samples to linear light: entries[c] is a table from the codes of
- * colour c to light. It is NULL if samples are floats, if their maximum is
- * above 65535, or if the table could not be allocated; then the curve is
- * evaluated for each sample. */
+/* Decodes samples to linear light. entries[c] is a table from the codes of
+ * colour c to light. It is NULL if samples are floats, if their max is above
+ * 65535, or if there was no memory for the table; then the curve is evaluated
+ * for each sample. */
 struct decoder {
     const struct glint_samples *samples;
     float *entries[3];
@@ -337,9 +338,9 @@ void glint_samples_get_light(const struct glint_samples *samples, int x, int y,
 /* number of histogram bins: eight per octave of light, from 2^-8 to 2^24 */
 #define BINS 256
 
-/* Returns the white level of D's picture: the 99th percentile over pixels of
- * the largest channel, rounded up to an eighth of an octave, at least 1; 1 if
- * samples are not floats. */
+/* Returns the white level of D's picture: the 99th percentile over all pixels
+ * of the largest channel of a pixel, rounded up to an eighth of an octave, at
+ * least 1; 1 if samples are not floats. */
 static double find_white_level(const struct decoder *d)
 {
     const struct glint_samples *const s = d->samples;
@@ -407,8 +408,8 @@ enum glint_status glint_samples_make_proxy(const struct glint_samples *samples,
                                            double *white)
 {
     struct glint_image made = {.format = GLINT_RGB24,
-                               .width = glint_samples_width(samples),
-                               .height = glint_samples_height(samples),
+                               .width = glint_samples_get_width(samples),
+                               .height = glint_samples_get_height(samples),
                                .range = GLINT_RANGE_FULL,
                                .transfer = GLINT_TONE_SRGB};
     uint8_t *const mem =
@@ -477,8 +478,8 @@ static void add_light_to_pixel(const struct decoder *d, uint8_t *pixel,
 
 void glint_samples_add_light(struct glint_samples *samples, const float *layer)
 {
-    const int width = glint_samples_width(samples);
-    const int height = glint_samples_height(samples);
+    const int width = glint_samples_get_width(samples);
+    const int height = glint_samples_get_height(samples);
     struct decoder d;
 
     open_sample_decoder(&d, samples);
@@ -494,9 +495,9 @@ void glint_samples_add_light(struct glint_samples *samples, const float *layer)
     close_sample_decoder(&d);
 }
 
-/* Sets the colours of PIXEL to light RGB divided by SHARE. */
-static void write_pixel_light(const struct glint_samples *s, uint8_t *pixel,
-                              const double rgb[3], double share)
+/* Sets the colours of PIXEL to RGB, linear light, divided by SHARE. */
+static void write_light_to_pixel(const struct glint_samples *s, uint8_t *pixel,
+                                 const double rgb[3], double share)
 {
     double own[3] = {0, 0, 0};
 
@@ -518,11 +519,12 @@ void glint_samples_set_pixel(struct glint_samples *samples, int x, int y,
     if (!pixel)
         return;
     alpha = 1 - (1 - read_pixel_alpha(samples, pixel)) * (1 - cover);
-    write_pixel_light(samples, pixel, rgb,
-                      samples->is_premultiplied || !(alpha > 0) ? 1 : alpha);
+    write_light_to_pixel(samples, pixel, rgb,
+                         samples->is_premultiplied || !(alpha > 0) ? 1 : alpha);
     if (samples->has_alpha)
         write_scaled_sample(&samples->alpha,
-                            get_max_code(samples->alpha.sample), pixel, alpha);
+                            get_max_sample_code(samples->alpha.sample), pixel,
+                            alpha);
 }
 
 /* -------------------------------------------------------------- converting */
@@ -535,9 +537,10 @@ static void convert_pixel(const struct glint_samples *to, uint8_t *dst,
 
     if (src)
         decode_pixel_light(from, src, straight, rgb);
-    write_pixel_light(to, dst, rgb, 1);
+    write_light_to_pixel(to, dst, rgb, 1);
     if (to->has_alpha)
-        write_scaled_sample(&to->alpha, get_max_code(to->alpha.sample), dst,
+        write_scaled_sample(&to->alpha, get_max_sample_code(to->alpha.sample),
+                            dst,
                             src ? read_pixel_alpha(from->samples, src) : 0);
 }
 

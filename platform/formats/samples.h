@@ -8,11 +8,11 @@
  *     glint_samples_add_light(&samples, layer); adds light
  *     glint_samples_convert(&to, &from); for another file type
  *
- * "Upright" positions are those of the picture as a viewer shows it: in its
+ * "Upright" positions are positions in the picture as a viewer shows it: in its
  * display window, rotated by the file's orientation. The pixels in memory are
- * not rotated. Adding light preserves every bit of samples that it does not
- * change, of other channels (alpha, too) and of pixels outside the display
- * window. */
+ * not rotated. Adding light preserves every bit of samples whose value does not
+ * change, of channels other than the colours (alpha, too) and of pixels outside
+ * the display window. */
 #ifndef GLINT_PLATFORM_FORMATS_SAMPLES_H
 #define GLINT_PLATFORM_FORMATS_SAMPLES_H
 
@@ -60,14 +60,14 @@ float glint_half_decode(uint16_t half);
 uint16_t glint_half_encode(float value);
 
 /* Return the bytes of a sample of type SAMPLE, and whether it is a float. */
-size_t glint_sample_bytes(enum glint_sample sample);
+size_t glint_sample_get_bytes(enum glint_sample sample);
 
 bool glint_sample_is_float(enum glint_sample sample);
 
 /* Return the width and height, pixels, of the picture as a viewer shows it. */
-int glint_samples_width(const struct glint_samples *samples);
+int glint_samples_get_width(const struct glint_samples *samples);
 
-int glint_samples_height(const struct glint_samples *samples);
+int glint_samples_get_height(const struct glint_samples *samples);
 
 /* Returns whether the pixels have the layout of GLINT_RGB24: opaque 8-bit sRGB,
  * upright, with three channels. If so, points IMAGE to them. */

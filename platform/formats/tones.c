@@ -34,7 +34,7 @@ bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer)
     return transfer->is_pq || transfer->is_hlg;
 }
 
-/* light of code 1 of PQ, and of HLG */
+/* light of code 1 by the PQ curve, and by the HLG curve */
 #define PQ_PEAK  (10000 / 203.0)
 #define HLG_PEAK 3.7741178
 
@@ -74,7 +74,7 @@ static double interpolate_tone_table(const struct glint_tone_curve *t,
                                      double code)
 {
     const double at = code * (t->n_entries - 1);
-    /* NaN, too, uses the last interval. */
+    /* A NaN uses the last interval, too. */
     const int i = code < 1 ? (int)at : t->n_entries - 2;
 
     return (t->entry[i] + (at - i) * (t->entry[i + 1] - t->entry[i])) / 65535;
@@ -203,8 +203,9 @@ static bool set_rgb_to_xyz_matrix(double m[3][3], const double xy[4][2])
     return true;
 }
 
-/* Sets the matrices of COLOURS from FILE and BT709, the matrices from R, G, B
- * to X, Y, Z under one white point. Returns false if either has no inverse. */
+/* Sets the matrices of COLOURS. FILE and BT709 are the matrices from R, G, B to
+ * X, Y, Z of the file's primaries and of BT.709, with the same white point.
+ * Returns false if either has no inverse. */
 static bool set_colour_matrices(struct glint_colours *colours,
                                 const double file[3][3],
                                 const double bt709[3][3])
@@ -245,8 +246,9 @@ bool glint_colours_set_primaries(struct glint_colours *colours,
                                (const double(*)[3])bt709);
 }
 
-void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,
-                       double gamma, const char *name)
+void glint_colours_set_bt709(struct glint_colours *colours,
+                             enum glint_tone_kind kind, double gamma,
+                             const char *name)
 {
     memset(colours, 0, sizeof *colours);
     for (int c = 0; c < 3; c++) {
@@ -398,8 +400,8 @@ static bool read_colour_matrix(struct glint_colours *colours,
     return set_colour_matrices(colours, (const double(*)[3])file, bt709);
 }
 
-bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
-                    size_t bytes)
+bool glint_icc_read_colours(struct glint_colours *colours,
+                            const uint8_t *profile, size_t bytes)
 {
     static const char *const names[] = {"rTRC", "gTRC", "bTRC"};
     const struct profile p = {profile, bytes};
@@ -411,7 +413,7 @@ bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
     is_grey = memcmp(profile + 16, "GRAY", 4) == 0;
     if (!is_grey && memcmp(profile + 16, "RGB ", 4) != 0)
         return false;
-    glint_colours_set(&made, GLINT_TONE_IS_SRGB, 0, "its ICC profile");
+    glint_colours_set_bt709(&made, GLINT_TONE_IS_SRGB, 0, "its ICC profile");
     for (int c = 0; c < 3; c++) {
         if (!read_tone_curve(&made.transfer[c], &p,
                              is_grey ? "kTRC" : names[c]))

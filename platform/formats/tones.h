@@ -4,7 +4,7 @@
  * by its colour profile, and colours between its primaries and BT.709.
  *
  *     glint_tone_curve_set(&transfer, GLINT_TONE_IS_SRGB, 0); or
- *     glint_icc_read(&colours, profile, bytes);
+ *     glint_icc_read_colours(&colours, profile, bytes);
  *     light = glint_tone_curve_decode(&transfer, code / 65535.0);
  *
  * A code is 0 .. 1. Floats may exceed that: a curve continues by its own
@@ -30,10 +30,10 @@ enum glint_tone_kind {
 
 #define GLINT_TONE_ENTRIES 1024
 
-/* A transfer curve: light = (a code + b)^gamma + e for codes of d and more, c
- * code + f below. A table, if there is one, replaces the formula: it is
- * interpolated linearly between entries at equal steps of code; an entry of
- * 65535 is light 1. */
+/* A transfer curve: light = (a code + b)^gamma + e for codes of d and more,
+ * light = c code + f for codes below d. A table, if there is one, replaces the
+ * formula: it is interpolated linearly between entries at equal steps of code;
+ * an entry of 65535 is light 1. */
 struct glint_tone_curve {
     double gamma, a, b, c, d, e, f;
     bool is_pq, is_hlg; /* true: the curve of PQ or HLG replaces the formula */
@@ -66,8 +66,9 @@ bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer);
 
 /* Sets COLOURS to BT.709 primaries, with the curve KIND for all three
  * colours. */
-void glint_colours_set(struct glint_colours *colours, enum glint_tone_kind kind,
-                       double gamma, const char *name);
+void glint_colours_set_bt709(struct glint_colours *colours,
+                             enum glint_tone_kind kind, double gamma,
+                             const char *name);
 
 /* Sets the primaries of COLOURS from the chromaticities x, y of red, green,
  * blue and white. Returns false and changes nothing if no matrix has these
@@ -77,7 +78,7 @@ bool glint_colours_set_primaries(struct glint_colours *colours,
 
 /* Sets COLOURS from the ICC profile of a grey or RGB picture. Returns false if
  * the profile is malformed, or does not consist of curves and a matrix. */
-bool glint_icc_read(struct glint_colours *colours, const uint8_t *profile,
-                    size_t bytes);
+bool glint_icc_read_colours(struct glint_colours *colours,
+                            const uint8_t *profile, size_t bytes);
 
 #endif

@@ -98,7 +98,8 @@ static void leave_libjpeg(struct glint_mjpeg *d, enum glint_status status)
     longjmp(d->escape, 1);
 }
 
-static void leave_with_message(j_common_ptr jpeg, enum glint_status status)
+static void leave_libjpeg_with_message(j_common_ptr jpeg,
+                                       enum glint_status status)
 {
     struct glint_mjpeg *const d = jpeg->client_data;
     char text[JMSG_LENGTH_MAX];
@@ -112,18 +113,18 @@ static void on_libjpeg_error(j_common_ptr jpeg)
 {
     switch (jpeg->err->msg_code) {
     case JERR_OUT_OF_MEMORY:
-        leave_with_message(jpeg, GLINT_E_MEMORY);
+        leave_libjpeg_with_message(jpeg, GLINT_E_MEMORY);
         return;
     case JERR_BAD_PRECISION:
     case JERR_SOF_UNSUPPORTED:
-        leave_with_message(jpeg, GLINT_E_UNSUPPORTED);
+        leave_libjpeg_with_message(jpeg, GLINT_E_UNSUPPORTED);
         return;
     }
-    leave_with_message(jpeg, GLINT_E_FORMAT);
+    leave_libjpeg_with_message(jpeg, GLINT_E_FORMAT);
 }
 
-/* Leaves libjpeg at the three warnings after which samples are wrong. After
- * other warnings samples are right; messages with LEVEL >= 0 are not
+/* Leaves libjpeg at the three warnings after which samples are wrong; after
+ * other warnings samples are right. Messages with LEVEL >= 0 are not
  * warnings. */
 static void on_libjpeg_message(j_common_ptr jpeg, int level)
 {
@@ -139,11 +140,11 @@ static void on_libjpeg_message(j_common_ptr jpeg, int level)
                                       "MJPEG: frame ends in row %d of %d",
                                       (int)d->jpeg.output_scanline,
                                       (int)d->jpeg.output_height));
-        leave_with_message(jpeg, GLINT_E_FORMAT);
+        leave_libjpeg_with_message(jpeg, GLINT_E_FORMAT);
         return;
     case JWRN_HUFF_BAD_CODE:
     case JWRN_MUST_RESYNC:
-        leave_with_message(jpeg, GLINT_E_FORMAT);
+        leave_libjpeg_with_message(jpeg, GLINT_E_FORMAT);
     }
 }
 
@@ -160,8 +161,8 @@ static void on_source_start(j_decompress_ptr jpeg)
 }
 
 /* Called when libjpeg has read all data. In the scan, supplies an end-of-image
- * marker, since libjpeg reads ahead and may have decoded all samples; in the
- * header, leaves libjpeg with an error. */
+ * marker, as libjpeg reads ahead and may have decoded all samples already. In
+ * the header, leaves libjpeg with an error. */
 static boolean on_data_end(j_decompress_ptr jpeg)
 {
     static const JOCTET end[] = {MARKER, EOI};
@@ -193,8 +194,8 @@ static bool is_marker_without_data(int marker)
     return marker == TEM || (marker >= RST_FIRST && marker <= EOI);
 }
 
-/* Returns the offset of the last start-of-image marker in the header. Cameras
- * may send several, and libjpeg accepts only one. */
+/* Returns the offset of the last start-of-image marker before the image's data.
+ * Cameras may send several such markers, and libjpeg accepts only one. */
 static size_t find_image_start(const uint8_t *data, size_t bytes)
 {
     size_t start = 0, at = 0;
@@ -204,7 +205,7 @@ static size_t find_image_start(const uint8_t *data, size_t bytes)
 
         if (marker == SOI)
             start = at;
-        if (marker == MARKER) /* 0xff before a marker: padding */
+        if (marker == MARKER) /* 0xff before the 0xff of a marker is padding */
             at++;
         else if (is_marker_without_data(marker))
             at += 2;
@@ -314,10 +315,11 @@ static void start_decoding(struct glint_mjpeg *d, struct glint_image *image)
     jpeg_start_decompress(&d->jpeg);
 }
 
-/* Decodes to the planes of IMAGE, one row of MCUs at a time. The last row of
- * MCUs may reach below the picture; planes have MAX_ROWS spare rows there. */
-static void decode_planes(struct glint_mjpeg *d,
-                          const struct glint_image *image)
+/* Decodes the frame to the planes of IMAGE, one row of MCUs at a time. The last
+ * row of MCUs may reach below the picture; the planes have MAX_ROWS spare rows
+ * for that. */
+static void decode_jpeg_to_planes(struct glint_mjpeg *d,
+                                  const struct glint_image *image)
 {
     struct jpeg_decompress_struct *const j = &d->jpeg;
     const int lines = j->max_v_samp_factor * DCTSIZE;
@@ -365,7 +367,7 @@ enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
     jpeg_create_decompress(&d->jpeg);
     set_libjpeg_source(d, data, bytes);
     start_decoding(d, &frame);
-    decode_planes(d, &frame);
+    decode_jpeg_to_planes(d, &frame);
     jpeg_destroy_decompress(&d->jpeg);
     *image = frame;
     return GLINT_OK;

@@ -47,11 +47,11 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
  * or _I444, full range, BT.601, sRGB curve. The size may differ from frame to
  * frame. The samples belong to DECODER and may be changed; the next call
  * overwrites them. Returns GLINT_E_FORMAT if the frame is empty, visibly
- * damaged, or ends before its last sample: drop it and continue. Returns
- * GLINT_E_UNSUPPORTED if it is larger than the maximum, progressive, RGB or
- * CMYK, of another subsampling, or has more than 8 bits: the next frame
- * probably is, too. Returns GLINT_E_MEMORY if libjpeg got no memory; the next
- * frame may work. */
+ * damaged, or ends before its last sample: the caller should drop the frame and
+ * continue. Returns GLINT_E_UNSUPPORTED if the frame is larger than the
+ * maximum, progressive, RGB or CMYK, of another subsampling, or has more than 8
+ * bits: the next frame is probably of the same kind. Returns GLINT_E_MEMORY if
+ * libjpeg got no memory; the next frame may work. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

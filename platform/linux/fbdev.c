@@ -21,8 +21,8 @@
 static int held_fd = -1;
 static int held_mode; /* mode of the console before glint set it to graphics
                          mode */
-/* id of the process that set graphics mode; its child processes must not
- * restore the mode */
+/* id of the process that set graphics mode; child processes of this process
+ * must not restore the mode */
 static pid_t holder;
 
 /* Restores the console's mode. Async-signal-safe, as ioctl() is a plain system
@@ -37,13 +37,13 @@ static void restore_console(void)
     errno = saved;
 }
 
-/* Registers restore_console() with glint_at_death(); a second call does
- * nothing. Registered functions run from the latest to the earliest, so a
+/* Registers restore_console() with glint_at_death_register(); a second call
+ * does nothing. Registered functions run from the latest to the earliest, so a
  * function that must run before the console is restored must be registered
  * after this call. */
 static void register_console_restore(void)
 {
-    glint_at_death(restore_console);
+    glint_at_death_register(restore_console);
 }
 
 /* Opens the console PATH and sets *FD to its descriptor. Returns the mode to
@@ -111,8 +111,8 @@ static bool acquire_console(int *fd, struct glint_error *note)
     return true;
 }
 
-/* Restores the console's mode and closes *FD, if acquire_console() had
- * succeeded. */
+/* Restores the console's mode and closes *FD, if acquire_console() has
+ * succeeded before. */
 static void release_console(int *fd)
 {
     if (*fd < 0)
@@ -127,7 +127,7 @@ static void release_console(int *fd)
 #define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
 #endif
 
-/* Reports that the ioctl request WHAT failed, with the cause in errno. */
+/* Reports that ioctl request WHAT has failed, with the cause in errno. */
 static enum glint_status report_ioctl_failure(const struct glint_fbdev *fb,
                                               const char *what,
                                               struct glint_error *error)
@@ -166,10 +166,10 @@ static void register_pan_restore(const struct glint_fbdev *fb)
     __atomic_store_n(&panner, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&panned_fd, fb->fd, __ATOMIC_SEQ_CST);
     register_console_restore();
-    glint_at_death(restore_pan_offset);
+    glint_at_death_register(restore_pan_offset);
 }
 
-static void restore_pan_at_close(const struct glint_fbdev *fb)
+static void restore_pan_offset_at_close(const struct glint_fbdev *fb)
 {
     if (fb->fd < 0 || __atomic_load_n(&panned_fd, __ATOMIC_SEQ_CST) != fb->fd)
         return;
@@ -306,8 +306,8 @@ static bool can_flip_pages(struct glint_fbdev *fb,
 
 /* Sets FB's layout, memory mapping and number of screens for the mode in
  * fb->var. */
-static enum glint_status set_up_mode(struct glint_fbdev *fb,
-                                     struct glint_error *error)
+static enum glint_status set_up_video_mode(struct glint_fbdev *fb,
+                                           struct glint_error *error)
 {
     struct fb_fix_screeninfo fix;
     enum glint_status status;
@@ -317,8 +317,8 @@ static enum glint_status set_up_mode(struct glint_fbdev *fb,
     fb->home = fb->var;
     if (fb->home.yoffset == fb->var.yres)
         fb->home.yoffset =
-            /* A glint process that was killed may have left the second
-             * screen visible. */
+            /* A glint process that was killed may have left the second screen
+             * visible, so the original offset is taken to be 0. */
             0;
     if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
         return report_ioctl_failure(fb, "FBIOGET_FSCREENINFO", error);
@@ -352,8 +352,8 @@ static bool is_same_video_mode(const struct fb_var_screeninfo *a,
 
 /* Adapts FB if another program has changed the video mode. Fails if the device
  * was removed. */
-static enum glint_status follow_mode_change(struct glint_fbdev *fb,
-                                            struct glint_error *error)
+static enum glint_status adapt_to_mode_change(struct glint_fbdev *fb,
+                                              struct glint_error *error)
 {
     const struct fb_var_screeninfo old = fb->var;
 
@@ -361,7 +361,7 @@ static enum glint_status follow_mode_change(struct glint_fbdev *fb,
         return report_ioctl_failure(fb, "FBIOGET_VSCREENINFO", error);
     return fb->map && is_same_video_mode(&old, &fb->var)
                ? GLINT_OK
-               : set_up_mode(fb, error);
+               : set_up_video_mode(fb, error);
 }
 
 /* ------------------------------------------------------------------ frames */
@@ -445,7 +445,7 @@ static enum glint_status show_panel_frame(struct glint_sink *sink,
                                           struct glint_error *error)
 {
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
-    enum glint_status status = follow_mode_change(fb, error);
+    enum glint_status status = adapt_to_mode_change(fb, error);
 
     if (!status)
         status = open_panel_for_image(fb, image, error);
@@ -480,7 +480,7 @@ static void close_framebuffer(struct glint_sink *sink)
 {
     struct glint_fbdev *const fb = (struct glint_fbdev *)sink;
 
-    restore_pan_at_close(fb);
+    restore_pan_offset_at_close(fb);
     release_console(&fb->console_fd);
     unmap_panel(fb);
     glint_panel_close(&fb->panel);
@@ -534,7 +534,7 @@ enum glint_status glint_fbdev_open(struct glint_fbdev *fb, const char *path,
             status = report_ioctl_failure(fb, "FBIOGET_VSCREENINFO", error);
     }
     if (!status)
-        status = set_up_mode(fb, error);
+        status = set_up_video_mode(fb, error);
     if (status)
         close_framebuffer(&fb->sink);
     else

@@ -55,15 +55,15 @@ struct glint_fbdev {
     struct glint_fbdev_options options;
     const char *name; /* path of the device; not owned */
     int fd;           /* -1: closed */
-    /* Current mode and offset, and those before glint panned. */
+    /* Current mode and offset, and the mode and offset before glint panned. */
     struct fb_var_screeninfo var, home;
     uint8_t *map;                 /* mapped memory of the panel; NULL: not
                                      mapped */
-    size_t map_bytes, skip_bytes; /* Bytes of mapped memory, and bytes
-                                     before the first pixel. */
+    size_t map_bytes, skip_bytes; /* Size of the mapped memory, and offset of
+                                     the first pixel in it, bytes. */
     size_t stride_bytes, mem_bytes;
-    const uint8_t *cleared[2]; /* start of each screen whose area around the
-                                  picture is already black */
+    const uint8_t *cleared[2]; /* address of each screen whose area around the
+                                  picture is black already */
     bool has_vsync;
     struct glint_panel panel;
     int console_fd; /* descriptor of the console; -1: the console's mode is not

@@ -7,8 +7,9 @@
 
 #include <linux/videodev2.h>
 
-/* Table of pixel formats by FOURCC. glint_fourcc_from_format() returns the
- * first entry of a format whose planes lie in one block of memory. */
+/* Table of pixel formats by FOURCC. If a format has several entries,
+ * glint_fourcc_from_format() returns the first whose planes lie in one block of
+ * memory. */
 static const struct {
     uint32_t fourcc;
     enum glint_pixel_format format;
@@ -90,7 +91,7 @@ void glint_fourcc_text(uint32_t fourcc, char text[5])
     text[4] = 0;
 }
 
-static bool parse_known_name(const char *text, uint32_t *fourcc)
+static bool parse_format_name(const char *text, uint32_t *fourcc)
 {
     char own[5];
 
@@ -113,7 +114,7 @@ bool glint_fourcc_parse(const char *text, uint32_t *fourcc)
 {
     uint32_t value = 0;
 
-    if (parse_known_name(text, fourcc))
+    if (parse_format_name(text, fourcc))
         return true;
     if (strlen(text) != 4)
         return false;
@@ -128,11 +129,12 @@ bool glint_fourcc_parse(const char *text, uint32_t *fourcc)
 
 /* ------------------------------------------------------------------ colours */
 
-bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
-                            struct glint_image *image)
+bool glint_v4l2_colour_to_image(const struct glint_v4l2_colour *colour,
+                                struct glint_image *image)
 {
     const bool rgb = glint_image_is_rgb(image->format);
-    /* By default grey is full range: sensors without colour use all codes. */
+    /* By default grey is full range, as sensors without colour use all
+     * codes. */
     const bool is_grey = image->format == GLINT_GREY;
     const uint32_t space = colour->colorspace;
     uint32_t enc = colour->ycbcr_enc;
@@ -161,8 +163,8 @@ bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
     return xfer == V4L2_XFER_FUNC_SRGB || xfer == V4L2_XFER_FUNC_709;
 }
 
-void glint_v4l2_colour_write(struct glint_v4l2_colour *colour,
-                             const struct glint_image *image)
+void glint_v4l2_colour_from_image(struct glint_v4l2_colour *colour,
+                                  const struct glint_image *image)
 {
     const bool srgb = image->transfer == GLINT_TONE_SRGB;
 

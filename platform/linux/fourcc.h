@@ -43,12 +43,12 @@ struct glint_v4l2_colour {
  * value of "default" follows the rules of videodev2.h, except that grey is full
  * range. If glint does not support COLOUR (BT.2020, linear, RGB of limited
  * range ...), sets IMAGE to the nearest colours and returns false. */
-bool glint_v4l2_colour_read(const struct glint_v4l2_colour *colour,
-                            struct glint_image *image);
+bool glint_v4l2_colour_to_image(const struct glint_v4l2_colour *colour,
+                                struct glint_image *image);
 
 /* Sets COLOUR from range, matrix and transfer of IMAGE; no member is left at
  * "default". */
-void glint_v4l2_colour_write(struct glint_v4l2_colour *colour,
-                             const struct glint_image *image);
+void glint_v4l2_colour_from_image(struct glint_v4l2_colour *colour,
+                                  const struct glint_image *image);
 
 #endif

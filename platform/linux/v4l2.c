@@ -24,7 +24,8 @@ enum glint_v4l2_outcome {
 
 struct glint_v4l2_taken {
     int index;
-    /* bytes of each block, and offset of the data in the block, bytes */
+    /* size of each block of the buffer, and offset of the data in the block,
+     * bytes */
     size_t bytes[3], start[3];
     uint32_t sequence;
     int64_t time_us;
@@ -32,7 +33,7 @@ struct glint_v4l2_taken {
 };
 
 #define PAGE 4096
-/* max age, us, of a time stamp of unknown clock; older time stamps are
+/* max age, us, of a time stamp whose clock is unknown; older time stamps are
  * ignored */
 #define MAX_AGE_US 5000000
 
@@ -45,8 +46,9 @@ static bool is_multiplanar(const struct glint_v4l2 *v)
 
 /* Returns a struct v4l2_buffer that describes buffer INDEX. It may point to
  * PLANES. */
-static struct v4l2_buffer describe_buffer(const struct glint_v4l2 *v, int index,
-                                          struct v4l2_plane planes[3])
+static struct v4l2_buffer fill_buffer_description(const struct glint_v4l2 *v,
+                                                  int index,
+                                                  struct v4l2_plane planes[3])
 {
     struct v4l2_buffer b = {.type = v->device.type,
                             .index = (uint32_t)index,
@@ -67,7 +69,7 @@ static int queue_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *buffer = &v->buffer[index];
     struct v4l2_plane planes[3];
-    struct v4l2_buffer b = describe_buffer(v, index, planes);
+    struct v4l2_buffer b = fill_buffer_description(v, index, planes);
 
     if (v->io == GLINT_V4L2_USERPTR && is_multiplanar(v))
         for (int i = 0; i < v->device.format.n_blocks; i++) {
@@ -92,7 +94,7 @@ static int queue_buffer(struct glint_v4l2 *v, int index)
 static int64_t compute_capture_time_us(const struct v4l2_buffer *b)
 {
     const uint32_t clock = b->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK;
-    const int64_t now_us = glint_now_us();
+    const int64_t now_us = glint_get_time_us();
     const int64_t stamp_us =
         (int64_t)b->timestamp.tv_sec * 1000000 + b->timestamp.tv_usec;
     const bool is_it = clock == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC ||
@@ -113,7 +115,7 @@ static enum glint_v4l2_outcome dequeue_buffer(struct glint_v4l2 *v,
                                               struct glint_v4l2_taken *t)
 {
     struct v4l2_plane planes[3];
-    struct v4l2_buffer b = describe_buffer(v, 0, planes);
+    struct v4l2_buffer b = fill_buffer_description(v, 0, planes);
 
     if (glint_ioctl(v->device.fd, VIDIOC_DQBUF, &b) < 0)
         return convert_errno_to_outcome(errno);
@@ -151,7 +153,7 @@ read_frame_into_buffer(struct glint_v4l2 *v, struct glint_v4l2_taken *t)
     *t = (struct glint_v4l2_taken){.index = i,
                                    .bytes = {(size_t)got},
                                    .sequence = v->n_read++,
-                                   .time_us = glint_now_us()};
+                                   .time_us = glint_get_time_us()};
     v->buffer[i].queued = false;
     return GLINT_V4L2_TAKEN;
 }
@@ -193,8 +195,8 @@ static void release_buffers(struct glint_v4l2 *v)
                 free(mem);
         }
     memset(v->buffer, 0, sizeof v->buffer);
-    /* The driver's buffers are freed even if n_buffers is 0: freeing may have
-     * failed before, and until it succeeds no format can be set. */
+    /* The driver's buffers are freed even if n_buffers is 0: freeing them may
+     * have failed before, and until it succeeds no format can be set. */
     if (v->io == GLINT_V4L2_MMAP || v->io == GLINT_V4L2_USERPTR)
         request_buffers(v,
                         v->io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP
@@ -224,7 +226,7 @@ static const char *map_buffer_block(struct glint_v4l2 *v, int index, int block,
 static const char *map_buffer(struct glint_v4l2 *v, int index)
 {
     struct v4l2_plane planes[3];
-    struct v4l2_buffer b = describe_buffer(v, index, planes);
+    struct v4l2_buffer b = fill_buffer_description(v, index, planes);
     const char *failed = NULL;
 
     if (glint_ioctl(v->device.fd, VIDIOC_QUERYBUF, &b) < 0)
@@ -273,12 +275,12 @@ static bool can_export_dmabuf(const struct glint_v4l2 *v)
 static int64_t measure_read_time_us(const void *mem, size_t bytes)
 {
     const volatile uint64_t *at = mem;
-    const int64_t start = glint_now_us();
+    const int64_t start = glint_get_time_us();
 
     for (int k = 0; k < 2; k++)
         for (size_t i = 0; i < bytes / sizeof *at; i += 2)
             (void)at[i];
-    return glint_now_us() - start;
+    return glint_get_time_us() - start;
 }
 
 /* Returns whether reading buffers is about as fast as reading other memory.
@@ -438,7 +440,7 @@ static enum glint_status queue_and_start_stream(struct glint_v4l2 *v,
     int n_queued = 0;
 
     for (int i = 0; i < v->n_buffers; i++)
-        /* A buffer that the driver refuses is queued later. */
+        /* A buffer that the driver refuses now is queued later. */
         n_queued += queue_buffer(v, i) == 0;
     if (n_queued == 0)
         return glint_report_ioctl_error(error, v->device.path, "VIDIOC_QBUF");
@@ -448,18 +450,18 @@ static enum glint_status queue_and_start_stream(struct glint_v4l2 *v,
     v->streams = true;
     v->n_numbered = 0;
     v->n_useless = 0;
-    v->heard_us = glint_now_us();
+    v->heard_us = glint_get_time_us();
     return GLINT_OK;
 }
 
 static bool is_restart_time_left(const struct glint_v4l2 *v)
 {
-    return v->broken_us && glint_now_us() - v->broken_us <= PATIENCE_US;
+    return v->broken_us && glint_get_time_us() - v->broken_us <= PATIENCE_US;
 }
 
-/* Implements glint_source.start. Before the stream has started for the first
- * time, failures are returned immediately; after a restart read_next_frame()
- * tries again for PATIENCE_US. */
+/* Implements glint_source.start. If the stream has never been started, failures
+ * are returned immediately; after a restart read_next_frame() tries again for
+ * PATIENCE_US. */
 static enum glint_status start_source(struct glint_source *source,
                                       struct glint_error *error)
 {
@@ -505,10 +507,11 @@ static enum glint_status renegotiate_format(struct glint_v4l2 *v,
     return status;
 }
 
-/* Stops the stream and prepares it for the current format of the device.
- * Only the next frame shows whether the restart succeeded: until it arrives,
- * failures are ignored for PATIENCE_US. After that time returns the error of
- * the failed request, or reports WHY if the stream had started. */
+/* Stops the stream and prepares it again with the current format of the device.
+ * Only the next frame shows whether the restart has succeeded: until a frame
+ * arrives, failures are ignored for PATIENCE_US. After that time returns the
+ * error of the failed request, or reports WHY if the stream had been
+ * started. */
 static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
                                         struct glint_error *error)
 {
@@ -521,7 +524,7 @@ static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
     if (!is_device_present(v))
         return report_device_removed(v, error);
     if (v->broken_us == 0)
-        v->broken_us = glint_now_us();
+        v->broken_us = glint_get_time_us();
     else {
         nanosleep(&breath, NULL);
         is_late = !is_restart_time_left(v);
@@ -546,7 +549,7 @@ static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
  * or has no signal. */
 static void restart_time_limits(struct glint_v4l2 *v)
 {
-    v->heard_us = glint_now_us();
+    v->heard_us = glint_get_time_us();
     if (v->broken_us)
         v->broken_us = v->heard_us;
 }
@@ -589,7 +592,8 @@ static bool is_frame_complete(const struct glint_v4l2 *v,
 static void return_buffer(struct glint_v4l2 *v, int index)
 {
     v->buffer[index].lent = false;
-    queue_buffer(v, index); /* A failure is reported by a later call. */
+    queue_buffer(v, index); /* If the driver refuses the buffer, a later call
+                               reports the failure. */
 }
 
 static void queue_idle_buffers(struct glint_v4l2 *v)
@@ -599,10 +603,11 @@ static void queue_idle_buffers(struct glint_v4l2 *v)
             queue_buffer(v, i);
 }
 
-/* Returns the number of frames lost before frame SEQUENCE. Returns 0 where the
- * numbers are unreliable: for the first two frames after a start, as
- * v4l2loopback begins with an old number; for drivers that repeat a number; for
- * gaps above MAX_GAP, which would have been a stall. */
+/* Returns the number of frames lost before the frame with number SEQUENCE.
+ * Returns 0 where sequence numbers are unreliable: for the first two frames
+ * after a start, as v4l2loopback begins with an old number; for drivers that
+ * repeat a number; and for gaps above MAX_GAP, as such a gap would have been a
+ * stall. */
 static int count_missing_frames(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;
@@ -627,7 +632,7 @@ take_newest_frame(struct glint_v4l2 *v, struct glint_v4l2_taken *newest,
         outcome = take_filled_buffer(v, &t);
         if (outcome != GLINT_V4L2_TAKEN)
             break;
-        v->heard_us = glint_now_us();
+        v->heard_us = glint_get_time_us();
         frame->n_dropped += count_missing_frames(v, t.sequence);
         if (!is_frame_complete(v, &t)) {
             frame->n_corrupt++;
@@ -717,7 +722,7 @@ static bool is_stream_stalled(struct glint_v4l2 *v)
     const int64_t frame_us =
         f->fps_num ? INT64_C(1000000) * f->fps_den / f->fps_num : 0;
 
-    if (glint_now_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
+    if (glint_get_time_us() - v->heard_us < STALL_US + STALL_FRAMES * frame_us)
         return false;
     glint_v4l2_device_has_new_timings(&v->device);
     if (!v->device.has_signal)
@@ -780,8 +785,8 @@ static void return_frame(struct glint_source *source,
     struct glint_v4l2 *v = (struct glint_v4l2 *)source;
     struct glint_v4l2_buffer *b = frame->buffer;
 
-    /* Buffer B is no longer lent if the stream was restarted meanwhile, which
-     * freed the buffer. */
+    /* If the stream was restarted meanwhile, buffer B was freed and is no
+     * longer lent. */
     if (b && b->lent)
         return_buffer(v, (int)(b - v->buffer));
     frame->buffer = NULL;
@@ -800,8 +805,8 @@ static void close_camera(struct glint_source *source)
     v->source.fd = -1;
 }
 
-static void describe_source(const struct glint_source *source,
-                            struct glint_source_format *format)
+static void describe_source_format(const struct glint_source *source,
+                                   struct glint_source_format *format)
 {
     static const char *const io[] = {"", "mapped", "user", "read"};
     const struct glint_v4l2 *v = (const struct glint_v4l2 *)source;
@@ -840,7 +845,7 @@ enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                              .start = start_source,
                                              .next = read_next_frame,
                                              .done = return_frame,
-                                             .describe = describe_source,
+                                             .describe = describe_source_format,
                                              .close = close_camera},
                                   .wish_io = io,
                                   .wish_buffers = n_buffers};

@@ -60,12 +60,13 @@ struct glint_v4l2 {
     struct glint_mjpeg *jpeg; /* decoder of JPEG streams */
     bool streams;
     int n_numbered; /* number of frames since the stream was started, counted up
-                       to 2 */
+                       to 2 only */
     uint32_t sequence; /* sequence number of the last frame that was dequeued */
     uint32_t n_read;   /* number of frames read by read(2), which gives no
                           sequence number */
     int64_t heard_us;  /* arrival time of the last frame, us */
-    int64_t broken_us; /* time at which the stream failed, us; 0: it works */
+    int64_t broken_us; /* time at which the stream failed, us; 0: the stream
+                          works */
     int n_useless;     /* number of damaged frames in a row */
 };
 

@@ -50,8 +50,8 @@ static bool is_multiplanar(const struct glint_v4l2_device *d)
 
 /* ----------------------------------------------------- the cheapest format */
 
-static bool has_device_size(const struct glint_v4l2_device *d, uint32_t fourcc,
-                            uint32_t w, uint32_t h)
+static bool has_device_frame_size(const struct glint_v4l2_device *d,
+                                  uint32_t fourcc, uint32_t w, uint32_t h)
 {
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
@@ -70,9 +70,9 @@ static bool has_device_size(const struct glint_v4l2_device *d, uint32_t fourcc,
 }
 
 /* Returns whether the frame interval A is at most 0.5 % longer than the
- * interval of the requested rate. The tolerance is needed as USB states
- * intervals in units of 100 ns, and 29.97 frames per second is also called
- * 30. */
+ * interval of the requested rate. The tolerance is needed because USB states
+ * intervals in units of 100 ns, and because 29.97 frames per second are also
+ * called 30. */
 static bool is_interval_short_enough(const struct glint_v4l2_device *d,
                                      struct v4l2_fract a)
 {
@@ -80,8 +80,9 @@ static bool is_interval_short_enough(const struct glint_v4l2_device *d,
            201.0 * a.denominator * d->wish.fps_den;
 }
 
-static bool has_requested_rate(const struct glint_v4l2_device *d,
-                               uint32_t fourcc, uint32_t w, uint32_t h)
+static bool does_size_have_requested_rate(const struct glint_v4l2_device *d,
+                                          uint32_t fourcc, uint32_t w,
+                                          uint32_t h)
 {
     struct v4l2_frmivalenum interval = {
         .pixel_format = fourcc, .width = w, .height = h};
@@ -99,8 +100,8 @@ static bool has_requested_rate(const struct glint_v4l2_device *d,
     return false;
 }
 
-/* Returns a mask whose bit i is set if the device has the format preferred[i]
- * and glint can read it. */
+/* Returns a bit mask of the formats that the device has and glint can read; bit
+ * i stands for preferred[i]. */
 static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 {
     struct v4l2_fmtdesc f = {.type = d->type};
@@ -113,9 +114,9 @@ static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
     return have;
 }
 
-/* Returns the first format of preferred[] that the device has in W x H at the
- * requested rate; if there is no such format, the first that the device has in
- * any size; 0 if glint reads none of its formats. */
+/* Returns the first format of preferred[] that the device has in size W x H at
+ * the requested rate; if there is none, the first that the device has in any
+ * size; 0 if glint can read none of the device's formats. */
 static uint32_t choose_offered_format(const struct glint_v4l2_device *d,
                                       uint32_t w, uint32_t h)
 {
@@ -126,8 +127,8 @@ static uint32_t choose_offered_format(const struct glint_v4l2_device *d,
         if (!(have >> i & 1))
             continue;
         first = preferred[i];
-        if (has_device_size(d, first, w, h) &&
-            has_requested_rate(d, first, w, h))
+        if (has_device_frame_size(d, first, w, h) &&
+            does_size_have_requested_rate(d, first, w, h))
             sized = first;
     }
     return sized ? sized : first;
@@ -141,8 +142,8 @@ struct pix { /* members that the single-planar and multi-planar struct
     struct glint_v4l2_colour colour;
 };
 
-static struct pix read_format_members(const struct v4l2_format *f,
-                                      bool multiplanar)
+static struct pix read_members_of_v4l2_format(const struct v4l2_format *f,
+                                              bool multiplanar)
 {
     const struct v4l2_pix_format *p = &f->fmt.pix;
     const struct v4l2_pix_format_mplane *m = &f->fmt.pix_mp;
@@ -170,9 +171,9 @@ static struct pix read_format_members(const struct v4l2_format *f,
     return pix;
 }
 
-static void write_format_members(struct v4l2_format *f, bool multiplanar,
-                                 uint32_t fourcc, uint32_t width,
-                                 uint32_t height)
+static void write_members_of_v4l2_format(struct v4l2_format *f,
+                                         bool multiplanar, uint32_t fourcc,
+                                         uint32_t width, uint32_t height)
 {
     if (multiplanar) {
         f->fmt.pix_mp.pixelformat = fourcc;
@@ -187,9 +188,9 @@ static void write_format_members(struct v4l2_format *f, bool multiplanar,
     }
 }
 
-/* Sets the planes of F from PIX. Returns false if the planes do not fit the
- * blocks of F. A single block holds the planes one after the other, and chroma
- * strides follow from the luma stride. */
+/* Sets the planes of F from PIX. Returns false if the planes do not fit into
+ * the blocks of F. In a single block the planes follow each other, and the
+ * strides of chroma follow from the stride of luma. */
 static bool set_format_planes(struct glint_v4l2_format *f,
                               const struct pix *pix)
 {
@@ -227,7 +228,7 @@ static void set_format_colour(struct glint_v4l2_device *d,
     struct glint_v4l2_format *f = &d->format;
     struct glint_image image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels};
 
-    glint_v4l2_colour_read(colour, &image);
+    glint_v4l2_colour_to_image(colour, &image);
     if (f->is_jpeg) { /* JPEG frames are coded as JFIF, whatever the driver
                          reports. */
         image.range = GLINT_RANGE_FULL;
@@ -275,8 +276,8 @@ static enum glint_status adopt_device_format(struct glint_v4l2_device *d,
     return GLINT_OK;
 }
 
-/* Requests the configured format, and adopts the format that the device
- * answers with. Returns the errors of glint_v4l2_device_open(). */
+/* Requests the configured format, and adopts the format with which the device
+ * answers. Returns the errors of glint_v4l2_device_open(). */
 static enum glint_status request_format(struct glint_v4l2_device *d,
                                         struct glint_error *error)
 {
@@ -287,18 +288,18 @@ static enum glint_status request_format(struct glint_v4l2_device *d,
 
     if (glint_ioctl(d->fd, VIDIOC_G_FMT, &f) < 0)
         return glint_report_ioctl_error(error, d->path, "VIDIOC_G_FMT");
-    pix = read_format_members(&f, multiplanar);
+    pix = read_members_of_v4l2_format(&f, multiplanar);
     if (d->wish.width) {
         pix.width = (uint32_t)d->wish.width;
         pix.height = (uint32_t)d->wish.height;
     }
     if (!fourcc)
         fourcc = choose_offered_format(d, pix.width, pix.height);
-    write_format_members(&f, multiplanar, fourcc ? fourcc : pix.fourcc,
-                         pix.width, pix.height);
+    write_members_of_v4l2_format(&f, multiplanar, fourcc ? fourcc : pix.fourcc,
+                                 pix.width, pix.height);
     if (glint_ioctl(d->fd, VIDIOC_S_FMT, &f) < 0)
         return glint_report_ioctl_error(error, d->path, "VIDIOC_S_FMT");
-    pix = read_format_members(&f, multiplanar);
+    pix = read_members_of_v4l2_format(&f, multiplanar);
     if (d->wish.fourcc && pix.fourcc != d->wish.fourcc) {
         char asked[5], got[5];
 

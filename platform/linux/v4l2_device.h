@@ -22,10 +22,12 @@ struct glint_v4l2_config {
     const char *device;   /* path, "/dev/video0", or "0" for short */
     int width, height;    /* 0, 0: the device's current size */
     int fps_num, fps_den; /* frames per second; 0: the device's current rate */
-    uint32_t fourcc;      /* 0: the cheapest format with this size and rate */
-    int input;            /* -1: the currently selected input */
-    /* range and matrix that override those of the device; -1: those of the
-     * device */
+    uint32_t fourcc;      /* 0: the format that costs the least to draw in, of
+                             those with this size and rate */
+    int input;            /* index of the input; -1: the input that is
+                             selected */
+    /* range and matrix in place of those that the device states; -1: as the
+     * device states */
     int range, matrix;
 };
 

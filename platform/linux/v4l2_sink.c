@@ -72,7 +72,7 @@ static enum glint_status set_output_format(struct glint_v4l2_sink *out,
     struct glint_v4l2_colour colour;
     char want[5], got[5];
 
-    glint_v4l2_colour_write(&colour, like);
+    glint_v4l2_colour_from_image(&colour, like);
     *f = (struct v4l2_format){.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
     px->width = (uint32_t)like->width;
     px->height = (uint32_t)like->height;
@@ -82,8 +82,8 @@ static enum glint_status set_output_format(struct glint_v4l2_sink *out,
     px->ycbcr_enc = colour.ycbcr_enc;
     px->quantization = colour.quantization;
     px->xfer_func = colour.xfer_func;
-    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* makes drivers read the last three
-                                           members */
+    px->priv = V4L2_PIX_FMT_PRIV_MAGIC; /* priv must have this value, or drivers
+                                           ignore the last three members */
     if (glint_ioctl(out->fd, VIDIOC_S_FMT, f) < 0)
         return report_request_failure(out, "VIDIOC_S_FMT", error);
     if (glint_fourcc_to_format(px->pixelformat, &format) &&

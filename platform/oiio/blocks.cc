@@ -34,7 +34,7 @@ const unsigned char *get_text_bytes(const std::string &text)
     return reinterpret_cast<const unsigned char *>(text.data());
 }
 
-bool is_png_xmp(const file_piece &chunk)
+bool is_png_chunk_with_xmp(const file_piece &chunk)
 {
     return chunk.name == "iTXt" &&
            begins_with_text(chunk, xmp_keyword, sizeof xmp_keyword);
@@ -73,7 +73,7 @@ void append_big32(bytes &to, uint32_t value)
         to.push_back(static_cast<unsigned char>(value >> shift));
 }
 
-void append_png(bytes &to, const char *name, const unsigned char *data,
+void append_png_chunk(bytes &to, const char *name, const unsigned char *data,
                 size_t n)
 {
     append_big32(to, static_cast<uint32_t>(n));
@@ -89,13 +89,13 @@ void append_png_blocks(bytes &file, const file_blocks &b)
     if (b.cicp[1]) {
         const unsigned char rgb[] = {b.cicp[0], b.cicp[1], 0, 1};
 
-        append_png(file, "cICP", rgb, sizeof rgb);
+        append_png_chunk(file, "cICP", rgb, sizeof rgb);
     }
     if (!b.exif.empty())
-        append_png(file, "eXIf", b.exif.data(), b.exif.size());
+        append_png_chunk(file, "eXIf", b.exif.data(), b.exif.size());
     text += std::string(4, '\0') + b.xmp;
     if (!b.xmp.empty())
-        append_png(file, "iTXt", get_text_bytes(text), text.size());
+        append_png_chunk(file, "iTXt", get_text_bytes(text), text.size());
 }
 
 bytes replace_png_blocks(const bytes &made, const file_blocks &b)
@@ -106,7 +106,7 @@ bytes replace_png_blocks(const bytes &made, const file_blocks &b)
     for (const file_piece &chunk : chunks) {
         const bool goes =
             (chunk.name == "eXIf" && !b.exif.empty()) ||
-            (is_png_xmp(chunk) && !b.xmp.empty()) ||
+            (is_png_chunk_with_xmp(chunk) && !b.xmp.empty()) ||
             (b.cicp[1] && is_one_of(chunk.name, {"gAMA", "cHRM", "sRGB"}));
 
         if (!goes)
@@ -126,8 +126,9 @@ void report_lost_block(std::string &lost, const char *what, size_t n)
             " KB are more than a JPEG's 64 KB";
 }
 
-/* The Exif and XMP that OpenImageIO wrote to MADE are removed even if those of
- * B do not fit into segments, as they are only a part of B's. */
+/* The Exif and XMP blocks that OpenImageIO wrote to MADE are removed even if
+ * the blocks of B do not fit into segments, as they contain only a part of what
+ * B's contain. */
 bytes replace_jpeg_blocks(const bytes &made, const file_blocks &b,
                           std::string &lost)
 {
@@ -145,18 +146,18 @@ bytes replace_jpeg_blocks(const bytes &made, const file_blocks &b,
         report_lost_block(lost, "XMP", b.xmp.size());
     bool is_in = false;
     for (const file_piece &segment : segments) {
-        if (!is_in && !is_marker(segment, 0xe0)) {
+        if (!is_in && !has_marker_byte(segment, 0xe0)) {
             append_bytes(file, own.data(), own.size());
             is_in = true;
         }
-        if (!(is_exif(segment) && !b.exif.empty()) &&
-            !(is_xmp(segment) && !b.xmp.empty()))
+        if (!(is_exif_segment(segment) && !b.exif.empty()) &&
+            !(is_xmp_segment(segment) && !b.xmp.empty()))
             append_bytes(file, segment.whole, segment.whole_bytes);
     }
     return file;
 }
 
-void append_webp(bytes &to, const char *name, const unsigned char *data,
+void append_webp_chunk(bytes &to, const char *name, const unsigned char *data,
                  size_t n)
 {
     append_bytes(to, reinterpret_cast<const unsigned char *>(name), 4);
@@ -174,11 +175,11 @@ bytes build_metadata_webp(const file_blocks &b)
     bytes file = {'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'};
 
     if (!b.icc.empty())
-        append_webp(file, "ICCP", b.icc.data(), b.icc.size());
+        append_webp_chunk(file, "ICCP", b.icc.data(), b.icc.size());
     if (!b.exif.empty())
-        append_webp(file, "EXIF", b.exif.data(), b.exif.size());
+        append_webp_chunk(file, "EXIF", b.exif.data(), b.exif.size());
     if (!b.xmp.empty())
-        append_webp(file, "XMP ", get_text_bytes(b.xmp), b.xmp.size());
+        append_webp_chunk(file, "XMP ", get_text_bytes(b.xmp), b.xmp.size());
     return file;
 }
 
@@ -192,9 +193,9 @@ file_blocks read_metadata_blocks(const std::string &type, const bytes &whole)
         return read_tiff_metadata(whole);
     if (type == "jpeg")
         for (const file_piece &segment : split_jpeg_segments(whole)) {
-            if (is_exif(segment) && b.exif.empty())
+            if (is_exif_segment(segment) && b.exif.empty())
                 b.exif = copy_piece_data(segment, exif_head_bytes);
-            if (is_xmp(segment) && b.xmp.empty())
+            if (is_xmp_segment(segment) && b.xmp.empty())
                 b.xmp = convert_bytes_to_text(segment, xmp_head_bytes);
         }
     if (type == "png")
@@ -203,7 +204,7 @@ file_blocks read_metadata_blocks(const std::string &type, const bytes &whole)
                 b.exif = copy_piece_data(chunk, 0);
             if (chunk.name == "cICP" && chunk.data_bytes == 4)
                 std::memcpy(b.cicp, chunk.data, 4);
-            if (is_png_xmp(chunk) && b.xmp.empty())
+            if (is_png_chunk_with_xmp(chunk) && b.xmp.empty())
                 b.xmp = get_itxt_text(chunk);
         }
     if (type == "webp")
@@ -242,7 +243,8 @@ void set_upright_orientation(file_blocks &b)
             b.exif[at + 8] = little;
             b.exif[at + 9] = !little;
         }
-    if (end + 4 <= b.exif.size()) /* Next directory: that of the thumbnail. */
+    if (end + 4 <= b.exif.size()) /* The next directory is that of the
+                                     thumbnail. */
         std::fill_n(b.exif.begin() + static_cast<std::ptrdiff_t>(end), 4, 0);
 }
 

@@ -40,12 +40,12 @@ bool is_metadata_segment(const file_piece &segment)
  * old file. */
 bool is_picture_index(const file_piece &segment)
 {
-    return is_marker(segment, 0xe2) && begins_with_text(segment, "MPF", 4);
+    return has_marker_byte(segment, 0xe2) && begins_with_text(segment, "MPF", 4);
 }
 
 bool is_icc_segment(const file_piece &segment)
 {
-    return is_marker(segment, 0xe2) &&
+    return has_marker_byte(segment, 0xe2) &&
            begins_with_text(segment, "ICC_PROFILE", 12);
 }
 
@@ -57,10 +57,10 @@ void append_named_segments(bytes &to, const std::vector<file_piece> &chunks,
             append_chunk(to, chunk);
 }
 
-/* Sets SIDE to width - 1 and height - 1, as a VP8X chunk stores them, and
- * ALPHA, from CHUNK, the only chunk of a simple WebP. Returns false if it
- * cannot parse CHUNK. */
-bool read_webp_canvas(const file_piece &chunk, uint32_t side[2], bool &alpha)
+/* Parses CHUNK, the only chunk of a simple WebP. Sets SIDE to width - 1 and
+ * height - 1, as a VP8X chunk stores them, and ALPHA. Returns false if CHUNK
+ * cannot be parsed. */
+bool read_webp_canvas_size(const file_piece &chunk, uint32_t side[2], bool &alpha)
 {
     const unsigned char *const d = chunk.data;
 
@@ -91,7 +91,7 @@ bytes build_vp8x_chunk(const std::vector<file_piece> &made)
         append_bytes(x, made[0].whole, 18);
         return x;
     }
-    if (made.empty() || !read_webp_canvas(made[0], side, alpha))
+    if (made.empty() || !read_webp_canvas_size(made[0], side, alpha))
         return x;
     x = {'V', 'P', '8', 'X', 10, 0, 0, 0, 0, 0, 0, 0};
     x[8] = alpha ? 0x10 : 0;
@@ -140,7 +140,7 @@ bool is_gain_map(const file_piece &segment)
 {
     static const char name[] = "urn:iso:std:iso:ts:21496:-1";
 
-    return is_marker(segment, 0xe2) &&
+    return has_marker_byte(segment, 0xe2) &&
            begins_with_text(segment, name, sizeof name);
 }
 
@@ -151,9 +151,9 @@ std::string get_xmp_packet(const file_piece &xmp_segment)
         xmp_segment.data_bytes - xmp_head_bytes);
 }
 
-/* Appends the XMP of SEGMENT without the properties that refer to pictures and
- * videos after the first picture, which are not copied; appends nothing if it
- * is malformed. */
+/* Appends the XMP packet of SEGMENT, without the properties that refer to
+ * pictures and videos after the first picture, as these are not copied. Appends
+ * nothing if the packet is malformed. */
 void append_cleaned_xmp(bytes &to, const file_piece &segment)
 {
     std::string xmp = get_xmp_packet(segment);
@@ -212,7 +212,7 @@ std::string describe_extra_jpeg_data(const bytes &jpeg)
             previews = are_pictures_previews(segment);
         }
         map = map || is_gain_map(segment);
-        if (!is_xmp(segment))
+        if (!is_xmp_segment(segment))
             continue;
         std::string xmp = get_xmp_packet(segment);
 
@@ -244,7 +244,7 @@ bytes copy_jpeg_metadata(const bytes &made, const bytes &from, bool drop_icc)
     if (ours.empty() || theirs.empty())
         return made;
     for (const file_piece &segment : theirs)
-        if (is_xmp(segment))
+        if (is_xmp_segment(segment))
             append_cleaned_xmp(file, segment);
         else if (is_metadata_segment(segment) && !is_picture_index(segment) &&
                  !is_gain_map(segment) &&
@@ -310,7 +310,7 @@ bytes find_png_chunk(const bytes &file, const char *name)
 /* ---------------------------------------------------------------- complete */
 
 /* Finds the end of the image in the scans. In a scan the byte 0xff occurs only
- * before 0 and in restart markers; any other marker ends the scan. */
+ * before a 0 byte and in restart markers; any other marker ends the scan. */
 std::string describe_missing_jpeg_data(const bytes &file)
 {
     const std::vector<file_piece> segments = split_jpeg_segments(file);
@@ -328,7 +328,7 @@ std::string describe_missing_jpeg_data(const bytes &file)
             return "";
         } else if (at[1] == 0xff) {
             at++;
-        } else { /* a table or the next scan */
+        } else { /* the marker of a table or of the next scan */
             if (end - at < 4)
                 break;
             at += 2 + (at[2] << 8 | at[3]);
@@ -340,7 +340,7 @@ std::string describe_missing_jpeg_data(const bytes &file)
 bool is_progressive_jpeg(const bytes &jpeg)
 {
     for (const file_piece &segment : split_jpeg_segments(jpeg))
-        if (is_marker(segment, 0xc2))
+        if (has_marker_byte(segment, 0xc2))
             return true;
     return false;
 }
@@ -348,8 +348,8 @@ bool is_progressive_jpeg(const bytes &jpeg)
 bool is_cmyk_jpeg(const bytes &jpeg)
 {
     for (const file_piece &segment : split_jpeg_segments(jpeg))
-        if ((is_marker(segment, 0xc0) || is_marker(segment, 0xc1) ||
-             is_marker(segment, 0xc2)) &&
+        if ((has_marker_byte(segment, 0xc0) || has_marker_byte(segment, 0xc1) ||
+             has_marker_byte(segment, 0xc2)) &&
             segment.data_bytes > 5)
             return segment.data[5] == 4;
     return false;
@@ -357,8 +357,8 @@ bool is_cmyk_jpeg(const bytes &jpeg)
 
 int estimate_jpeg_quality(const bytes &file)
 {
-    /* luma quantisation table K.1 of ITU-T T.81, which each quality scales; the
-     * sums of tables are compared */
+    /* luma quantisation table K.1 of ITU-T T.81, which each quality scales by a
+     * factor. The quality is found by comparing the sums of the tables. */
     static const int luminance[64] = {
         16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
         14, 13, 16, 24, 40,  57,  69,  56,  14, 17, 22, 29, 51,  87,  80,  62,
@@ -368,7 +368,7 @@ int estimate_jpeg_quality(const bytes &file)
     int best = 0;
 
     for (const file_piece &segment : split_jpeg_segments(file)) {
-        if (!is_marker(segment, 0xdb) || segment.data_bytes < 65)
+        if (!has_marker_byte(segment, 0xdb) || segment.data_bytes < 65)
             continue;
         const bool wide = segment.data[0] >> 4;
         if ((segment.data[0] & 15) != 0 || (wide && segment.data_bytes < 129))
@@ -475,8 +475,8 @@ std::string describe_missing_tiff_data(const bytes &file)
     }
     if (!present)
         return "has no pixels";
-    /* Only fax codes (2 .. 4) compress by more than 4096 to 1; with other codes
-     * such a file was cut off. */
+    /* Only fax codes (2 .. 4) compress by more than 4096 to 1. With other codes
+     * a file that seems to compress more was cut off. */
     if (missing == 0 && (packing >= 2 && packing <= 4 ? true
                          : packing == 1 ? total * 8 >= bits || present < entries
                                         : total * 8 * 4096 >= bits))

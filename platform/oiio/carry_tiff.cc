@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Copies the tags of a TIFF to another. The file that OpenImageIO has written
- * keeps its tags about the layout of its pixels; all other tags, and the
- * directories of Exif and GPS, are copied from the file that was read, which
+ * Copies the tags of one TIFF file to another. The file that OpenImageIO has
+ * written keeps its tags about the layout of its pixels. All other tags, and
+ * the Exif and GPS directories, are copied from the file that was read, which
  * may have the other byte order. */
 #include "oiio/blocks.h"
 
@@ -88,8 +88,8 @@ void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
 directory read_directory(const reader &r, uint64_t at, uint32_t &next)
 {
     const unsigned n = r.number(at, 2);
-    /* limit of the bytes of all values, as values that overlap could need far
-     * more bytes than the file has */
+    /* limit of the size of all values, bytes; without it, values that overlap
+     * could need far more memory than the file's size */
     uint64_t room = r.file.size();
     directory read;
 

@@ -28,9 +28,9 @@ namespace glint
 {
 
 /* Returns the length in bytes of the UTF-8 character at AT, or 0 if it is
- * malformed or a control character (also U+0080 to U+009F). LEFT: bytes of text
- * at AT. */
-inline size_t get_printable_bytes(const unsigned char *at, size_t left)
+ * malformed or a control character (also U+0080 to U+009F). LEFT is the number
+ * of bytes from AT to the end of the text. */
+inline size_t get_printable_utf8_length(const unsigned char *at, size_t left)
 {
     const size_t n = at[0] < 0x80    ? 1
                      : at[0] >= 0xf0 ? 4
@@ -55,7 +55,7 @@ inline std::string make_printable(const std::string &text)
     std::string line;
 
     for (size_t i = 0; i < text.size();) {
-        const size_t n = get_printable_bytes(
+        const size_t n = get_printable_utf8_length(
             reinterpret_cast<const unsigned char *>(text.data()) + i,
             text.size() - i);
 
@@ -65,8 +65,9 @@ inline std::string make_printable(const std::string &text)
     return line;
 }
 
-/* Returns CAUSE, a message of OpenImageIO, with "the file" in place of the
- * file's NAME, as glint prints NAME first. Returns UNLESS if CAUSE is empty. */
+/* Returns CAUSE, a message of OpenImageIO, with the file's NAME replaced by
+ * "the file", as glint prints NAME before the message. Returns UNLESS if CAUSE
+ * is empty. */
 inline std::string remove_file_name(std::string cause, const std::string &name,
                                     const char *unless)
 {
@@ -208,7 +209,7 @@ try {
 
 /* Throws failure if IN reads videos: OpenImageIO's video reader also opens the
  * files that a playlist names. */
-inline void check_picture(const OIIO::ImageInput *in)
+inline void reject_video_reader(const OIIO::ImageInput *in)
 {
     if (in && OIIO::Strutil::istarts_with(in->format_name(), "ffmpeg"))
         throw failure{GLINT_E_UNSUPPORTED, "is a video, not a picture"};
@@ -221,17 +222,17 @@ open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
     std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(path);
 
     (void)OIIO::geterror(); /* Other readers may support the file. */
-    check_picture(in.get());
+    reject_video_reader(in.get());
     in = OIIO::ImageInput::open(path, config);
     if (!in)
         throw failure{GLINT_E_FORMAT, OIIO::geterror()};
-    check_picture(in.get());
+    reject_video_reader(in.get());
     return in;
 }
 
 /* Throws failure if glint cannot read a picture of SPEC. Called before any
  * memory is allocated. */
-inline void check_spec(const OIIO::ImageSpec &spec)
+inline void reject_unsupported_spec(const OIIO::ImageSpec &spec)
 {
     if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
         throw failure{GLINT_E_UNSUPPORTED, "is a deep or 3-D picture"};

@@ -22,7 +22,7 @@ namespace
 {
 
 /* Returns whether the first box of FILE lists BRAND. */
-bool has_brand(const bytes &file, const char *brand)
+bool has_heif_brand(const bytes &file, const char *brand)
 {
     const size_t end =
         file.size() < 16
@@ -51,12 +51,13 @@ bool is_heif(const bytes &file)
 
 bool is_avif(const bytes &file)
 {
-    return has_brand(file, "avif") || has_brand(file, "avis");
+    return has_heif_brand(file, "avif") || has_heif_brand(file, "avis");
 }
 
 int get_heif_bits(const heif_picture &picture)
 {
-    /* libheif 1.15 makes libaom abort on 10 bits of 4:2:0 and 4:4:4. */
+    /* libheif 1.15 makes libaom abort on 4:2:0 and 4:4:4 pictures of 10
+     * bits. */
     return picture.bits <= 8                        ? 8
            : picture.is_avif || picture.bits == 12 ? 12
                                                     : 10;
@@ -95,7 +96,7 @@ context create_heif_context()
 
 /* ----------------------------------------------------------------- reading */
 
-void read_blocks(const heif_image_handle *from, file_blocks &to)
+void read_heif_metadata_blocks(const heif_image_handle *from, file_blocks &to)
 {
     heif_item_id ids[16];
     const int n =
@@ -124,7 +125,7 @@ void read_blocks(const heif_image_handle *from, file_blocks &to)
     }
 }
 
-void read_colours(const heif_image_handle *from, file_blocks &to)
+void read_heif_colours(const heif_image_handle *from, file_blocks &to)
 {
     heif_color_profile_nclx *read = nullptr;
 
@@ -157,7 +158,7 @@ std::string describe_lost_pictures(const bytes &file, heif_context *all,
     heif_item_id ids[16];
     const int n =
         heif_image_handle_get_list_of_auxiliary_image_IDs(from, aux, ids, 16);
-    bool map = has_brand(file, "tmap"), others = false;
+    bool map = has_heif_brand(file, "tmap"), others = false;
     std::string lost;
 
     for (int i = 0; i < n; i++) {
@@ -181,7 +182,7 @@ std::string describe_lost_pictures(const bytes &file, heif_context *all,
         append_lost_text(lost, "its depth map is dropped");
     if (others)
         append_lost_text(lost, "its auxiliary pictures are dropped");
-    if (has_brand(file, "avis") || has_brand(file, "msf1"))
+    if (has_heif_brand(file, "avis") || has_heif_brand(file, "msf1"))
         append_lost_text(lost, "only its first frame is written");
     else if (heif_context_get_number_of_top_level_images(all) > 1)
         append_lost_text(lost, "only its main picture is written");
@@ -190,7 +191,7 @@ std::string describe_lost_pictures(const bytes &file, heif_context *all,
 
 /* Copies the pixels of FROM to TO: 16 bits with white 65535 if the picture has
  * more than 8 bits, else 8 bits. */
-void copy_pixels(const heif_image *from, heif_picture &to)
+void copy_heif_pixels(const heif_image *from, heif_picture &to)
 {
     int stride = 0;
     const uint8_t *const mem = heif_image_get_plane_readonly(
@@ -254,7 +255,7 @@ heif_picture decode_heif(const bytes &file)
     made.bits = heif_image_handle_get_luma_bits_per_pixel(main);
     made.is_avif = is_avif(file);
     made.is_premultiplied = heif_image_handle_is_premultiplied_alpha(main);
-    check_spec(OIIO::ImageSpec(made.width, made.height, made.channels));
+    reject_unsupported_spec(OIIO::ImageSpec(made.width, made.height, made.channels));
     throw_on_heif_error(
         heif_decode_image(main, &decoded, heif_colorspace_RGB,
                           made.channels == 4
@@ -266,9 +267,9 @@ heif_picture decode_heif(const bytes &file)
                           nullptr),
         GLINT_E_FORMAT);
     const image pixels(decoded, heif_image_release);
-    copy_pixels(decoded, made);
-    read_blocks(main, made.meta);
-    read_colours(main, made.meta);
+    copy_heif_pixels(decoded, made);
+    read_heif_metadata_blocks(main, made.meta);
+    read_heif_colours(main, made.meta);
     made.lost = describe_lost_pictures(file, all.get(), main);
     return made;
 }
@@ -290,9 +291,9 @@ weights get_luma_weights(int matrix)
                          : weights{0.299, 0.114};
 }
 
-/* Returns the matrix for writing P: its own if glint supports it, else one by
- * its primaries. A file with an ICC profile has no code of the matrix, so
- * decoders assume 6. */
+/* Returns the code of the matrix for writing P: P's own matrix if glint
+ * supports it, else the one that fits P's primaries. A file with an ICC profile
+ * states no matrix, so decoders assume code 6. */
 int choose_heif_matrix(const heif_picture &p)
 {
     const int own = p.meta.cicp[2];
@@ -365,7 +366,8 @@ void add_image_plane(heif_image *to, const planes &from, heif_channel channel,
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             uint8_t *const at = mem + size_t(y) * size_t(stride);
-            /* a neutral Cb or Cr is half of all codes, not of white */
+            /* neutral Cb or Cr is half the number of all codes, not half the
+             * code of white */
             const double v = from.mean(x, y, step, channel) * white +
                              (channel == heif_channel_Cb ||
                                       channel == heif_channel_Cr
@@ -401,7 +403,7 @@ image build_heif_image(const heif_picture &p, heif_chroma chroma)
     return held;
 }
 
-void set_colours(heif_image *to, const heif_picture &p, heif_color_profile_nclx &n)
+void set_heif_colours(heif_image *to, const heif_picture &p, heif_color_profile_nclx &n)
 {
     const bool has = p.meta.cicp[1] != 0;
 
@@ -474,7 +476,7 @@ bytes encode_heif_picture(const heif_picture &picture, int quality)
     heif_encoder_set_parameter_string(coder, "chroma",
                                       picture.is_avif ? "444" : "420");
     const image pixels = build_heif_image(picture, chroma);
-    set_colours(pixels.get(), picture, *codes);
+    set_heif_colours(pixels.get(), picture, *codes);
     throw_on_heif_error(heif_context_encode_image(all.get(), pixels.get(),
                                                   coder, nullptr, &main),
                         GLINT_E_OUTPUT);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/heif.h - reads and writes HEIC and AVIF by libheif, as OpenImageIO 2.4
- * reads them in 8 bits, without colour tags and profile. */
+ * oiio/heif.h - reads and writes HEIC and AVIF pictures by libheif, because
+ * OpenImageIO 2.4 reads them in 8 bits only, and without colour tags and
+ * profile. */
 #ifndef GLINT_PLATFORM_OIIO_HEIF_H
 #define GLINT_PLATFORM_OIIO_HEIF_H
 

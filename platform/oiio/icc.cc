@@ -29,7 +29,7 @@ using profile_ptr = std::unique_ptr<void, decltype(&cmsCloseProfile)>;
 using transform_ptr = std::unique_ptr<void, decltype(&cmsDeleteTransform)>;
 
 /* Returns whether profile P is for N_COLOURS colours and consists of tables,
- * not of curves and a matrix. Rejects tables of floats: their elements may
+ * not of curves and a matrix. Rejects tables of floats, whose elements may
  * share bytes, so that a small profile could need unlimited memory. */
 bool is_table_profile(cmsHPROFILE p, size_t n_colours)
 {
@@ -70,9 +70,9 @@ size_t get_pixel_bytes(const code_layout &layout)
     return (layout.n_colours + layout.has_alpha) * layout.sample_bytes;
 }
 
-/* Returns the transform from one profile to another. It evaluates the profiles'
- * tables for each pixel: a grid of precomputed colours, as lcms2 makes by
- * default, is wrong by up to 20 codes of 8 bits for dark inks. */
+/* Returns the transform from one profile to another. For each pixel it
+ * evaluates the tables of the profiles. lcms2 would by default precompute a
+ * grid of colours, which is wrong by up to 20 codes of 8 bits for dark inks. */
 transform_ptr create_icc_transform(const profile_ptr &from,
                                    const code_layout &of_from,
                                    const profile_ptr &to,
@@ -111,21 +111,24 @@ bytes lcms_link::decode(const bytes &from) const
     return made;
 }
 
-/* A block of pixels: codes, and the RGB to which they decode. */
+/* A block of pixels: their codes, and the RGB values to which the codes
+ * decode. */
 struct block {
     bytes codes;
     std::vector<uint16_t> rgb;
 };
 
-/* Returns the sum over three colours of the absolute differences. */
+/* Returns the sum of the absolute differences of the three colours of A and
+ * B. */
 int compute_colour_distance(const uint16_t *a, const uint16_t *b)
 {
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) +
            std::abs(a[2] - b[2]);
 }
 
-/* Tables for encoding are not the exact inverse of those for decoding, so the
- * codes are decoded again, and a second attempt subtracts their error. */
+/* The profile's tables for encoding are not the exact inverse of its tables for
+ * decoding. So the codes are decoded again, and a second attempt subtracts
+ * their error. */
 void lcms_link::encode(const bytes &from, bytes &to) const
 {
     const size_t n = to.size() / get_pixel_bytes(codes);
@@ -223,7 +226,7 @@ bytes decode_cmyk_jpeg(const bytes &file, int width, int height)
     if (!done)
         throw failure{GLINT_E_FORMAT, errors.cause};
     for (unsigned char &ink :
-         pixels) /* in Adobe's JPEGs 255 is no ink */
+         pixels) /* in Adobe's JPEGs code 255 is no ink */
         ink = static_cast<unsigned char>(255 - ink);
     return pixels;
 }

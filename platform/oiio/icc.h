@@ -21,8 +21,9 @@
 namespace glint
 {
 
-/* Layout of interleaved codes: 1 colour (grey), 3 (R G B) or 4 (C M Y K, 0 is
- * no ink), then alpha, not multiplied, in samples of 1 or 2 bytes. */
+/* Layout of interleaved codes: 1 colour (grey), 3 (R G B) or 4 (C M Y K, where
+ * 0 is no ink), then alpha, by which colours are not multiplied. Samples have 1
+ * or 2 bytes. */
 struct code_layout {
     size_t n_colours;
     bool has_alpha;
@@ -46,15 +47,15 @@ struct icc_link {
     virtual ~icc_link() = default;
     virtual bytes decode(const bytes &codes) const = 0;
 
-    /* Replaces the codes of those pixels of CODES that do not decode to the
-     * pixels of RGB; other pixels do not change. */
+    /* Changes those pixels of CODES that do not decode to the pixels of RGB to
+     * codes that do. Other pixels do not change. */
     virtual void encode(const bytes &rgb, bytes &codes) const = 0;
 };
 
 /* Returns the link of PROFILE, which can encode if MAY_ENCODE is set and
- * PROFILE has a table for that. Returns NULL if PROFILE is malformed, above 16
- * MiB, of curves and a matrix, or not for colours of LAYOUT, or if this plug-in
- * was built without lcms2. */
+ * PROFILE has a table for encoding. Returns NULL if PROFILE is malformed,
+ * larger than 16 MiB, consists of curves and a matrix, or is not for the
+ * colours of LAYOUT, or if this plug-in was built without lcms2. */
 std::unique_ptr<icc_link>
 open_icc_link(const bytes &profile, const code_layout &layout, bool may_encode);
 

@@ -31,7 +31,7 @@
 #endif
 
 using glint::bytes;
-using glint::check_spec;
+using glint::reject_unsupported_spec;
 using glint::failure;
 using glint::open_picture;
 using OIIO::ImageInput;
@@ -65,13 +65,14 @@ struct glint_oiio_file {
     glint::file_blocks meta; /* metadata as read, for types that have metadata
                                 blocks */
     const char *metadata; /* as in glint_oiio_facts */
-    /* HEIF: bits of the file's samples, or 0; and a text that lists the content
-     * that is not preserved. */
+    /* HEIF only: number of bits of the file's samples, or 0; and a text that
+     * lists the content that is not preserved. */
     int bits;
     bool is_avif;
     std::string lost;
-    /* Conversion by the profile of parts[0], if that is a table and can encode;
-     * and the pixels as RGB, to which light is added. */
+    /* Conversion by the profile of parts[0], if that profile consists of tables
+     * and can encode; and the pixels converted to RGB, to which light is
+     * added. */
     std::unique_ptr<glint::icc_link> link;
     glint::kept_part rgb;
     bool drops_icc; /* true: the pixels of parts[0] are no longer in the file's
@@ -81,7 +82,7 @@ struct glint_oiio_file {
 namespace
 {
 
-bool is_avif_name(const char *path)
+bool has_avif_extension(const char *path)
 {
     return OIIO::Strutil::iends_with(path, ".avif");
 }
@@ -160,7 +161,7 @@ bytes encode_webp(const unsigned char *pixels, int width, int height,
         throw failure{GLINT_E_OUTPUT, "WebP has at most 16383 pixels a side"};
     if (!quality)
         WebPConfigLosslessPreset(&config, 6);
-    config.exact = 1; /* preserve colours where alpha is 0 */
+    config.exact = 1; /* preserves the colours of pixels whose alpha is 0 */
     config.thread_level = 1;
     picture.use_argb = quality == 0;
     picture.width = width;
@@ -220,9 +221,9 @@ bool convert_to_sample_type(TypeDesc type, enum glint_sample &sample)
     return false;
 }
 
-/* Requests that a part is read as floats if glint cannot compute with one of
- * its sample types. */
-void choose_sample_types(ImageSpec &spec)
+/* If glint cannot compute with one of the part's sample types, requests that
+ * the part is read as floats. */
+void request_supported_sample_types(ImageSpec &spec)
 {
     enum glint_sample sample;
     bool all = convert_to_sample_type(spec.format, sample);
@@ -249,8 +250,8 @@ void read_picture_part(ImageInput &in, int index,
     part.spec = in.spec(index);
     if (part.spec.width < 1 || part.spec.nchannels < 1)
         throw failure{GLINT_E_FORMAT, in.geterror()};
-    check_spec(part.spec);
-    choose_sample_types(part.spec);
+    reject_unsupported_spec(part.spec);
+    request_supported_sample_types(part.spec);
     if (file.link && index == 0) {
         part.spec = convert_spec_to_cmyk(part.spec);
         if (file.type == "jpeg") {
@@ -310,7 +311,7 @@ void read_heif(struct glint_oiio_file &file)
 
 /* Reads FILE by libheif if it is a HEIF by content and libheif is available.
  * Otherwise returns false. */
-bool read_if_heif(struct glint_oiio_file &file, const char *path)
+bool read_file_if_heif(struct glint_oiio_file &file, const char *path)
 {
     bytes head(16);
     FILE *const f = std::fopen(path, "rb");
@@ -367,15 +368,16 @@ void open_icc_link_of_part(struct glint_oiio_file &file, const kept_part &part)
         (alpha && (spec.alpha_channel != spec.nchannels - 1 ||
                    !spec.get_int_attribute("oiio:UnassociatedAlpha", 0))))
         return;
-    /* OpenImageIO writes no JPEG of inks. */
+    /* OpenImageIO cannot write CMYK JPEGs, so the link of a JPEG need not
+     * encode. */
     file.link =
         glint::open_icc_link(get_icc_profile(file, spec), layout,
                              file.type != "jpeg" || layout.n_colours != 4);
 }
 
-/* Requests that the picture IN, the file PATH, is read as C M Y K if its
- * profile is for C M Y K. */
-void choose_cmyk_reading(struct glint_oiio_file &file,
+/* If the profile of the picture IN, the file PATH, is for C M Y K, requests
+ * that IN is read as C M Y K. */
+void request_cmyk_reading(struct glint_oiio_file &file,
                          std::unique_ptr<ImageInput> &in, const char *path,
                          ImageSpec &config)
 {
@@ -395,9 +397,9 @@ void choose_cmyk_reading(struct glint_oiio_file &file,
         file.link.reset();
 }
 
-/* Adds the RGB of the profile's conversion, if FILE has one. If the conversion
- * cannot encode, this RGB replaces the pixels. */
-void add_linked_rgb(struct glint_oiio_file &file)
+/* If FILE has a conversion by its profile, adds the RGB to which it converts
+ * the pixels. If the conversion cannot encode, this RGB replaces the pixels. */
+void add_rgb_by_profile(struct glint_oiio_file &file)
 {
     kept_part &part = file.parts.at(0);
     kept_part rgb;
@@ -418,8 +420,9 @@ void add_linked_rgb(struct glint_oiio_file &file)
         rgb.spec.erase_attribute(name);
     if (file.link->can_encode) {
         file.rgb = std::move(rgb);
-        if (is_ink && part.spec.format != TypeDesc::UINT8) /* limitation of
-                                                              OpenImageIO 2.4 */
+        if (is_ink && part.spec.format != TypeDesc::UINT8) /* OpenImageIO 2.4
+                                                              cannot write other
+                                                              CMYK samples */
             file.lost += std::string(file.lost.empty() ? "" : "; ") +
                          "its CMYK is written in 8 bits";
         return;
@@ -438,17 +441,17 @@ void read_file(struct glint_oiio_file &file, const char *path)
 {
     ImageSpec as_stored;
 
-    if (read_if_heif(file, path))
+    if (read_file_if_heif(file, path))
         return;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
     std::unique_ptr<ImageInput> in = open_picture(path, &as_stored);
-    check_spec(in->spec());
+    reject_unsupported_spec(in->spec());
     file.type = in->format_name();
     if (is_metadata_copied(file.type))
         file.whole = read_whole_file(path);
     check_file_complete(file);
     file.meta = glint::read_metadata_blocks(file.type, file.whole);
-    choose_cmyk_reading(file, in, path, as_stored);
+    request_cmyk_reading(file, in, path, as_stored);
     for (int i = 0; i < 64 && in->seek_subimage(i, 0); i++) {
         file.parts.emplace_back();
         read_picture_part(*in, i, file, file.parts.back());
@@ -514,7 +517,7 @@ choice choose_channels(const ImageSpec &spec)
     return best;
 }
 
-struct glint_sample_place get_sample_place(const ImageSpec &spec, int index)
+struct glint_sample_place get_position_of_sample(const ImageSpec &spec, int index)
 {
     struct glint_sample_place channel = {GLINT_SAMPLE_FLOAT, 0};
 
@@ -543,11 +546,11 @@ void fill_samples(struct glint_samples &s, kept_part &part,
     s.pixel_bytes = spec.pixel_bytes(true);
     s.n_colours = choice.index[1] == choice.index[0] ? 1 : 3;
     for (int c = 0; c < 3; c++)
-        s.colour[c] = get_sample_place(spec, choice.index[c]);
+        s.colour[c] = get_position_of_sample(spec, choice.index[c]);
     s.has_alpha = choice.index[3] >= 0;
     s.is_premultiplied = !spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
     if (s.has_alpha)
-        s.alpha = get_sample_place(spec, choice.index[3]);
+        s.alpha = get_position_of_sample(spec, choice.index[3]);
     s.maximum = s.colour[0].sample == GLINT_SAMPLE_U8    ? 0xffu
                 : s.colour[0].sample == GLINT_SAMPLE_U16 ? 0xffffu
                                                          : 0xffffffffu;
@@ -556,7 +559,7 @@ void fill_samples(struct glint_samples &s, kept_part &part,
 
 /* ------------------------------------------------------------------- facts */
 
-void fill_png_facts(struct glint_oiio_facts &facts, const bytes &whole)
+void describe_png_in_facts(struct glint_oiio_facts &facts, const bytes &whole)
 {
     const bytes gamma = glint::find_png_chunk(whole, "gAMA");
     const bytes srgb = glint::find_png_chunk(whole, "sRGB");
@@ -588,7 +591,7 @@ void append_note(char (&notes)[160], const char *text)
                   text);
 }
 
-void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
+void describe_file_in_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
                 const ImageSpec &spec)
 {
     const OIIO::ParamValue *const xy = spec.find_attribute("chromaticities");
@@ -615,7 +618,7 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
     std::snprintf(facts.colour_space, sizeof facts.colour_space, "%s",
                   spec.get_string_attribute("oiio:ColorSpace").c_str());
     if (file.type == "png")
-        fill_png_facts(facts, file.whole);
+        describe_png_in_facts(facts, file.whole);
     if (file.type == "jpeg") {
         facts.quality = glint::estimate_jpeg_quality(file.whole);
         const std::string more = glint::describe_extra_jpeg_data(file.whole);
@@ -642,7 +645,7 @@ void fill_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
 
 /* Describes in FACTS the colours of the RGB to which FILE's pixels were
  * converted by its profile. */
-void state_linked_colours(struct glint_oiio_facts &facts,
+void describe_linked_colours(struct glint_oiio_facts &facts,
                           const struct glint_oiio_file &file)
 {
     facts.icc = nullptr;
@@ -698,8 +701,9 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
         size_t at = 0;
 
         read_file(*made, path);
-        add_linked_rgb(*made);
-        /* Of several parts only the first is converted by its profile. */
+        add_rgb_by_profile(*made);
+        /* If there are several parts, only the first is converted by its
+         * profile. */
         const bool linked = made->link || made->drops_icc;
         for (size_t i = 0; i < (linked ? 1 : made->parts.size()); i++) {
             const choice here = choose_channels(made->parts[i].spec);
@@ -709,9 +713,9 @@ enum glint_status glint::open_file(struct glint_oiio_file **file,
                 at = i;
             }
         }
-        fill_facts(*facts, *made, made->parts.at(at).spec);
+        describe_file_in_facts(*facts, *made, made->parts.at(at).spec);
         if (linked)
-            state_linked_colours(*facts, *made);
+            describe_linked_colours(*facts, *made);
         if (made->link)
             fill_samples(*samples, made->rgb, choose_channels(made->rgb.spec));
         else
@@ -736,7 +740,7 @@ int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
         is_same = out && file->type == out->format_name() &&
-                  (file->type != "heif" || file->is_avif == is_avif_name(path));
+                  (file->type != "heif" || file->is_avif == has_avif_extension(path));
     });
     return is_same;
 }
@@ -752,7 +756,7 @@ int glint::can_write(const char *path)
                     ImageOutput::create(path);
 
                 can = out && (out->format_name() != std::string("heif") ||
-                              is_heif_writable(is_avif_name(path)));
+                              is_heif_writable(has_avif_extension(path)));
             });
     return can;
 }
@@ -762,8 +766,8 @@ int glint::can_write(const char *path)
 namespace
 {
 
-/* A file in memory, for OpenImageIO's writers. The TIFF writer also reads what
- * it has written. */
+/* A file in memory, for OpenImageIO's writers. It can also be read, as the TIFF
+ * writer reads what it has written. */
 class memory : public OIIO::Filesystem::IOProxy
 {
   public:
@@ -948,8 +952,8 @@ void write_parts(ImageOutput &out, const char *path,
         throw failure{GLINT_E_OUTPUT, out.geterror()};
 }
 
-/* Returns whether FILE's metadata are copied byte for byte. Those of BigTIFF
- * are not; OpenImageIO copies the metadata that it knows. */
+/* Returns whether FILE's metadata are copied byte for byte. Those of a BigTIFF
+ * are not: OpenImageIO copies the metadata that it knows. */
 bool is_metadata_copied_from(const struct glint_oiio_file &file)
 {
     return is_metadata_copied(file.type) &&
@@ -1032,7 +1036,7 @@ bytes encode_heif(const char *path, const kept_part &part,
     p.height = part.spec.height;
     p.channels = alpha ? 4 : 3;
     p.bits = sample == 1 ? 8 : file && file->bits > 8 ? file->bits : 16;
-    p.is_avif = is_avif_name(path);
+    p.is_avif = has_avif_extension(path);
     p.is_premultiplied =
         !part.spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
     p.meta = get_upright_blocks(file, options);

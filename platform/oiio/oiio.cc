@@ -25,14 +25,14 @@
 namespace
 {
 
-using glint::check_spec;
+using glint::reject_unsupported_spec;
 using glint::failure;
 using glint::guarded;
 using glint::open_picture;
 
-/* Returns the channels to read as R, G, B: the first three, or three times the
- * first. */
-std::vector<int> get_rgb_channels(int n_channels)
+/* Returns the indices of the channels to read as R, G, B: the first three
+ * channels, or three times the first channel if there are fewer. */
+std::vector<int> choose_rgb_channels(int n_channels)
 {
     if (n_channels >= 3)
         return {0, 1, 2};
@@ -47,7 +47,7 @@ OIIO::ImageBuf load_upright_image(const char *path)
     const std::unique_ptr<OIIO::ImageInput> in = open_picture(path);
     OIIO::ImageSpec spec = in->spec();
 
-    check_spec(spec);
+    reject_unsupported_spec(spec);
     spec.set_format(spec.format.is_floating_point() ? OIIO::TypeDesc::FLOAT
                                                     : OIIO::TypeDesc::UINT8);
     OIIO::ImageBuf buf(spec);
@@ -67,7 +67,7 @@ void read_upright_pixels(struct glint_oiio_pixels *pixels, const char *path)
     const OIIO::ImageBuf buf = load_upright_image(path);
     const OIIO::TypeDesc type = buf.spec().format;
     const OIIO::ImageBuf rgb =
-        OIIO::ImageBufAlgo::channels(buf, 3, get_rgb_channels(buf.nchannels()));
+        OIIO::ImageBufAlgo::channels(buf, 3, choose_rgb_channels(buf.nchannels()));
 
     if (rgb.has_error())
         throw failure{GLINT_E_FORMAT, rgb.geterror()};

@@ -74,7 +74,7 @@ std::vector<file_piece> split_jpeg_segments(const bytes &file)
         const unsigned char *const p = file.data() + at;
         const size_t n = size_t(p[2]) << 8 | p[3];
 
-        if (p[1] == 0xff) { /* 0xff before a marker: padding */
+        if (p[1] == 0xff) { /* 0xff before the 0xff of a marker is padding */
             at++;
             continue;
         }
@@ -91,7 +91,7 @@ std::vector<file_piece> split_jpeg_segments(const bytes &file)
     return {};
 }
 
-bool is_marker(const file_piece &segment, int marker)
+bool has_marker_byte(const file_piece &segment, int marker)
 {
     return segment.name.size() == 1 &&
            static_cast<unsigned char>(segment.name[0]) == marker;
@@ -102,15 +102,15 @@ bool begins_with_text(const file_piece &segment, const char *text, size_t n)
     return segment.data_bytes >= n && !std::memcmp(segment.data, text, n);
 }
 
-bool is_xmp(const file_piece &segment)
+bool is_xmp_segment(const file_piece &segment)
 {
-    return is_marker(segment, 0xe1) &&
+    return has_marker_byte(segment, 0xe1) &&
            begins_with_text(segment, xmp_head, sizeof xmp_head);
 }
 
-bool is_exif(const file_piece &segment)
+bool is_exif_segment(const file_piece &segment)
 {
-    return is_marker(segment, 0xe1) && begins_with_text(segment, "Exif\0", 6);
+    return has_marker_byte(segment, 0xe1) && begins_with_text(segment, "Exif\0", 6);
 }
 
 bool append_segment(bytes &to, int marker, const char *head, size_t n_head,

@@ -15,8 +15,8 @@
 namespace glint
 {
 
-/* A chunk of PNG or WebP, or a segment of JPEG: the address of all its bytes,
- * and of its data. Both point into the file. */
+/* A chunk of PNG or WebP, or a segment of JPEG: the address of the whole chunk
+ * or segment, and the address of its data. Both point into the file. */
 struct file_piece {
     std::string name;
     const unsigned char *whole;
@@ -39,16 +39,16 @@ std::vector<file_piece> split_png_chunks(const bytes &file);
 std::vector<file_piece> split_jpeg_segments(const bytes &file);
 std::vector<file_piece> split_webp_chunks(const bytes &file);
 
-/* Returns whether SEGMENT of a JPEG has the marker byte MARKER, 0xc0 ..
- * 0xfe. */
-bool is_marker(const file_piece &segment, int marker);
+/* Returns whether SEGMENT of a JPEG has the marker with the second byte MARKER,
+ * 0xc0 .. 0xfe. */
+bool has_marker_byte(const file_piece &segment, int marker);
 
 /* Returns whether the data of SEGMENT begin with the N bytes at TEXT. */
 bool begins_with_text(const file_piece &segment, const char *text, size_t n);
 
 /* Return whether SEGMENT of a JPEG is XMP, and whether it is Exif. */
-bool is_xmp(const file_piece &segment);
-bool is_exif(const file_piece &segment);
+bool is_xmp_segment(const file_piece &segment);
+bool is_exif_segment(const file_piece &segment);
 
 /* number of bytes in a segment of XMP or Exif before the packet or the TIFF
  * header */

@@ -30,7 +30,7 @@ bool is_white_space(char c)
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-/* Copies a packet to OUT without these properties. */
+/* Copies a packet to OUT without the properties in CLAIMS. */
 struct cleaner {
     struct name {
         size_t at, n;

@@ -9,8 +9,8 @@
 
 #include "posix/error.h"
 
-void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
-                       const uint8_t *restrict from, int n)
+void glint_split_byte_pairs(uint8_t *restrict a, uint8_t *restrict b,
+                            const uint8_t *restrict from, int n)
 {
     for (int i = 0; i < n; i++) {
         a[i] = from[2 * i];
@@ -34,8 +34,9 @@ static inline void split_packed_pairs(uint8_t *restrict luma,
     }
 }
 
-void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
-                        uint8_t *cb, uint8_t *cr, const uint8_t *from, int n)
+void glint_split_packed_pixels(enum glint_pixel_format format, uint8_t *luma,
+                               uint8_t *cb, uint8_t *cr, const uint8_t *from,
+                               int n)
 {
     if (format == GLINT_YUYV)
         split_packed_pairs(luma, cb, cr, from, n, 0);
@@ -97,13 +98,14 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Terms added to the products of codes and constants: minus the products of the
- * codes of zero (black, Cb = Cr = 0), plus 1/2 for rounding. */
+/* Terms that are added to the products of codes and constants: minus the
+ * products of the codes that stand for zero (black, and the codes of Cb = Cr =
+ * 0), plus 1/2 for rounding. */
 struct bias {
     int32_t red, green, blue, grey;
 };
 
-static struct bias compute_mix_bias(const struct mix *m)
+static struct bias compute_rounding_bias(const struct mix *m)
 {
     const int32_t grey = HALF_Q13 - m->black * m->luma_q13;
 
@@ -135,7 +137,7 @@ static void convert_pixels_to_rgb(const struct mix *m, uint8_t *restrict r,
     const int16_t ky = m->luma_q13, r_cr = m->red_cr_q13,
                   g_cb = m->green_cb_q13, g_cr = m->green_cr_q13,
                   b_cb = m->blue_cb_q13;
-    const struct bias bias = compute_mix_bias(m);
+    const struct bias bias = compute_rounding_bias(m);
 
     for (int i = 0; i < n; i++) {
         const int32_t y = luma[i] * ky;
@@ -156,7 +158,7 @@ static void convert_pairs_to_rgb(const struct mix *m, uint8_t *restrict r,
     const int16_t ky = m->luma_q13, r_cr = m->red_cr_q13,
                   g_cb = m->green_cb_q13, g_cr = m->green_cr_q13,
                   b_cb = m->blue_cb_q13;
-    const struct bias bias = compute_mix_bias(m);
+    const struct bias bias = compute_rounding_bias(m);
 
     for (int i = 0; i < n; i++) {
         const int32_t y0 = luma[2 * i] * ky, y1 = luma[2 * i + 1] * ky;
@@ -177,7 +179,7 @@ static void convert_greys_to_rgb(const struct mix *m, uint8_t *restrict grey,
                                  const uint8_t *restrict luma, int n)
 {
     const int16_t ky = m->luma_q13;
-    const int32_t bias = compute_mix_bias(m).grey;
+    const int32_t bias = compute_rounding_bias(m).grey;
 
     for (int i = 0; i < n; i++)
         grey[i] = convert_to_code(luma[i] * ky + bias);
@@ -195,8 +197,9 @@ static const uint8_t *get_plane_row(const struct glint_image *image, int plane,
     return image->plane[plane] + y * image->stride_bytes[plane];
 }
 
-/* Returns pointers to Y', Cb, Cr of N pixels of row Y, from X to the right:
- * into the picture, or into ROW, to which interleaved samples are split. */
+/* Returns pointers to the Y', Cb, Cr samples of N pixels of row Y, from X to
+ * the right. They point into the picture or, if the picture's samples are
+ * interleaved, into ROW, to which the samples are split. */
 static struct ycc get_ycc_samples(struct glint_row_rgb *row,
                                   const struct glint_image *image, int x, int y,
                                   int n)
@@ -210,16 +213,16 @@ static struct ycc get_ycc_samples(struct glint_row_rgb *row,
     switch (image->format) {
     case GLINT_YUYV:
     case GLINT_UYVY:
-        glint_split_packed(image->format, row->luma, row->cb, row->cr,
-                           get_plane_row(image, 0, y) + 2 * x, half);
+        glint_split_packed_pixels(image->format, row->luma, row->cb, row->cr,
+                                  get_plane_row(image, 0, y) + 2 * x, half);
         return moved;
     case GLINT_NV12:
-        glint_split_pairs(row->cb, row->cr, get_plane_row(image, 1, cy) + x,
-                          half);
+        glint_split_byte_pairs(row->cb, row->cr,
+                               get_plane_row(image, 1, cy) + x, half);
         return (struct ycc){get_plane_row(image, 0, y) + x, row->cb, row->cr};
     case GLINT_NV21:
-        glint_split_pairs(row->cr, row->cb, get_plane_row(image, 1, cy) + x,
-                          half);
+        glint_split_byte_pairs(row->cr, row->cb,
+                               get_plane_row(image, 1, cy) + x, half);
         return (struct ycc){get_plane_row(image, 0, y) + x, row->cb, row->cr};
     default:
         return (struct ycc){get_plane_row(image, 0, y) + x,
@@ -291,7 +294,7 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    /* an even number of samples fits */
+    /* so that an even number of samples fits if WIDTH is odd */
     const ptrdiff_t each = (ptrdiff_t)width + 1;
     uint8_t *const at = mem;
 
@@ -400,7 +403,7 @@ static void pack_byte_channels(const struct glint_row_pack *p, uint8_t *dst,
 
 /* Returns (CODE * MOST + 127) / 255, computed without a division: exact for
  * sums below 65535. */
-static inline uint16_t scale_code(uint8_t code, uint16_t most)
+static inline uint16_t scale_code_to_max(uint8_t code, uint16_t most)
 {
     const uint16_t sum = (uint16_t)(code * most + 127);
 
@@ -425,13 +428,14 @@ static void pack_16_bit_pixels(const struct glint_row_pack *p,
     const uint16_t opaque = (uint16_t)p->opaque;
 
     for (int i = 0; i < n; i++)
-        dst[i] = (uint16_t)(opaque | shift_left(scale_code(r[i], max_r), to_r) |
-                            shift_left(scale_code(g[i], max_g), to_g) |
-                            shift_left(scale_code(b[i], max_b), to_b));
+        dst[i] = (uint16_t)(opaque |
+                            shift_left(scale_code_to_max(r[i], max_r), to_r) |
+                            shift_left(scale_code_to_max(g[i], max_g), to_g) |
+                            shift_left(scale_code_to_max(b[i], max_b), to_b));
 }
 
-static void pack_by_tables(const struct glint_row_pack *p, uint8_t *dst,
-                           const uint8_t *const channel[3], int n)
+static void pack_pixels_by_tables(const struct glint_row_pack *p, uint8_t *dst,
+                                  const uint8_t *const channel[3], int n)
 {
     const int bytes = p->layout.bytes,
               skip = is_little_endian() ? 0 : 4 - bytes;
@@ -458,7 +462,7 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
         pack_16_bit_pixels(pack, dst, channel[0], channel[1], channel[2], n);
         return;
     case GLINT_PACK_TABLES:
-        pack_by_tables(pack, dst, channel, n);
+        pack_pixels_by_tables(pack, dst, channel, n);
         return;
     }
 }
@@ -467,8 +471,8 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
 
 /* Sets p->channel to the index of the channel that each byte of a pixel holds,
  * in memory order. */
-static void assign_byte_channels(struct glint_row_pack *p, uint8_t *mem,
-                                 int width)
+static void find_channel_of_each_byte(struct glint_row_pack *p, uint8_t *mem,
+                                      int width)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     int free_byte = 0 + 1 + 2 + 3;
@@ -487,7 +491,7 @@ static void assign_byte_channels(struct glint_row_pack *p, uint8_t *mem,
     memset(p->rest, (int)(p->opaque >> 8 * free_byte & 255), (size_t)width);
 }
 
-static void fill_channel_tables(struct glint_row_pack *p, void *mem)
+static void fill_tables_of_channels(struct glint_row_pack *p, void *mem)
 {
     const struct glint_pixel_layout *const l = &p->layout;
     const struct glint_pixel_field *const field[] = {&l->red, &l->green,
@@ -521,12 +525,12 @@ void glint_row_pack_init(struct glint_row_pack *pack,
     };
     switch (pack->way) {
     case GLINT_PACK_BYTES:
-        assign_byte_channels(pack, mem, width);
+        find_channel_of_each_byte(pack, mem, width);
         return;
     case GLINT_PACK_HALVES:
         return;
     case GLINT_PACK_TABLES:
-        fill_channel_tables(pack, mem);
+        fill_tables_of_channels(pack, mem);
         return;
     }
 }
@@ -540,7 +544,7 @@ static int clamp_side_to_min_1(int side)
 
 /* Sets the areas so that all of the picture is shown, scaled to fit the panel
  * at its aspect ratio. */
-static void fit_picture(struct glint_panel *p)
+static void fit_picture_to_panel(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
 
@@ -557,7 +561,7 @@ static void fit_picture(struct glint_panel *p)
 }
 
 /* Sets the areas so that the middle of the picture is shown, unscaled. */
-static void centre_picture(struct glint_panel *p)
+static void centre_picture_on_panel(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;
     const int width = c->image_width < c->width ? c->image_width : c->width;
@@ -574,9 +578,9 @@ static void centre_picture(struct glint_panel *p)
 static void place_picture(struct glint_panel *p)
 {
     if (p->cfg.fit == GLINT_PANEL_FIT)
-        fit_picture(p);
+        fit_picture_to_panel(p);
     else
-        centre_picture(p);
+        centre_picture_on_panel(p);
     p->shown.x = (p->cfg.width - p->shown.width) / 2;
     p->shown.y = (p->cfg.height - p->shown.height) / 2;
 }
@@ -677,17 +681,17 @@ void glint_panel_clear(struct glint_panel *panel, uint8_t *mem,
         memcpy(mem + y * stride, panel->line, bytes);
 }
 
-static void scale_row_2_bytes(uint16_t *restrict to,
-                              const uint16_t *restrict from,
-                              const uint16_t *restrict from_x, int n)
+static void scale_row_of_2_byte_pixels(uint16_t *restrict to,
+                                       const uint16_t *restrict from,
+                                       const uint16_t *restrict from_x, int n)
 {
     for (int i = 0; i < n; i++)
         to[i] = from[from_x[i]];
 }
 
-static void scale_row_3_bytes(uint8_t *restrict to,
-                              const uint8_t *restrict from,
-                              const uint16_t *restrict from_x, int n)
+static void scale_row_of_3_byte_pixels(uint8_t *restrict to,
+                                       const uint8_t *restrict from,
+                                       const uint16_t *restrict from_x, int n)
 {
     for (int i = 0; i < n; i++) {
         const uint8_t *const px = from + 3 * from_x[i];
@@ -698,9 +702,9 @@ static void scale_row_3_bytes(uint8_t *restrict to,
     }
 }
 
-static void scale_row_4_bytes(uint32_t *restrict to,
-                              const uint32_t *restrict from,
-                              const uint16_t *restrict from_x, int n)
+static void scale_row_of_4_byte_pixels(uint32_t *restrict to,
+                                       const uint32_t *restrict from,
+                                       const uint16_t *restrict from_x, int n)
 {
     for (int i = 0; i < n; i++)
         to[i] = from[from_x[i]];
@@ -718,13 +722,14 @@ static const uint8_t *pack_panel_row(struct glint_panel *p,
     if (!p->from_x)
         return p->line + cut * bytes;
     if (bytes == 2)
-        scale_row_2_bytes((void *)p->scaled, (const void *)p->line, p->from_x,
-                          p->shown.width);
+        scale_row_of_2_byte_pixels((void *)p->scaled, (const void *)p->line,
+                                   p->from_x, p->shown.width);
     else if (bytes == 3)
-        scale_row_3_bytes(p->scaled, p->line, p->from_x, p->shown.width);
+        scale_row_of_3_byte_pixels(p->scaled, p->line, p->from_x,
+                                   p->shown.width);
     else
-        scale_row_4_bytes((void *)p->scaled, (const void *)p->line, p->from_x,
-                          p->shown.width);
+        scale_row_of_4_byte_pixels((void *)p->scaled, (const void *)p->line,
+                                   p->from_x, p->shown.width);
     return p->scaled;
 }
 

@@ -104,13 +104,14 @@ struct glint_panel {
 
 /* Splits N pairs of bytes: the first byte of each pair is copied to A, the
  * second to B. Arrays must not overlap. */
-void glint_split_pairs(uint8_t *restrict a, uint8_t *restrict b,
-                       const uint8_t *restrict from, int n);
+void glint_split_byte_pairs(uint8_t *restrict a, uint8_t *restrict b,
+                            const uint8_t *restrict from, int n);
 
 /* Splits N pairs of pixels of FORMAT, GLINT_YUYV or GLINT_UYVY, into rows of
  * luma, Cb and Cr; a pair has two samples of luma and one each of Cb and Cr. */
-void glint_split_packed(enum glint_pixel_format format, uint8_t *luma,
-                        uint8_t *cb, uint8_t *cr, const uint8_t *from, int n);
+void glint_split_packed_pixels(enum glint_pixel_format format, uint8_t *luma,
+                               uint8_t *cb, uint8_t *cr, const uint8_t *from,
+                               int n);
 
 /* Returns the bytes of memory that glint_row_rgb_init() needs for WIDTH. */
 size_t glint_row_rgb_bytes(int width);

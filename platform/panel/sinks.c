@@ -70,8 +70,8 @@ static void split_packed_row(const struct glint_image *to,
     uint8_t *const cb = get_plane_row(to, 1, y), *const cr =
                                                      get_plane_row(to, 2, y);
 
-    glint_split_packed(from->format, row->luma, cb, cr,
-                       get_plane_row(from, 0, y), half);
+    glint_split_packed_pixels(from->format, row->luma, cb, cr,
+                              get_plane_row(from, 0, y), half);
     memcpy(get_plane_row(to, 0, y), row->luma, (size_t)from->width);
 }
 
@@ -81,9 +81,9 @@ static void split_chroma_plane(const struct glint_image *to,
     const int cb = from->format == GLINT_NV12 ? 1 : 2;
 
     for (int y = 0; y < (from->height + 1) / 2; y++)
-        glint_split_pairs(get_plane_row(to, cb, y),
-                          get_plane_row(to, 3 - cb, y),
-                          get_plane_row(from, 1, y), (from->width + 1) / 2);
+        glint_split_byte_pairs(
+            get_plane_row(to, cb, y), get_plane_row(to, 3 - cb, y),
+            get_plane_row(from, 1, y), (from->width + 1) / 2);
 }
 
 /* --------------------------------------------------------------- from RGB */
@@ -227,8 +227,9 @@ static bool is_reader_ready(const struct glint_y4m_sink *y)
 {
     struct pollfd writable = {.fd = y->writer.out.fd, .events = POLLOUT};
 
-    return poll(&writable, 1, 0) != 0; /* The next write reports errors of the
-                                          descriptor. */
+    return poll(&writable, 1, 0) != 0; /* If poll() reports an error of the
+                                          descriptor, the next write reports it,
+                                          too. */
 }
 
 static enum glint_status write_y4m_frame(struct glint_sink *sink,

@@ -66,9 +66,10 @@ static bool is_library_fault(int signal_number)
 }
 
 /* Signal handler. Runs all registered functions, then lets the signal kill the
- * process, or exits with 1 after a fault in a library. SA_RESETHAND has
- * restored the default action, so the second signal, delivered on return, kills
- * the process with the status that its parent expects. */
+ * process; after a fault in a library, exits with status 1 instead.
+ * SA_RESETHAND has restored the default action, so the signal, raised again and
+ * delivered on return, kills the process with the status that its parent
+ * expects. */
 static void handle_signal(int signal_number)
 {
     run_all_handlers();
@@ -114,13 +115,13 @@ static void install_signal_handlers_once(void)
     pthread_once(&once, install_signal_handlers);
 }
 
-void glint_at_death_in_library(int (*report)(void))
+void glint_at_death_set_library_report(int (*report)(void))
 {
     install_signal_handlers_once();
     __atomic_store_n(&library_report, report, __ATOMIC_SEQ_CST);
 }
 
-bool glint_at_death(glint_at_death_fn *fn)
+bool glint_at_death_register(glint_at_death_fn *fn)
 {
     install_signal_handlers_once();
     for (int i = 0; i < MAX_FN; i++) {

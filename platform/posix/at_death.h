@@ -3,7 +3,7 @@
  * posix/at_death.h - clean-up functions that run when the process exits or is
  * killed by a signal.
  *
- *     glint_at_death(remove_files);       once
+ *     glint_at_death_register(remove_files);       once
  *
  * Registered functions run, the latest first, at exit() and when a signal kills
  * the process: a request to end (SIGHUP, SIGINT, SIGTERM, SIGQUIT ...) or a
@@ -28,14 +28,14 @@ typedef void glint_at_death_fn(void);
 /* Registers FN for the rest of the process; does nothing if FN is registered
  * already. Returns false if 8 other functions are registered, which is a bug in
  * glint. */
-bool glint_at_death(glint_at_death_fn *fn);
+bool glint_at_death_register(glint_at_death_fn *fn);
 
 /* Sets REPORT, which is called when a library may have ended the process: by
  * exit(), as libjpeg does, by an abort (SIGABRT, an assertion, std::terminate)
  * or by an access to invalid memory, which then becomes exit code 1. REPORT
  * must be async-signal-safe; if the library is running, it prints a message and
  * returns 1, else it returns 0. A later REPORT replaces it. */
-void glint_at_death_in_library(int (*report)(void));
+void glint_at_death_set_library_report(int (*report)(void));
 
 /* Runs all functions, then ends the process by the default action of
  * SIGNAL_NUMBER; for an application's own signal handlers.

@@ -3,7 +3,7 @@
 
 #include <time.h>
 
-int64_t glint_now_us(void)
+int64_t glint_get_time_us(void)
 {
     struct timespec t;
 

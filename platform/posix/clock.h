@@ -8,6 +8,6 @@
 
 /* Returns the time of CLOCK_MONOTONIC, us. That clock never jumps, and
  * drivers use it for the time stamps of frames. */
-int64_t glint_now_us(void);
+int64_t glint_get_time_us(void);
 
 #endif

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
-bool glint_ends_in(const char *name, const char *ending)
+bool glint_has_extension(const char *name, const char *ending)
 {
     const size_t n = strlen(name), m = strlen(ending);
 

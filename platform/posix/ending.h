@@ -8,11 +8,11 @@
 
 /* Returns whether NAME has the extension ENDING, such as ".y4m", in upper or
  * lower case, and is longer than ENDING. */
-bool glint_ends_in(const char *name, const char *ending);
+bool glint_has_extension(const char *name, const char *ending);
 
-/* Returns the extension of the path NAME, including its dot, or "" if there is
- * none, as in "-", "/dev/stdout", ".hidden" or "f1.4", whose dot belongs to a
- * number. */
+/* Returns the extension of the path NAME, including its dot. Returns "" if
+ * there is none, as in "-", "/dev/stdout" and ".hidden", or if the dot belongs
+ * to a number, as in "f1.4". */
 const char *glint_get_extension(const char *name);
 
 #endif

@@ -10,7 +10,7 @@
 
 /* Returns the length in bytes of a UTF-8 character by its FIRST byte, or 0
  * if no printable character begins with FIRST. */
-static size_t get_utf8_length(unsigned char first)
+static size_t get_utf8_length_by_first_byte(unsigned char first)
 {
     if (first < 0x80)
         return first >= ' ' && first != 0x7f;
@@ -19,18 +19,18 @@ static size_t get_utf8_length(unsigned char first)
     return first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
 }
 
-size_t glint_utf8_length(const char *text)
+size_t glint_utf8_get_length(const char *text)
 {
     static const uint32_t smallest[] = {0, 0, 0xa0, 0x800, 0x10000};
     const unsigned char *const byte = (const unsigned char *)text;
-    const size_t length = get_utf8_length(byte[0]);
+    const size_t length = get_utf8_length_by_first_byte(byte[0]);
     uint32_t code;
 
     if (length < 2)
         return length;
     code = byte[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        /* Fails also at the zero byte that ends TEXT. */
+        /* true also for the zero byte that ends TEXT */
         if ((byte[i] & 0xc0) != 0x80)
             return 0;
         code = code << 6 | (byte[i] & 0x3fu);
@@ -41,10 +41,10 @@ size_t glint_utf8_length(const char *text)
                : length;
 }
 
-void glint_utf8_clean(char *text)
+void glint_utf8_replace_unprintable(char *text)
 {
     while (*text) {
-        const size_t length = glint_utf8_length(text);
+        const size_t length = glint_utf8_get_length(text);
 
         if (!length)
             *text = '?';
@@ -69,7 +69,7 @@ enum glint_status glint_error_report(struct glint_error *error,
     vsnprintf(error->text + used, sizeof error->text - (size_t)used, format,
               args);
     va_end(args);
-    glint_utf8_clean(error->text);
+    glint_utf8_replace_unprintable(error->text);
     return status;
 }
 

@@ -18,11 +18,11 @@
 /* Returns the length in bytes, 1 .. 4, of the UTF-8 character at the start of
  * TEXT, or 0 for a control character (C1, too, as U+009B begins a terminal
  * command), malformed UTF-8 or the end of TEXT. */
-size_t glint_utf8_length(const char *text);
+size_t glint_utf8_get_length(const char *text);
 
-/* Replaces every byte of TEXT that glint_utf8_length() does not accept by
+/* Replaces every byte of TEXT that glint_utf8_get_length() does not accept by
  * '?'. */
-void glint_utf8_clean(char *text);
+void glint_utf8_replace_unprintable(char *text);
 
 /* Sets ERROR to "FILE: cause" and returns STATUS, so that callers report and
  * return in one statement. If FILE is long, its beginning is cut off, so that

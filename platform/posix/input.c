@@ -43,7 +43,7 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
 
 /* Returns the reason why glint does not accept PATH, of status ST, as a file,
  * or NULL if it does. */
-static const char *explain_rejection(const char *path, const struct stat *st)
+static const char *get_rejection_reason(const char *path, const struct stat *st)
 {
     struct stat null;
 
@@ -67,13 +67,13 @@ enum glint_status glint_input_open_file(struct glint_input *in,
 {
     struct stat st;
     const char *cause;
-    /* O_NONBLOCK: opening a FIFO does not wait for a writer. */
+    /* With O_NONBLOCK, opening a FIFO does not wait for a writer. */
     enum glint_status status = open_with_flags(in, path, O_NONBLOCK, error);
 
     if (status != GLINT_OK || !strcmp(path, "-"))
         return status;
-    cause =
-        fstat(in->fd, &st) < 0 ? strerror(errno) : explain_rejection(path, &st);
+    cause = fstat(in->fd, &st) < 0 ? strerror(errno)
+                                   : get_rejection_reason(path, &st);
     if (!cause)
         return GLINT_OK;
     glint_input_close(in);
@@ -125,9 +125,9 @@ static enum glint_status grow_buffer(struct glint_input *in, uint8_t **data,
     return GLINT_OK;
 }
 
-enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
-                                     size_t *bytes, size_t max,
-                                     struct glint_error *error)
+enum glint_status glint_input_read_rest(struct glint_input *in, uint8_t **data,
+                                        size_t *bytes, size_t max,
+                                        struct glint_error *error)
 {
     size_t size = *bytes + estimate_input_bytes(in, max);
     ptrdiff_t n;
@@ -159,9 +159,9 @@ void glint_input_close(struct glint_input *in)
     in->fd = -1;
 }
 
-enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
-                                    const char *path, size_t max,
-                                    struct glint_error *error)
+enum glint_status glint_input_read_whole_file(uint8_t **data, size_t *bytes,
+                                              const char *path, size_t max,
+                                              struct glint_error *error)
 {
     uint8_t *block = NULL;
     size_t n = 0;
@@ -170,7 +170,7 @@ enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
 
     if (status)
         return status;
-    status = glint_input_append(&in, &block, &n, max, error);
+    status = glint_input_read_rest(&in, &block, &n, max, error);
     glint_input_close(&in);
     if (status) {
         free(block);

@@ -3,7 +3,7 @@
  * posix/input.h - reads files and pipes; repeats reads that signals interrupt.
  *
  *     glint_input_open(&in, "x.ppm", &error); "-" is standard input
- *     glint_input_append(&in, &data, &bytes, max, &error);
+ *     glint_input_read_rest(&in, &data, &bytes, max, &error);
  *     glint_input_close(&in);
  *
  * Reads wait also on non-blocking descriptors. A terminal is rejected as
@@ -44,18 +44,18 @@ ptrdiff_t glint_input_read_available(struct glint_input *in, void *dst,
  * block (or NULL and 0). The block may move; the caller frees it, also on
  * failure. Returns GLINT_E_UNSUPPORTED if *BYTES would exceed MAX, GLINT_E_IO
  * or GLINT_E_MEMORY. */
-enum glint_status glint_input_append(struct glint_input *in, uint8_t **data,
-                                     size_t *bytes, size_t max,
-                                     struct glint_error *error);
+enum glint_status glint_input_read_rest(struct glint_input *in, uint8_t **data,
+                                        size_t *bytes, size_t max,
+                                        struct glint_error *error);
 
 /* Closes IN, unless it is closed already. */
 void glint_input_close(struct glint_input *in);
 
 /* Reads all of PATH, opened as by glint_input_open_file(), into a block that
  * the caller frees; *DATA is not NULL even for an empty file. Returns the
- * errors of glint_input_open_file() and glint_input_append(). */
-enum glint_status glint_input_slurp(uint8_t **data, size_t *bytes,
-                                    const char *path, size_t max,
-                                    struct glint_error *error);
+ * errors of glint_input_open_file() and glint_input_read_rest(). */
+enum glint_status glint_input_read_whole_file(uint8_t **data, size_t *bytes,
+                                              const char *path, size_t max,
+                                              struct glint_error *error);
 
 #endif

@@ -82,7 +82,7 @@ static bool follow_link(char *path)
 
 /* Follows the dangling links at PATH. Returns the path of the missing file,
  * which the caller frees, or NULL with errno set. */
-static char *find_new_target(const char *path)
+static char *follow_dangling_links(const char *path)
 {
     char at[PATH_BYTES];
     struct stat st;
@@ -111,18 +111,19 @@ static char *find_new_target(const char *path)
  * yet, as at the end of a dangling link. On failure returns NULL with errno
  * set: EACCES for a dangling link that the kernel would not follow, ESTALE
  * if PATH now leads to another file than ST, or a system error. */
-static char *resolve_target(const char *path, const struct stat *st)
+static char *resolve_links_of_target(const char *path, const struct stat *st)
 {
     struct stat now;
     char *target;
 
     if (!st)
-        return find_new_target(path);
+        return follow_dangling_links(path);
     target = realpath(path, NULL);
     if (!target)
         return NULL;
-    /* If TARGET is another file than ST, another process has changed a link
-     * since, and the kernel might refuse to follow the new link. */
+    /* If TARGET is another file than the one with status ST, another process
+     * has changed a link meanwhile, and the kernel might refuse to follow the
+     * new link. */
     if (lstat(target, &now) == 0 && now.st_dev == st->st_dev &&
         now.st_ino == st->st_ino)
         return target;
@@ -143,7 +144,7 @@ bool glint_target_is_input(const char *input, const char *output)
            in.st_dev == out.st_dev && in.st_ino == out.st_ino;
 }
 
-bool glint_target_is_same(const char *a, const char *b)
+bool glint_target_is_same_file(const char *a, const char *b)
 {
     char folder[PATH_BYTES];
     struct stat in_a, in_b;
@@ -182,7 +183,7 @@ static char *make_temporary_name(const char *target, unsigned n)
 
 /* Returns the id of the process that made the temporary file NAME, or 0 if
  * NAME does not have the form of a temporary name. */
-static pid_t parse_maker(const char *name)
+static pid_t parse_process_id_in_name(const char *name)
 {
     static const char begin[] = ".glint-";
     char *end;
@@ -211,7 +212,7 @@ static bool is_file_abandoned(int fd)
 
 static void remove_if_abandoned(int folder, const char *name)
 {
-    const pid_t pid = parse_maker(name);
+    const pid_t pid = parse_process_id_in_name(name);
     int fd;
 
     if (pid == 0 || kill(pid, 0) == 0 || errno != ESRCH)
@@ -254,18 +255,19 @@ static void remove_abandoned_files(const char *target)
 
 #define BUFFER_BYTES 65536
 #define MAX_TMP      16 /* max number of open temporary files */
-/* max number of names to try, as files of some names may exist */
+/* max number of temporary names to try, as files with some of these names may
+ * exist */
 #define MAX_TRIES 1000
 
 /* ---------------------------------------------- files to remove when dying */
 
 /* names of temporary files, or NULL; atomic */
 static char *doomed[MAX_TMP];
-/* 1: the process is dying, and remove_temporaries() may run; atomic */
+/* 1: the process is dying, and remove_all_temporary_files() may run; atomic */
 static int dying;
 
 /* Removes all temporary files when the process dies. Async-signal-safe. */
-static void remove_temporaries(void)
+static void remove_all_temporary_files(void)
 {
     const int saved = errno;
 
@@ -279,7 +281,7 @@ static void remove_temporaries(void)
     errno = saved;
 }
 
-static bool register_temporary(char *name)
+static bool register_temporary_file(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
         char *none = NULL;
@@ -292,8 +294,9 @@ static bool register_temporary(char *name)
 }
 
 /* Removes NAME from the list of temporary files and frees it. If DYING is set,
- * NAME is not freed, as another thread may use it in remove_temporaries(). */
-static void unregister_temporary(char *name)
+ * NAME is not freed, as another thread may use it in
+ * remove_all_temporary_files(). */
+static void unregister_temporary_file(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
         char *same = name;
@@ -318,7 +321,7 @@ static enum glint_status report_open_refusal(const struct glint_output *out,
 /* Creates the file NAME and adds it to the list of temporary files. Blocks
  * signals meanwhile, as a signal between the two steps would leave the file
  * behind. Returns the file's descriptor, or -1 with errno set. */
-static int create_temporary(char *name, mode_t mode)
+static int create_temporary_file(char *name, mode_t mode)
 {
     sigset_t held, old;
     int fd, saved;
@@ -327,7 +330,7 @@ static int create_temporary(char *name, mode_t mode)
     pthread_sigmask(SIG_BLOCK, &held, &old);
     fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     saved = errno;
-    if (fd >= 0 && !register_temporary(name)) {
+    if (fd >= 0 && !register_temporary_file(name)) {
         close(fd);
         unlink(name);
         fd = -1;
@@ -341,9 +344,9 @@ static int create_temporary(char *name, mode_t mode)
 /* Reports that no temporary file could be created, with the last 40 bytes of
  * its folder's name, cut at a whole character, so that the cause fits behind
  * the name. */
-static enum glint_status report_folder_failure(const struct glint_output *out,
-                                               int number,
-                                               struct glint_error *error)
+static enum glint_status
+report_temporary_file_failure(const struct glint_output *out, int number,
+                              struct glint_error *error)
 {
     const char *const slash = strrchr(out->target, '/');
     const char *folder = slash ? out->target : ".";
@@ -380,7 +383,7 @@ static enum glint_status open_temporary_file(struct glint_output *out,
         if (!out->tmp)
             return glint_error_report(error, GLINT_E_MEMORY, out->name,
                                       "no memory for a file name");
-        out->fd = create_temporary(out->tmp, keep ? 0600 : 0666);
+        out->fd = create_temporary_file(out->tmp, keep ? 0600 : 0666);
         if (out->fd >= 0)
             break;
         number = errno;
@@ -390,7 +393,7 @@ static enum glint_status open_temporary_file(struct glint_output *out,
             break;
     }
     if (out->fd < 0)
-        return report_folder_failure(out, number, error);
+        return report_temporary_file_failure(out, number, error);
     /* The lock shows remove_abandoned_files() that the file is in use. */
     flock(out->fd, LOCK_EX | LOCK_NB);
     if (keep && fchmod(out->fd, mode) < 0)
@@ -413,7 +416,7 @@ static int find_output_target(struct glint_output *out, struct stat *st,
             return 0;
         if (*is_there && access(out->name, W_OK) < 0)
             return errno;
-        out->target = resolve_target(out->name, *is_there ? st : NULL);
+        out->target = resolve_links_of_target(out->name, *is_there ? st : NULL);
         if (out->target)
             return 0;
         if (errno != ESTALE)
@@ -449,7 +452,7 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
     struct stat st;
     int number;
 
-    glint_at_death(remove_temporaries);
+    glint_at_death_register(remove_all_temporary_files);
     *out = (struct glint_output){.fd = -1,
                                  .name = is_stdout ? "standard output" : path};
     out->buffer = malloc(BUFFER_BYTES);
@@ -470,8 +473,8 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
     return status;
 }
 
-enum glint_status glint_output_check(const char *path,
-                                     struct glint_error *error)
+enum glint_status glint_output_check_path(const char *path,
+                                          struct glint_error *error)
 {
     struct glint_output out;
     enum glint_status status;
@@ -567,7 +570,7 @@ enum glint_status glint_output_commit(struct glint_output *out,
     if (!status && out->tmp && rename(out->tmp, out->target) < 0)
         status = report_open_refusal(out, error, errno);
     if (!status && out->tmp) {
-        unregister_temporary(out->tmp);
+        unregister_temporary_file(out->tmp);
         out->tmp = NULL;
     }
     glint_output_abort(out);
@@ -581,7 +584,7 @@ void glint_output_abort(struct glint_output *out)
     out->fd = -1;
     if (out->tmp) {
         unlink(out->tmp);
-        unregister_temporary(out->tmp);
+        unregister_temporary_file(out->tmp);
     }
     out->tmp = NULL;
     free(out->target);
@@ -609,10 +612,10 @@ enum glint_status glint_output_write_and_commit(struct glint_output *out,
         out, glint_output_write(out, data, bytes, error), error);
 }
 
-enum glint_status glint_output_save(const char *path,
-                                    enum glint_output_kind kind,
-                                    const void *data, size_t bytes,
-                                    struct glint_error *error)
+enum glint_status glint_output_save_file(const char *path,
+                                         enum glint_output_kind kind,
+                                         const void *data, size_t bytes,
+                                         struct glint_error *error)
 {
     struct glint_output out;
     const enum glint_status status = glint_output_open(&out, path, kind, error);

@@ -55,7 +55,7 @@ bool glint_target_is_input(const char *input, const char *output);
 /* Returns whether A and B, which need not exist, are the same path: the same
  * name in the same folder. Returns false for existing objects that are not
  * regular files, such as /dev/null. */
-bool glint_target_is_same(const char *a, const char *b);
+bool glint_target_is_same_file(const char *a, const char *b);
 
 /* Opens PATH, which must outlive OUT. On failure OUT is closed. Returns
  * GLINT_E_OUTPUT if PATH cannot be written, or GLINT_E_MEMORY. */
@@ -67,8 +67,8 @@ enum glint_status glint_output_open(struct glint_output *out, const char *path,
  * creates no lasting file. Does not test targets that would be written
  * directly. Returns GLINT_E_OUTPUT if PATH cannot be created, or
  * GLINT_E_MEMORY. */
-enum glint_status glint_output_check(const char *path,
-                                     struct glint_error *error);
+enum glint_status glint_output_check_path(const char *path,
+                                          struct glint_error *error);
 
 /* Writes all of DATA[BYTES]. After a failure all later writes fail, too.
  * Returns GLINT_E_CLOSED if the reader of a pipe has closed it, GLINT_E_OUTPUT
@@ -97,10 +97,10 @@ enum glint_status glint_output_write_and_commit(struct glint_output *out,
                                                 struct glint_error *error);
 
 /* Opens PATH, writes DATA[BYTES] and commits the file. */
-enum glint_status glint_output_save(const char *path,
-                                    enum glint_output_kind kind,
-                                    const void *data, size_t bytes,
-                                    struct glint_error *error);
+enum glint_status glint_output_save_file(const char *path,
+                                         enum glint_output_kind kind,
+                                         const void *data, size_t bytes,
+                                         struct glint_error *error);
 
 /* Returns a stream that appends to *TEXT, a malloc'ed string of *BYTES bytes,
  * or NULL if there is no memory. Unlike glibc's open_memstream() it reports

@@ -100,7 +100,8 @@ static void run_jobs(struct glint_workers *workers, int n_jobs,
     run_remaining_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
-    p->open = false; /* A helper that has not woken up yet would find no job. */
+    p->open = false; /* A helper that has not woken up yet would find no job
+                        left. */
     while (p->busy > 0)
         pthread_cond_wait(&p->idle, &p->lock);
     pthread_mutex_unlock(&p->lock);

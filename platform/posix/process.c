@@ -13,12 +13,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-void glint_process_hold_streams(void)
+void glint_process_open_closed_streams(void)
 {
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
             open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-            _exit(1); /* No stream is open to which the cause could be
+            _exit(1); /* No stream is open on which the cause could be
                          printed. */
 }
 
@@ -93,7 +93,7 @@ static void *run_call_in_thread(void *arg)
 
 /* Runs C in a thread with a stack of BYTES; that thread receives all signals
  * meanwhile. Returns false if the thread cannot be created. */
-static bool call_in_thread(size_t bytes, struct call *c)
+static bool run_call_in_new_thread(size_t bytes, struct call *c)
 {
     pthread_attr_t attr;
     pthread_t thread;
@@ -113,14 +113,14 @@ static bool call_in_thread(size_t bytes, struct call *c)
     return started;
 }
 
-int glint_process_run_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx)
+int glint_process_run_with_stack(size_t bytes, int (*fn)(void *ctx), void *ctx)
 {
     struct call c = {.fn = fn, .ctx = ctx};
     struct rlimit stack;
 
     if (getrlimit(RLIMIT_STACK, &stack) < 0 ||
         stack.rlim_cur == RLIM_INFINITY || stack.rlim_cur >= bytes ||
-        !call_in_thread(bytes, &c))
+        !run_call_in_new_thread(bytes, &c))
         return fn(ctx);
     return c.result;
 }

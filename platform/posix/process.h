@@ -19,7 +19,7 @@
 /* Opens each closed descriptor of 0 to 2 such that reading or writing it
  * fails, so that no file opened later becomes standard input, output or
  * error. */
-void glint_process_hold_streams(void);
+void glint_process_open_closed_streams(void);
 
 /* Returns the value of the environment variable NAME, or NULL if it is not set
  * or the program is setuid or setgid. */
@@ -32,6 +32,6 @@ bool glint_process_find_own_file(char *path, size_t bytes);
 /* Returns FN(CTX). If the stack limit is below BYTES, FN runs in a thread with
  * a stack of BYTES, which then receives all signals; if the thread cannot be
  * created, FN runs directly. For main(). */
-int glint_process_run_on_stack(size_t bytes, int (*fn)(void *ctx), void *ctx);
+int glint_process_run_with_stack(size_t bytes, int (*fn)(void *ctx), void *ctx);
 
 #endif

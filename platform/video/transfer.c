@@ -10,10 +10,10 @@
 /* Parameters of a transfer curve: light(v) = ((v + a) / (1 + a))^(power / 45)
  * for v >= toe, v / divisor below the toe. */
 struct power {
-    int power;       /* 45 times the exponent */
-    int a_10000;     /* 10000 times a */
-    int toe_10000;   /* 10000 times the toe */
-    int divisor_100; /* 100 times the divisor */
+    int power;       /* exponent times 45 */
+    int a_10000;     /* a times 10000 */
+    int toe_10000;   /* toe times 10000 */
+    int divisor_100; /* divisor times 100 */
 };
 
 static const struct power powers[] = {
@@ -97,7 +97,7 @@ static uint64_t multiply_q30(uint64_t a_q30, uint64_t b_q30)
 }
 
 /* Returns x^9; X is 0 .. 1. */
-static uint64_t compute_power_9_q30(uint64_t x_q30)
+static uint64_t raise_to_power_9_q30(uint64_t x_q30)
 {
     const uint64_t x2_q30 = multiply_q30(x_q30, x_q30);
     const uint64_t x4_q30 = multiply_q30(x2_q30, x2_q30);
@@ -112,7 +112,7 @@ static uint64_t compute_root_9_q30(uint64_t x_q30)
 
     for (uint64_t bit = UINT64_C(1) << 30; bit; bit >>= 1)
         if ((r_q30 | bit) <= UINT64_C(1) << 30 &&
-            compute_power_9_q30(r_q30 | bit) <= x_q30)
+            raise_to_power_9_q30(r_q30 | bit) <= x_q30)
             r_q30 |= bit;
     return r_q30;
 }
@@ -154,12 +154,13 @@ static int64_t compute_log2_q32(uint64_t n, uint64_t d)
         n *= 2;
         whole--;
     }
-    while (d >> 31) { /* so that n 2^31 fits into 64 bits, as n < 2 d */
+    while (d >> 31) { /* so that n * 2^31 fits into 64 bits, as n < 2 d */
         n >>= 1;
         d >>= 1;
     }
     m_q31 = (n << 31) / d;
-    /* D was odd, and the shifts above have rounded it down. */
+    /* If D was odd, the shifts above have rounded it down, so the quotient may
+     * be too large. */
     if (m_q31 >= 2 * ONE_Q31)
         m_q31 = 2 * ONE_Q31 - 1;
     for (int i = 0; i < 32; i++) {
@@ -257,8 +258,8 @@ static int32_t decode_log_q24(int64_t step, int64_t steps, int decades_2)
                 : 0;
 }
 
-int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,
-                                 int steps)
+int32_t glint_transfer_decode_q24(enum glint_transfer_curve curve, int step,
+                                  int steps)
 {
     switch (curve) {
     case GLINT_TRANSFER_BT709:

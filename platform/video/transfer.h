@@ -46,8 +46,8 @@ int glint_primaries_from_tag(const char *tag);
 /* Returns the light of code v = STEP / STEPS, 0 <= STEP <= STEPS <= 2^16; 2^24
  * is white. Light rises with STEP; light below 2^-24 is 0. The relative error
  * is below 1e-5 plus rounding. */
-int32_t glint_transfer_light_q24(enum glint_transfer_curve curve, int step,
-                                 int steps);
+int32_t glint_transfer_decode_q24(enum glint_transfer_curve curve, int step,
+                                  int steps);
 
 /* Matrices from linear light of BT.709's primaries to other primaries, and
  * back; 65536 is 1. Rows sum up to 65536, so white stays white. */

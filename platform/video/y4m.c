@@ -99,8 +99,8 @@ bool glint_y4m_is_8_bit_bt709(const struct glint_y4m_header *header)
 
 /* Sets SIZE to the number of samples across and down in PLANE, 0 .. 3, or to 0
  * and 0 if there is no such plane. */
-static void set_plane_size(const struct glint_y4m_layout *layout, int plane,
-                           int width, int height, int size[2])
+static void compute_plane_size(const struct glint_y4m_layout *layout, int plane,
+                               int width, int height, int size[2])
 {
     const enum glint_pixel_format format = layout->format;
     const bool is_chroma = plane == 1 || plane == 2;
@@ -122,7 +122,7 @@ size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
     for (int p = 0; p < 4; p++) {
         int size[2];
 
-        set_plane_size(layout, p, width, height, size);
+        compute_plane_size(layout, p, width, height, size);
         samples += (size_t)size[0] * (size_t)size[1];
     }
     return samples * (layout->bits > 8 ? 2 : 1);
@@ -140,7 +140,7 @@ static void locate_planes(const struct glint_y4m_layout *layout, int width,
                           int height, uint8_t *planes, struct plane plane[4])
 {
     for (int p = 0; p < 4; p++) {
-        set_plane_size(layout, p, width, height, plane[p].size);
+        compute_plane_size(layout, p, width, height, plane[p].size);
         plane[p].is_wide = layout->bits > 8;
         plane[p].at = planes;
         planes += (size_t)plane[p].size[0] * (size_t)plane[p].size[1] *
@@ -211,9 +211,9 @@ static bool has_jpeg_colours(const struct glint_y4m_header *h)
            (!*h->colour || !strcmp(h->colour, "420jpeg"));
 }
 
-bool glint_y4m_is_name(const char *name)
+bool glint_y4m_has_extension(const char *name)
 {
-    return glint_ends_in(name, ".y4m");
+    return glint_has_extension(name, ".y4m");
 }
 
 void glint_y4m_header_init(struct glint_y4m_header *header, int width,
@@ -573,8 +573,8 @@ static ptrdiff_t read_padded_rows(struct glint_y4m_reader *r)
         size_t stride = r->stride;
         int size[2];
 
-        set_plane_size(&r->header.layout, p, r->header.width, r->header.height,
-                       size);
+        compute_plane_size(&r->header.layout, p, r->header.width,
+                           r->header.height, size);
         if (size[0] < r->header.width)
             stride /= 2;
         for (int y = 0; y < size[1]; y++) {
@@ -598,7 +598,7 @@ static ptrdiff_t read_padded_rows(struct glint_y4m_reader *r)
 }
 
 /* Returns whether transfer or primaries of H differ from BT.709. */
-static bool is_not_bt709(const struct glint_y4m_header *h)
+static bool differs_from_bt709(const struct glint_y4m_header *h)
 {
     return h->transfer != GLINT_TRANSFER_BT709 ||
            h->primaries != GLINT_PRIMARIES_BT709;
@@ -635,8 +635,9 @@ static enum glint_status allocate_frame(struct glint_y4m_reader *r,
         r->mem = malloc(
             bytes +
             (is_plain ? 0 : glint_image_bytes(h->format, h->width, h->height)));
-        r->seen = r->mem && is_not_bt709(h) ? allocate_copy_tables(h) : NULL;
-        if (!r->mem || (is_not_bt709(h) && !r->seen))
+        r->seen =
+            r->mem && differs_from_bt709(h) ? allocate_copy_tables(h) : NULL;
+        if (!r->mem || (differs_from_bt709(h) && !r->seen))
             return glint_error_report(error, GLINT_E_MEMORY, r->name,
                                       "no memory for a %d x %d frame", h->width,
                                       h->height);
@@ -843,7 +844,7 @@ static void fill_light_tables(struct glint_y4m_light *l,
                               enum glint_transfer_curve curve)
 {
     for (int i = 0; i <= GLINT_Y4M_STEPS; i++)
-        l->decode_q24[i] = glint_transfer_light_q24(curve, i, GLINT_Y4M_STEPS);
+        l->decode_q24[i] = glint_transfer_decode_q24(curve, i, GLINT_Y4M_STEPS);
     for (int o = 0; o < GLINT_Y4M_OCTAVES; o++)
         for (int i = 0; i <= GLINT_Y4M_IN_OCTAVE; i++) {
             const int64_t light =
@@ -919,8 +920,8 @@ static int32_t encode_light_to_code(const struct glint_y4m_light *l,
            (int32_t)(((at[1] - at[0]) * (place & 0xffff) + 0x8000) >> 16);
 }
 
-void glint_y4m_light_blacken(const struct glint_y4m_light *light,
-                             uint8_t *planes)
+void glint_y4m_light_set_black(const struct glint_y4m_light *light,
+                               uint8_t *planes)
 {
     struct plane plane[4];
 
@@ -940,16 +941,18 @@ static int32_t clamp_to_code_range(int64_t v, int32_t most)
     return v < 0 ? 0 : v > most ? most : (int32_t)v;
 }
 
-/* Sets RGB to R', G', B', clamped to 0 .. 1, of YCC: the code of Y', and the
- * codes of Cb and Cr minus the code of zero. */
+/* Converts YCC to RGB. YCC: the code of Y', and the codes of Cb and Cr minus
+ * their codes of zero. RGB: R', G', B', clamped to 0 .. 1. */
 static void convert_to_rgb(const struct glint_y4m_light *l,
                            const int32_t ycc[3], int32_t rgb_q20[3])
 {
     const int64_t y = y4m_scaled_quotient(ycc[0] - l->black, l->y_factor);
     const int64_t cb = y4m_scaled_quotient(ycc[1], l->c_factor);
     const int64_t cr = y4m_scaled_quotient(ycc[2], l->c_factor);
-    const int64_t r = y + y4m_halve((65536 - l->kr_q16) * cr, 15);
-    const int64_t b = y + y4m_halve((65536 - l->kb_q16) * cb, 15);
+    const int64_t r =
+        y + y4m_divide_by_power_of_two((65536 - l->kr_q16) * cr, 15);
+    const int64_t b =
+        y + y4m_divide_by_power_of_two((65536 - l->kb_q16) * cb, 15);
 
     rgb_q20[0] = clamp_to_code_range(r, WHITE_Q20);
     rgb_q20[1] = y4m_divide_fraction(65536 * y - l->kr_q16 * r - l->kb_q16 * b,
@@ -963,18 +966,18 @@ static void multiply_by_matrix(const int32_t m_q16[3][3], int64_t light[3])
     const int64_t r = light[0], g = light[1], b = light[2];
 
     for (int c = 0; c < 3; c++)
-        light[c] =
-            y4m_halve(m_q16[c][0] * r + m_q16[c][1] * g + m_q16[c][2] * b, 16);
+        light[c] = y4m_divide_by_power_of_two(
+            m_q16[c][0] * r + m_q16[c][1] * g + m_q16[c][2] * b, 16);
 }
 
 /* Sets Y', Cb and Cr, _q20, from R', G' and B'. */
 static void convert_to_ycc(const struct glint_y4m_light *l,
                            const int64_t rgb_q20[3], int64_t ycc_q20[3])
 {
-    const int64_t y =
-        y4m_halve(l->kr_q16 * rgb_q20[0] + l->kg_q16 * rgb_q20[1] +
-                      l->kb_q16 * rgb_q20[2],
-                  16);
+    const int64_t y = y4m_divide_by_power_of_two(l->kr_q16 * rgb_q20[0] +
+                                                     l->kg_q16 * rgb_q20[1] +
+                                                     l->kb_q16 * rgb_q20[2],
+                                                 16);
 
     ycc_q20[0] = y;
     ycc_q20[1] = y4m_scaled_quotient((int32_t)(rgb_q20[2] - y), l->cb_factor);
@@ -1011,7 +1014,7 @@ static void compute_code_change(const struct glint_y4m_light *l,
     convert_to_ycc(l, d, change_q20);
 }
 
-static bool has_block_light(const float *layer)
+static bool has_block_added_light(const float *layer)
 {
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
 }
@@ -1023,7 +1026,7 @@ static int64_t divide_by_pixel_count(int64_t sum_q20, int count)
     const int64_t whole = 3 * (int64_t)WHITE_Q20;
 
     if (count != 3)
-        return y4m_halve(sum_q20, 20 + count / 2);
+        return y4m_divide_by_power_of_two(sum_q20, 20 + count / 2);
     return sum_q20 < 0 ? -((2 * -sum_q20 + whole) / (2 * whole))
                        : (2 * sum_q20 + whole) / (2 * whole);
 }
@@ -1056,14 +1059,15 @@ static void add_light_to_block(const struct glint_y4m_light *l,
             const int cover = cover_q8 ? cover_q8[at] : 0;
             int64_t change[3];
 
-            if (!cover && !has_block_light(light))
+            if (!cover && !has_block_added_light(light))
                 continue;
             ycc[0] = read_sample_code(&plane[0], x, y);
             compute_code_change(l, ycc, light, cover, change);
             write_sample_code(
                 &plane[0], x, y,
-                clamp_to_code_range(
-                    ycc[0] + y4m_halve(change[0] * l->y_span, 20), l->most));
+                clamp_to_code_range(ycc[0] + y4m_divide_by_power_of_two(
+                                                 change[0] * l->y_span, 20),
+                                    l->most));
             sum[0] += change[1];
             sum[1] += change[2];
         }
@@ -1134,8 +1138,9 @@ static void convert_block_to_bt709(const struct glint_y4m_seen *seen,
             convert_ycc_between_streams(f, t, ycc, made);
             write_sample_code(
                 &to[0], x, y,
-                clamp_to_code_range(
-                    t->black + y4m_halve(made[0] * t->y_span, 20), 255));
+                clamp_to_code_range(t->black + y4m_divide_by_power_of_two(
+                                                   made[0] * t->y_span, 20),
+                                    255));
             sum[0] += made[1];
             sum[1] += made[2];
         }

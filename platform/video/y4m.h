@@ -142,7 +142,7 @@ size_t glint_y4m_layout_bytes(const struct glint_y4m_layout *layout, int width,
                               int height);
 
 /* Returns whether NAME ends in .y4m. */
-bool glint_y4m_is_name(const char *name);
+bool glint_y4m_has_extension(const char *name);
 
 /* Sets HEADER for a new stream: progressive, square pixels, limited range.
  * FORMAT is GLINT_GREY, _I420, _I422 or _I444. FPS_NUM and FPS_DEN >= 1, or 0
@@ -272,8 +272,8 @@ void glint_y4m_light_init(struct glint_y4m_light *light,
                           const struct glint_y4m_header *header);
 
 /* Sets all colour codes of PLANES to black; alpha does not change. */
-void glint_y4m_light_blacken(const struct glint_y4m_light *light,
-                             uint8_t *planes);
+void glint_y4m_light_set_black(const struct glint_y4m_light *light,
+                               uint8_t *planes);
 
 /* Adds LAYER, [height][width][3], linear light, 1 = white, to PLANES. */
 void glint_y4m_light_add(const struct glint_y4m_light *light, uint8_t *planes,

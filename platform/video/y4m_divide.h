@@ -54,7 +54,7 @@ static inline int32_t y4m_divide_fraction(int64_t n, int32_t d, int64_t factor)
 }
 
 /* Returns N / 2^S, S >= 1. */
-static inline int64_t y4m_halve(int64_t n, int s)
+static inline int64_t y4m_divide_by_power_of_two(int64_t n, int s)
 {
     const int64_t half = INT64_C(1) << (s - 1);
 

@@ -5,9 +5,9 @@ enum { WIDTH = GLINT_CODES_WIDTH };
 
 /* Copies N samples whose addresses are TO_STEP and FROM_STEP bytes apart.
  * Common steps have loops of their own, which compilers can vectorise. */
-static inline void copy_samples(uint8_t *restrict to, int to_step,
-                                const uint8_t *restrict from, int from_step,
-                                int n)
+static inline void copy_strided_samples(uint8_t *restrict to, int to_step,
+                                        const uint8_t *restrict from,
+                                        int from_step, int n)
 {
     if (to_step == 1 && from_step == 1)
         for (int i = 0; i < n; i++)
@@ -25,8 +25,9 @@ static inline void copy_samples(uint8_t *restrict to, int to_step,
 
 /* Copies N pixels of three interleaved samples, STEP bytes apart, to one row
  * per channel. */
-static inline void split_pixels(uint8_t (*sample)[2][WIDTH], int row,
-                                const uint8_t *const from[3], int step, int n)
+static inline void split_pixels_by_channel(uint8_t (*sample)[2][WIDTH], int row,
+                                           const uint8_t *const from[3],
+                                           int step, int n)
 {
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
@@ -34,8 +35,9 @@ static inline void split_pixels(uint8_t (*sample)[2][WIDTH], int row,
 }
 
 /* Copies one row per channel back to N pixels of three interleaved samples. */
-static inline void join_pixels(const struct glint_codes *codes, int row,
-                               uint8_t *const to[3], int step, int n)
+static inline void join_channels_to_pixels(const struct glint_codes *codes,
+                                           int row, uint8_t *const to[3],
+                                           int step, int n)
 {
     for (int i = 0; i < n; i++)
         for (int c = 0; c < 3; c++)
@@ -67,7 +69,7 @@ static void read_565_row(struct glint_codes *c, const uint8_t *px, int n,
 }
 
 /* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded: the exact inverse of
- * the expansion to 8 bits in read_565_row(). */
+ * the expansion of MOST + 1 codes to 8 bits in read_565_row(). */
 static int scale_code_to_max(int code, int most)
 {
     return (code * most + 127) / 255;
@@ -90,14 +92,15 @@ static void read_rgb_row(struct glint_codes *c, const struct glint_layout *l,
                          const struct glint_image *image, int x, int y, int n,
                          int row)
 {
-    const uint8_t *const from[3] = {glint_layout_at(l, image, 0, x, y),
-                                    glint_layout_at(l, image, 1, x, y),
-                                    glint_layout_at(l, image, 2, x, y)};
+    const uint8_t *const from[3] = {
+        glint_layout_get_sample_address(l, image, 0, x, y),
+        glint_layout_get_sample_address(l, image, 1, x, y),
+        glint_layout_get_sample_address(l, image, 2, x, y)};
 
     if (l->sample[0].step == 3)
-        split_pixels(c->sample, row, from, 3, n);
+        split_pixels_by_channel(c->sample, row, from, 3, n);
     else
-        split_pixels(c->sample, row, from, 4, n);
+        split_pixels_by_channel(c->sample, row, from, 4, n);
     for (int k = 0; k < 3; k++)
         repeat_last_group(c->sample[k][row], n, 1);
 }
@@ -107,14 +110,14 @@ static void write_rgb_row(const struct glint_codes *c,
                           const struct glint_image *image, int x, int y, int n,
                           int row)
 {
-    uint8_t *const to[3] = {glint_layout_at(l, image, 0, x, y),
-                            glint_layout_at(l, image, 1, x, y),
-                            glint_layout_at(l, image, 2, x, y)};
+    uint8_t *const to[3] = {glint_layout_get_sample_address(l, image, 0, x, y),
+                            glint_layout_get_sample_address(l, image, 1, x, y),
+                            glint_layout_get_sample_address(l, image, 2, x, y)};
 
     if (l->sample[0].step == 3)
-        join_pixels(c, row, to, 3, n);
+        join_channels_to_pixels(c, row, to, 3, n);
     else
-        join_pixels(c, row, to, 4, n);
+        join_channels_to_pixels(c, row, to, 4, n);
 }
 
 /* ------------------------------------------------------------------ chroma */
@@ -129,16 +132,16 @@ static void read_chroma_row(const struct glint_layout *l,
                             const struct glint_image *image, int x, int y,
                             int n, uint8_t *to)
 {
-    const uint8_t *cb = glint_layout_at(l, image, 1, x, y);
-    const uint8_t *cr = glint_layout_at(l, image, 2, x, y);
+    const uint8_t *cb = glint_layout_get_sample_address(l, image, 1, x, y);
+    const uint8_t *cr = glint_layout_get_sample_address(l, image, 2, x, y);
 
     if (glint_layout_is_packed(l))
-        copy_samples(to, 1, cb, 2, 2 * n);
+        copy_strided_samples(to, 1, cb, 2, 2 * n);
     else if (is_chroma_interleaved(l))
-        copy_samples(to, 1, cb, 1, 2 * n);
+        copy_strided_samples(to, 1, cb, 1, 2 * n);
     else {
-        copy_samples(to, 2, cb, l->sample[1].step, n);
-        copy_samples(to + 1, 2, cr, l->sample[2].step, n);
+        copy_strided_samples(to, 2, cb, l->sample[1].step, n);
+        copy_strided_samples(to + 1, 2, cr, l->sample[2].step, n);
     }
     repeat_last_group(to, n, 2);
 }
@@ -147,24 +150,24 @@ static void write_chroma_row(const struct glint_layout *l,
                              const struct glint_image *image, int x, int y,
                              int n, const uint8_t *from)
 {
-    uint8_t *cb = glint_layout_at(l, image, 1, x, y);
-    uint8_t *cr = glint_layout_at(l, image, 2, x, y);
+    uint8_t *cb = glint_layout_get_sample_address(l, image, 1, x, y);
+    uint8_t *cr = glint_layout_get_sample_address(l, image, 2, x, y);
 
     if (glint_layout_is_packed(l))
-        copy_samples(cb, 2, from, 1, 2 * n);
+        copy_strided_samples(cb, 2, from, 1, 2 * n);
     else if (is_chroma_interleaved(l))
-        copy_samples(cb, 1, from, 1, 2 * n);
+        copy_strided_samples(cb, 1, from, 1, 2 * n);
     else {
-        copy_samples(cb, l->sample[1].step, from, 2, n);
-        copy_samples(cr, l->sample[2].step, from + 1, 2, n);
+        copy_strided_samples(cb, l->sample[1].step, from, 2, n);
+        copy_strided_samples(cr, l->sample[2].step, from + 1, 2, n);
     }
 }
 
 /* -------------------------------------------------------------------- rows */
 
-/* Returns the number of channels that have one sample per pixel; these are the
- * first channels. */
-static int count_whole_channels(const struct glint_layout *l)
+/* Returns the number of channels that have one sample per pixel. The channels
+ * with fewer samples come after them. */
+static int count_full_resolution_channels(const struct glint_layout *l)
 {
     return l->kind == GLINT_LAYOUT_GREY || l->log2_x ? 1 : 3;
 }
@@ -173,9 +176,10 @@ static void read_pixel_row(struct glint_codes *c, const struct glint_layout *l,
                            const struct glint_image *image, int x, int y, int n,
                            int row)
 {
-    for (int i = 0; i < count_whole_channels(l); i++) {
-        copy_samples(c->sample[i][row], 1, glint_layout_at(l, image, i, x, y),
-                     l->sample[i].step, n);
+    for (int i = 0; i < count_full_resolution_channels(l); i++) {
+        copy_strided_samples(c->sample[i][row], 1,
+                             glint_layout_get_sample_address(l, image, i, x, y),
+                             l->sample[i].step, n);
         repeat_last_group(c->sample[i][row], n, 1);
     }
     if (l->kind == GLINT_LAYOUT_GREY)
@@ -190,9 +194,9 @@ static void write_pixel_row(const struct glint_codes *c,
                             const struct glint_image *image, int x, int y,
                             int n, int row)
 {
-    for (int i = 0; i < count_whole_channels(l); i++)
-        copy_samples(glint_layout_at(l, image, i, x, y), l->sample[i].step,
-                     c->sample[i][row], 1, n);
+    for (int i = 0; i < count_full_resolution_channels(l); i++)
+        copy_strided_samples(glint_layout_get_sample_address(l, image, i, x, y),
+                             l->sample[i].step, c->sample[i][row], 1, n);
     if (l->log2_x && (row == 0 || !l->log2_y))
         write_chroma_row(l, image, x, y, (n + 1) / 2, c->chroma[row]);
 }
@@ -205,8 +209,9 @@ void glint_codes_read_pixels(struct glint_codes *codes,
 
     for (int row = 0; row < n_y; row++)
         if (l->kind == GLINT_LAYOUT_565)
-            read_565_row(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
-                         row);
+            read_565_row(
+                codes, glint_layout_get_sample_address(l, image, 0, x, y + row),
+                n_x, row);
         else if (l->kind == GLINT_LAYOUT_RGB)
             read_rgb_row(codes, l, image, x, y + row, n_x, row);
         else
@@ -221,8 +226,9 @@ void glint_codes_write_pixels(const struct glint_codes *codes,
 
     for (int row = 0; row < n_y; row++)
         if (l->kind == GLINT_LAYOUT_565)
-            write_565_row(codes, glint_layout_at(l, image, 0, x, y + row), n_x,
-                          row);
+            write_565_row(
+                codes, glint_layout_get_sample_address(l, image, 0, x, y + row),
+                n_x, row);
         else if (l->kind == GLINT_LAYOUT_RGB)
             write_rgb_row(codes, l, image, x, y + row, n_x, row);
         else

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The samples of a run of pixels, in one or two rows of a picture of any
- * format, with one byte per sample as the kernels require. */
+ * The samples of a run of pixels, in one or two rows of a picture. A picture of
+ * any format is converted to one byte per sample, as the kernels require. */
 #ifndef GLINT_IMAGE_CODES_H
 #define GLINT_IMAGE_CODES_H
 

@@ -55,9 +55,9 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
 
 /* Copies the light of N_X x N_Y pixels from LAYER; returns whether any of it is
  * not 0. */
-static int copy_light(struct glint_composite *c,
-                      const struct glint_layer *layer, int x, int y, int n_x,
-                      int n_y)
+static int copy_light_of_layer(struct glint_composite *c,
+                               const struct glint_layer *layer, int x, int y,
+                               int n_x, int n_y)
 {
     unsigned any = 0;
 
@@ -83,7 +83,7 @@ void glint_composite_add(struct glint_composite *composite,
             const int n_y = y + 2 < image->height ? 2 : image->height - y;
             const int n_x = x + WIDTH < image->width ? WIDTH : image->width - x;
 
-            if (copy_light(composite, layer, x, y, n_x, n_y))
+            if (copy_light_of_layer(composite, layer, x, y, n_x, n_y))
                 glint_resolve_add_to_run(composite->resolve, image, x, y, n_x,
                                          n_y, composite->light,
                                          composite->rows);

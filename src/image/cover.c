@@ -5,7 +5,7 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* A run of pixels of one or two rows. */
+/* A run of pixels in one or two rows. */
 struct stretch {
     const struct glint_layout *layout;
     int n_x, n_y, black;
@@ -15,8 +15,8 @@ struct stretch {
     int32_t sum_q7[WIDTH];
 };
 
-static void hide_rgb_pixels(const struct stretch *s,
-                            const struct glint_mix *mix)
+static void hide_background_of_rgb_pixels(const struct stretch *s,
+                                          const struct glint_mix *mix)
 {
     for (int row = 0; row < s->n_y; row++)
         for (int c = 0; c < 3; c++)
@@ -58,9 +58,9 @@ static inline uint8_t round_chroma_mean(int32_t sum_q7, int log2)
         q_larger((sum_q7 + (1 << (6 + log2))) >> (7 + log2), 0), 255);
 }
 
-/* Adds the chroma of a row to the sums of its pairs. If the width is odd,
+/* Adds the chroma of a row to the sums of its pixel pairs. If the width is odd,
  * the last pixel counts twice. */
-static void add_pair_chroma(struct stretch *s, int16_t *const ycc_q7[3])
+static void add_chroma_to_pair_sums(struct stretch *s, int16_t *const ycc_q7[3])
 {
     const int end = s->n_x & ~1;
 
@@ -75,9 +75,9 @@ static void add_pair_chroma(struct stretch *s, int16_t *const ycc_q7[3])
     }
 }
 
-/* Writes the chroma of each pixel pair, the mean over its two pixels, or over
+/* Writes the chroma of each pixel pair: its mean over the two pixels, or over
  * four pixels if two rows share chroma. */
-static void write_mean_chroma(struct stretch *s, int row)
+static void write_mean_chroma_of_pairs(struct stretch *s, int row)
 {
     const int log2 = s->layout->log2_y && row ? 2 : 1;
     uint8_t *restrict pairs = get_shared_chroma_row(s, row);
@@ -98,8 +98,9 @@ static void write_ycc_row(const struct stretch *s, int row,
     }
 }
 
-static void hide_ycc_pixels(struct stretch *s, const struct glint_mix *mix,
-                            struct glint_resolve_rows *rows)
+static void hide_background_of_ycc_pixels(struct stretch *s,
+                                          const struct glint_mix *mix,
+                                          struct glint_resolve_rows *rows)
 {
     int16_t *const ycc_q7[3] = {rows->change[0], rows->change[1],
                                 rows->change[2]};
@@ -114,14 +115,14 @@ static void hide_ycc_pixels(struct stretch *s, const struct glint_mix *mix,
         write_ycc_row(s, row, ycc_q7);
         if (!s->layout->log2_x)
             continue;
-        add_pair_chroma(s, ycc_q7);
+        add_chroma_to_pair_sums(s, ycc_q7);
         if (row == s->n_y - 1 || !s->layout->log2_y)
-            write_mean_chroma(s, row);
+            write_mean_chroma_of_pairs(s, row);
     }
 }
 
 /* Returns whether all pixels of the run are fully hidden. */
-static int hides_all_pixels(const struct stretch *s)
+static int are_all_pixels_hidden(const struct stretch *s)
 {
     unsigned shown = 0;
 
@@ -145,12 +146,12 @@ static void set_run_black(const struct stretch *s, int is_rgb)
         }
 }
 
-void glint_hide_run_background(const struct glint_resolve *resolve,
-                               const struct glint_image *image, int x, int y,
-                               int n_x, int n_y,
-                               const struct glint_cover_rows *cover,
-                               struct glint_light_rows *light,
-                               struct glint_resolve_rows *rows)
+void glint_hide_background_of_run(const struct glint_resolve *resolve,
+                                  const struct glint_image *image, int x, int y,
+                                  int n_x, int n_y,
+                                  const struct glint_cover_rows *cover,
+                                  struct glint_light_rows *light,
+                                  struct glint_resolve_rows *rows)
 {
     struct stretch s = {.layout = glint_get_layout(image->format),
                         .n_x = n_x,
@@ -161,22 +162,22 @@ void glint_hide_run_background(const struct glint_resolve *resolve,
     const int is_rgb = s.layout->kind == GLINT_LAYOUT_RGB ||
                        s.layout->kind == GLINT_LAYOUT_565;
 
-    if (hides_all_pixels(&s)) {
+    if (are_all_pixels_hidden(&s)) {
         set_run_black(&s, is_rgb);
     } else {
         glint_codes_read_pixels(&rows->codes, image, x, y, n_x, n_y);
         if (is_rgb)
-            hide_rgb_pixels(&s, &resolve->mix);
+            hide_background_of_rgb_pixels(&s, &resolve->mix);
         else
-            hide_ycc_pixels(&s, &resolve->mix, rows);
+            hide_background_of_ycc_pixels(&s, &resolve->mix, rows);
     }
     if (light)
         glint_resolve_add_to_codes(resolve, image, y, n_x, n_y, light, rows);
     glint_codes_write_pixels(&rows->codes, image, x, y, n_x, n_y);
 }
 
-void glint_hide_linear_background(const struct glint_image *image, int x, int y,
-                                  int n, const uint16_t *cover_q8)
+void glint_hide_background_of_linear_run(const struct glint_image *image, int x,
+                                         int y, int n, const uint16_t *cover_q8)
 {
     int32_t *px_q20 =
         (int32_t *)(void *)(image->plane[0] + y * image->stride_bytes[0]) +

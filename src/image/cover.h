@@ -18,7 +18,7 @@
 
 enum { GLINT_COVER_ALL = 256 };
 
-/* The cover of the pixels of two rows of a run. */
+/* The cover of the pixels of a run, in two rows. */
 struct glint_cover_rows {
     /* [row][pixel]: hidden fraction of the pixel, 0 .. 256 */
     ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH];
@@ -27,16 +27,17 @@ struct glint_cover_rows {
 /* Hides the fraction COVER of each pixel of a run, then adds LIGHT unless
  * LIGHT is NULL. X, Y, N_X and N_Y have the meaning and limits of
  * glint_resolve_add_to_run(). */
-void glint_hide_run_background(const struct glint_resolve *resolve,
-                               const struct glint_image *image, int x, int y,
-                               int n_x, int n_y,
-                               const struct glint_cover_rows *cover,
-                               struct glint_light_rows *light,
-                               struct glint_resolve_rows *rows);
+void glint_hide_background_of_run(const struct glint_resolve *resolve,
+                                  const struct glint_image *image, int x, int y,
+                                  int n_x, int n_y,
+                                  const struct glint_cover_rows *cover,
+                                  struct glint_light_rows *light,
+                                  struct glint_resolve_rows *rows);
 
 /* Hides the fraction COVER of each of N pixels of a LINEAR_Q20 picture, from
  * (X, Y) to the right. */
-void glint_hide_linear_background(const struct glint_image *image, int x, int y,
-                                  int n, const uint16_t *cover_q8);
+void glint_hide_background_of_linear_run(const struct glint_image *image, int x,
+                                         int y, int n,
+                                         const uint16_t *cover_q8);
 
 #endif

@@ -3,7 +3,8 @@
 
 #include "base/compiler.h"
 
-/* The curve of a standard, v = code / 255:
+/* The transfer curve of a standard, from a code to linear light; v = code /
+ * 255:
  *   v * toe_divisor^-1                     up to code last_toe
  *   u^(2 + 2 / root), u = (v + a) / (1 + a)  above */
 struct standard {
@@ -33,8 +34,9 @@ static uint64_t raise_to_power_q30(uint64_t x_q30, int n)
     return multiply_q30(n == 9 ? multiply_q30(x4_q30, x4_q30) : x4_q30, x_q30);
 }
 
-/* Returns the largest r with r^n <= x. Rounding moves r by at most 2^-27 in
- * the range in which it is used: r >= 0.38 for n = 5, r >= 0.67 for n = 9. */
+/* Returns the n-th root of x, rounded down: the largest r with r^n <= x.
+ * Rounding moves r by at most 2^-27 in the range that is used: r >= 0.38 for n
+ * = 5, r >= 0.67 for n = 9. */
 static uint64_t compute_root_q30(uint64_t x_q30, int n)
 {
     uint64_t r_q30 = 0;
@@ -46,7 +48,7 @@ static uint64_t compute_root_q30(uint64_t x_q30, int n)
     return r_q30;
 }
 
-static int32_t compute_light_q20(const struct standard *s, int code)
+static int32_t compute_light_of_code_q20(const struct standard *s, int code)
 {
     const uint64_t divisor = 255 * (1000 + (uint64_t)s->a_1000);
     const uint64_t toe_divisor = 255 * (uint64_t)s->toe_divisor_100;
@@ -68,7 +70,7 @@ void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer)
     const struct standard *s = transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
 
     for (int i = 0; i < 256; i++)
-        curve->decode_q20[i] = compute_light_q20(s, i);
+        curve->decode_q20[i] = compute_light_of_code_q20(s, i);
     curve->decode_q20[256] = 2 * LINEAR_WHITE_Q20;
 }
 
@@ -101,8 +103,8 @@ static void set_ycc_to_rgb_matrix(struct glint_ycc *ycc, int64_t kr, int64_t kb,
     m_q16[2][2] = 0;
 }
 
-/* Sets the matrix from R'G'B' to Y'CbCr. The coefficient of green absorbs
- * the rounding errors, so that the sums of the rows are exact. */
+/* Sets the matrix from R'G'B' to Y'CbCr. The coefficient of green absorbs the
+ * rounding errors of red and blue, so that the sums of the rows are exact. */
 static void set_rgb_to_ycc_matrix(struct glint_ycc *ycc, int64_t kr, int64_t kb,
                                   int y_steps, int c_steps)
 {

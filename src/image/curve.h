@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts the codes of a picture to linear light, and between colour systems.
+ * Converts the codes of a picture to linear light, and between Y'CbCr and
+ * R'G'B'.
  *
- *   curve  a full-range code R', G', B' or Y' -> linear light, sRGB or BT.709
- *   ycc    Y, Cb, Cr codes of 8 bits <-> full-range R', G', B'
+ *   curve  from a full-range code of R', G', B' or Y' to linear light, by the
+ *          curve of sRGB or BT.709
+ *   ycc    between 8-bit codes of Y, Cb, Cr and full-range R', G', B'
  *
  * Full-range codes have 7 fraction bits (_q7: 255 << 7 is white), linear light
  * has 20 (1 << 20 is white). A curve is within 2^-21 of the standard's curve at
@@ -22,8 +24,8 @@
 #define LINEAR_WHITE_Q20 (1 << 20)
 
 struct glint_curve {
-    int32_t decode_q20[257]; /* linear light of integer codes; [256] is the end
-                                of the last interval */
+    int32_t decode_q20[257]; /* linear light of integer codes; entry 256 is the
+                                end of the last interval */
 };
 
 /* Fills the table CURVE for transfer function TRANSFER; finds 256 roots by
@@ -31,8 +33,8 @@ struct glint_curve {
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
 /* Returns the linear light of CODE_Q7, which must be in 0 .. CODE_WHITE_Q7. */
-static inline int32_t curve_decode(const struct glint_curve *curve,
-                                   int32_t code_q7)
+static inline int32_t curve_decode_to_light(const struct glint_curve *curve,
+                                            int32_t code_q7)
 {
     const int32_t *at_q20 = curve->decode_q20 + (code_q7 >> 7);
 
@@ -43,9 +45,9 @@ static inline int32_t curve_decode(const struct glint_curve *curve,
  * exactly, as the sums of the rows are exact. */
 struct glint_ycc {
     int black;                /* code of Y' = 0 */
-    int32_t to_rgb_q16[3][3]; /* R', G', B' per code of Y - black, Cb - 128, Cr
-                                 - 128 */
-    int32_t to_ycc_q15[3][3]; /* Y, Cb, Cr per code of R', G', B' */
+    int32_t to_rgb_q16[3][3]; /* change of R', G', B' per code of Y - black, Cb
+                                 - 128 and Cr - 128 */
+    int32_t to_ycc_q15[3][3]; /* change of Y, Cb, Cr per code of R', G', B' */
 };
 
 /* Fills YCC for MATRIX and RANGE. For grey pictures only its first columns
@@ -55,8 +57,8 @@ void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
 
 /* Sets RGB to the R'G'B' of 8-bit codes, not clamped: the range is -290 .. 550
  * codes. */
-static inline void ycc_to_rgb(const struct glint_ycc *ycc, int y, int cb,
-                              int cr, int32_t rgb_q7[3])
+static inline void convert_ycc_to_rgb(const struct glint_ycc *ycc, int y,
+                                      int cb, int cr, int32_t rgb_q7[3])
 {
     for (int i = 0; i < 3; i++)
         rgb_q7[i] = ((y - ycc->black) * ycc->to_rgb_q16[i][0] +

@@ -17,8 +17,8 @@ enum glint_layout_kind {
 struct glint_layout {
     enum glint_layout_kind kind;
     int planes;
-    int log2_x, log2_y; /* log2 of the number of pixels, across and down, that
-                           share a sample of chroma */
+    int log2_x, log2_y; /* log2 of the number of pixels, horizontally and
+                           vertically, that share a sample of chroma */
     /* For each of Y, Cb, Cr or R, G, B: the plane, the bytes from the row's
      * start to the first sample, and the bytes from one sample to the next. */
     struct glint_layout_sample {
@@ -36,9 +36,10 @@ static inline int glint_layout_is_packed(const struct glint_layout *layout)
 }
 
 /* Returns the address of the sample of channel I that pixel (X, Y) uses. */
-static inline uint8_t *glint_layout_at(const struct glint_layout *layout,
-                                       const struct glint_image *image, int i,
-                                       int x, int y)
+static inline uint8_t *
+glint_layout_get_sample_address(const struct glint_layout *layout,
+                                const struct glint_image *image, int i, int x,
+                                int y)
 {
     const struct glint_layout_sample *s = &layout->sample[i];
     const int cx = i ? x >> layout->log2_x : x,

@@ -28,9 +28,9 @@ void glint_light_sum_init(struct glint_light_sum *sum,
     glint_ycc_init(&sum->ycc, image->matrix, image->range);
 }
 
-void glint_light_sum_read(struct glint_light_sum *sum,
-                          struct glint_codes *codes, int x, int y, int n_x,
-                          int n_y)
+void glint_light_sum_read_pixels(struct glint_light_sum *sum,
+                                 struct glint_codes *codes, int x, int y,
+                                 int n_x, int n_y)
 {
     sum->x = x;
     sum->y = y;
@@ -117,9 +117,12 @@ static void add_rgb_light(const struct glint_light_sum *s, int y, int from,
                           int to, int64_t rgb_q20[3])
 {
     const int32_t *decode_q20 = s->curve->curve.decode_q20;
-    const uint8_t *r = glint_layout_at(s->layout, s->image, 0, from, y);
-    const uint8_t *g = glint_layout_at(s->layout, s->image, 1, from, y);
-    const uint8_t *b = glint_layout_at(s->layout, s->image, 2, from, y);
+    const uint8_t *r =
+        glint_layout_get_sample_address(s->layout, s->image, 0, from, y);
+    const uint8_t *g =
+        glint_layout_get_sample_address(s->layout, s->image, 1, from, y);
+    const uint8_t *b =
+        glint_layout_get_sample_address(s->layout, s->image, 2, from, y);
     const ptrdiff_t end = (ptrdiff_t)(to - from) * s->layout->sample[0].step;
     int32_t r_q20 = 0, g_q20 = 0, b_q20 = 0;
 
@@ -139,16 +142,16 @@ static void add_linear_light(const struct glint_light_sum *s, int y, int from,
     for (int c = 0; c < 3; c++)
         for (int x = from; x < to; x++) {
             const int32_t *at_q20 =
-                (const int32_t *)(const void *)glint_layout_at(
+                (const int32_t *)(const void *)glint_layout_get_sample_address(
                     s->layout, s->image, c, x, y);
 
             rgb_q20[c] += *at_q20 > 0 ? *at_q20 : 0;
         }
 }
 
-void glint_light_sum_add(const struct glint_light_sum *sum,
-                         const struct glint_codes *codes, int row, int from,
-                         int to, int64_t rgb_q20[3])
+void glint_light_sum_add_row(const struct glint_light_sum *sum,
+                             const struct glint_codes *codes, int row, int from,
+                             int to, int64_t rgb_q20[3])
 {
     switch (sum->layout->kind) {
     case GLINT_LAYOUT_LINEAR:

@@ -4,8 +4,8 @@
  *
  *     glint_light_curve_init(&curve, image->transfer);
  *     glint_light_sum_init(&sum, image, &curve);
- *     glint_light_sum_read(&sum, &codes, x, y, n_x, n_y); some rows
- *     glint_light_sum_add(&sum, &codes, 0, from, to, rgb_q20); */
+ *     glint_light_sum_read_pixels(&sum, &codes, x, y, n_x, n_y); some rows
+ *     glint_light_sum_add_row(&sum, &codes, 0, from, to, rgb_q20); */
 #ifndef GLINT_IMAGE_LIGHT_SUM_H
 #define GLINT_IMAGE_LIGHT_SUM_H
 
@@ -13,7 +13,7 @@
 #include "image/curve.h"
 
 /* Range of R'G'B' codes that Y, Cb and Cr convert to before clamping, -296
- * .. 559; see ycc_to_rgb(). */
+ * .. 559; see convert_ycc_to_rgb(). */
 enum { GLINT_LIGHT_BELOW = 296, GLINT_LIGHT_CODES = GLINT_LIGHT_BELOW + 560 };
 
 /* A table from codes to linear light, also for codes outside 0 .. 255: entry I
@@ -31,7 +31,8 @@ struct glint_light_sum {
     const struct glint_layout *layout;
     const struct glint_light_curve *curve; /* curve of the image's transfer */
     struct glint_ycc ycc;
-    int x, y; /* position in the image of the first pixel that was read last */
+    int x, y; /* position in the image of the first of the pixels that were read
+                 last */
 };
 
 void glint_light_curve_init(struct glint_light_curve *curve,
@@ -43,17 +44,17 @@ void glint_light_sum_init(struct glint_light_sum *sum,
 
 /* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1, under the limits
  * of glint_codes_read_pixels(). Linear pictures and pictures with separate R,
- * G, B samples are not copied to CODES; glint_light_sum_add() reads these
+ * G, B samples are not copied to CODES; glint_light_sum_add_row() reads these
  * directly. */
-void glint_light_sum_read(struct glint_light_sum *sum,
-                          struct glint_codes *codes, int x, int y, int n_x,
-                          int n_y);
+void glint_light_sum_read_pixels(struct glint_light_sum *sum,
+                                 struct glint_codes *codes, int x, int y,
+                                 int n_x, int n_y);
 
 /* Adds the light of pixels FROM .. TO - 1, in row ROW (0 or 1) of the rows that
  * were read last, to RGB_Q20. FROM and TO count from the left end of these
  * rows. Negative light counts as 0. */
-void glint_light_sum_add(const struct glint_light_sum *sum,
-                         const struct glint_codes *codes, int row, int from,
-                         int to, int64_t rgb_q20[3]);
+void glint_light_sum_add_row(const struct glint_light_sum *sum,
+                             const struct glint_codes *codes, int row, int from,
+                             int to, int64_t rgb_q20[3]);
 
 #endif

@@ -49,21 +49,21 @@ static const struct glint_tone16 bt709 = {
     POWERS};
 /* clang-format on */
 
-const struct glint_tone16 *glint_get_tone16(enum glint_tone transfer)
+const struct glint_tone16 *glint_get_tone_constants(enum glint_tone transfer)
 {
     return transfer == GLINT_TONE_SRGB ? &srgb : &bt709;
 }
 
-static void repeat_in_lanes(int16_t *lanes, int64_t x)
+static void repeat_value_in_all_lanes(int16_t *lanes, int64_t x)
 {
     for (int i = 0; i < GLINT_LANES; i++)
         lanes[i] = (int16_t)x;
 }
 
-static void set_lane_factor(struct glint_factors *f, int i, int64_t x)
+static void set_factor_in_all_lanes(struct glint_factors *f, int i, int64_t x)
 {
     f->one[i] = (int16_t)q_clamp_sat(x, -INT16_MAX, INT16_MAX);
-    repeat_in_lanes(f->all[i], f->one[i]);
+    repeat_value_in_all_lanes(f->all[i], f->one[i]);
 }
 
 /* Returns N / D, rounded; D > 0. */
@@ -89,12 +89,13 @@ static void set_ycc_to_rgb_factors(struct glint_mix *mix,
     for (int i = 0; i <= GLINT_MIX_BLUE_CB; i++) {
         const int64_t m_q16 = ycc->to_rgb_q16[at[i][0]][at[i][1]];
 
-        set_lane_factor(f, i,
-                        divide_and_round(m_q16 * 257,
-                                         i == GLINT_MIX_BLUE_CB ? 2048 : 1024));
+        set_factor_in_all_lanes(
+            f, i,
+            divide_and_round(m_q16 * 257,
+                             i == GLINT_MIX_BLUE_CB ? 2048 : 1024));
     }
-    repeat_in_lanes(mix->black,
-                    -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
+    repeat_value_in_all_lanes(
+        mix->black, -q_mul(ycc->black * 128, f->one[GLINT_MIX_BASE], 15));
 }
 
 /* Sets the factors from changes of R'G'B' to changes of Y'CbCr in _q7, which
@@ -106,10 +107,11 @@ static void set_rgb_to_ycc_factors(struct glint_mix *mix,
     const int32_t y_q15 = m_q15[0][0] + m_q15[0][1] + m_q15[0][2];
     struct glint_factors *f = &mix->to_ycc;
 
-    repeat_in_lanes(mix->white, 128 * (ycc->black + q_mul(255, y_q15, 15)));
+    repeat_value_in_all_lanes(mix->white,
+                              128 * (ycc->black + q_mul(255, y_q15, 15)));
     for (int c = 0; c < 3; c++)
-        set_lane_factor(f, GLINT_MIX_LUMA + c,
-                        divide_and_round(m_q15[0][c] * 256, 257));
+        set_factor_in_all_lanes(f, GLINT_MIX_LUMA + c,
+                                divide_and_round(m_q15[0][c] * 256, 257));
     /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a fraction of B'
      * and R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone.
      */
@@ -119,10 +121,10 @@ static void set_rgb_to_ycc_factors(struct glint_mix *mix,
         const int64_t per_q15 =
             divide_and_round(own_q15 * y_q15, y_q15 - m_q15[0][own]);
 
-        set_lane_factor(f, k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE,
-                        divide_and_round(per_q15 * 256, 257));
-        set_lane_factor(f, k ? GLINT_MIX_CR_LUMA : GLINT_MIX_CB_LUMA,
-                        divide_and_round(per_q15 << 15, y_q15));
+        set_factor_in_all_lanes(f, k ? GLINT_MIX_CR_RED : GLINT_MIX_CB_BLUE,
+                                divide_and_round(per_q15 * 256, 257));
+        set_factor_in_all_lanes(f, k ? GLINT_MIX_CR_LUMA : GLINT_MIX_CB_LUMA,
+                                divide_and_round(per_q15 << 15, y_q15));
     }
 }
 
@@ -132,7 +134,7 @@ void glint_mix_set_factors(struct glint_mix *mix,
     struct glint_ycc ycc;
 
     glint_ycc_init(&ycc, image->matrix, image->range);
-    mix->tone = *glint_get_tone16(image->transfer);
+    mix->tone = *glint_get_tone_constants(image->transfer);
     set_ycc_to_rgb_factors(mix, &ycc);
     set_rgb_to_ycc_factors(mix, &ycc);
 }

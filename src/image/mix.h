@@ -9,7 +9,7 @@
 #include "glint/image.h"
 #include "kernels/tone.h"
 
-const struct glint_tone16 *glint_get_tone16(enum glint_tone transfer);
+const struct glint_tone16 *glint_get_tone_constants(enum glint_tone transfer);
 
 /* Fills MIX for pictures with the format, range, matrix and transfer of
  * IMAGE. */

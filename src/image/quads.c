@@ -21,8 +21,8 @@ static int round_up_to_kernel_step(int n)
 
 /* ---------------------------------------------------------- pixel by pixel */
 
-static void double_light_row(const uint16_t *restrict from, int n,
-                             uint16_t *restrict to)
+static void expand_quad_light_to_pixels(const uint16_t *restrict from, int n,
+                                        uint16_t *restrict to)
 {
     for (int i = 0; i < n; i++)
         to[2 * i] = to[2 * i + 1] = from[i];
@@ -34,18 +34,18 @@ static void add_light_per_pixel(const struct glint_resolve *r,
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < s->n_y; row++)
-            double_light_row(s->light_q16[c],
-                             round_up_to_kernel_step(s->n_x) / 2,
-                             rows->light.rgb_q16[c][row]);
+            expand_quad_light_to_pixels(s->light_q16[c],
+                                        round_up_to_kernel_step(s->n_x) / 2,
+                                        rows->light.rgb_q16[c][row]);
     glint_resolve_add_to_run(r, s->image, s->x, s->y, s->n_x, s->n_y,
                              &rows->light, &rows->rows);
 }
 
 /* ------------------------------------------------------------ shared chroma */
 
-static void add_light_to_pairs(const struct glint_resolve *r,
-                               const struct stretch *s,
-                               struct glint_codes *codes)
+static void add_light_to_chroma_pairs(const struct glint_resolve *r,
+                                      const struct stretch *s,
+                                      struct glint_codes *codes)
 {
     const int last = s->n_y - 1, c_last = s->layout->log2_y ? 0 : last;
     const int cy = s->y >> s->layout->log2_y;
@@ -65,9 +65,9 @@ static void add_light_to_pairs(const struct glint_resolve *r,
 
 /* Adds light in place to packed pictures like YUYV. The pixels of an incomplete
  * last step are copied, changed and copied back. */
-static void add_light_to_packed(const struct glint_resolve *r,
-                                const struct stretch *s,
-                                struct glint_codes *codes)
+static void add_light_to_packed_pixels(const struct glint_resolve *r,
+                                       const struct stretch *s,
+                                       struct glint_codes *codes)
 {
     const struct glint_quad_kernels *kernels =
         glint_choose_quad_kernels(r->sets);
@@ -97,20 +97,21 @@ static void add_light_to_packed(const struct glint_resolve *r,
             px[row][2 * whole + i] = rest[row][i];
 }
 
-void glint_resolve_quads(const struct glint_resolve *resolve,
-                         const struct glint_image *image, int x, int y, int n_x,
-                         int n_y, const uint16_t *const light_q16[3],
-                         struct glint_quads_rows *rows)
+void glint_resolve_add_to_quads(const struct glint_resolve *resolve,
+                                const struct glint_image *image, int x, int y,
+                                int n_x, int n_y,
+                                const uint16_t *const light_q16[3],
+                                struct glint_quads_rows *rows)
 {
     const struct stretch s = {
         image, glint_get_layout(image->format), x, y, n_x, n_y, light_q16};
 
     if (glint_layout_is_packed(s.layout) && n_x % 2 == 0)
-        add_light_to_packed(resolve, &s, &rows->rows.codes);
+        add_light_to_packed_pixels(resolve, &s, &rows->rows.codes);
     else if (s.layout->log2_x)
-        add_light_to_pairs(resolve, &s, &rows->rows.codes);
+        add_light_to_chroma_pairs(resolve, &s, &rows->rows.codes);
     else
         add_light_per_pixel(resolve, &s, rows);
 }
 
-const struct glint_half glint_half = {glint_resolve_quads};
+const struct glint_half glint_half = {glint_resolve_add_to_quads};

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds light that has one value per 2 x 2 pixels; resolve.h adds light per
- * pixel.
+ * Adds light that has one value per 2 x 2 pixels; resolve.h adds light that has
+ * one value per pixel.
  *
  *    in linear light, _q16, one value per 2 x 2 pixels
  *    out the picture's own codes, changed in place
  *
- * In Y'CbCr whose pixel pairs share chroma, the change by the light is computed
+ * If pixel pairs share chroma in Y'CbCr, the change by the light is computed
  * once, for the mean of the four pixels, which is a quarter of the work. Each
  * pixel then changes in proportion to its distance from white. If the four
  * pixels are equal, the result equals that of resolve.h. In other formats light
@@ -24,18 +24,18 @@ struct glint_quads_rows {
     struct glint_resolve_rows rows;
 };
 
-/* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) on. X is a multiple of 8,
- * Y is even. N_X is at most GLINT_CODES_WIDTH, and odd only at the right side
- * of the picture; N_Y is 2, or 1 at its lower side. A quad is 2 x 2 pixels:
- * LIGHT[c] holds channel c of the (N_X + 1) / 2 quads of the row. It begins at
- * a 32-byte boundary and has room for that number rounded up to a multiple of
- * GLINT_LANES. */
+/* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) to the right and down. X
+ * must be a multiple of 8 and Y even. N_X is at most GLINT_CODES_WIDTH, and may
+ * be odd only at the right side of the picture; N_Y is 2, or 1 in the picture's
+ * last row. A quad is 2 x 2 pixels: LIGHT[c] holds channel c of the row's (N_X
+ * + 1) / 2 quads, begins at a 32-byte boundary and has memory for that number
+ * of quads rounded up to a multiple of GLINT_LANES. */
 typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     const struct glint_image *image, int x,
                                     int y, int n_x, int n_y,
                                     const uint16_t *const light_q16[3],
                                     struct glint_quads_rows *rows);
-glint_resolve_quads_fn glint_resolve_quads;
+glint_resolve_quads_fn glint_resolve_add_to_quads;
 
 /* The functions for light at half resolution, called through pointers so that
  * only programs that use them link them. */

@@ -4,9 +4,10 @@
 #include "base/q.h"
 #include "image/mix.h"
 
-/* Returns the rank of (X, Y) among the 64 thresholds of the recursive ordered
- * dither: the bits of x ^ y and y, interleaved, lowest first. */
-static int compute_bayer_rank(int x, int y)
+/* Returns the rank of pixel (X, Y), 0 .. 63, among the thresholds of an 8 x 8
+ * recursive ordered dither: the bits of x ^ y and y, interleaved, in reverse
+ * order. */
+static int compute_dither_rank(int x, int y)
 {
     int rank = 0;
 
@@ -20,12 +21,12 @@ void glint_resolve_init(struct glint_resolve *resolve,
                         unsigned sets)
 {
     glint_mix_set_factors(&resolve->mix, image);
-    resolve->kernels = glint_choose_kernels(sets);
+    resolve->kernels = glint_choose_pixel_kernels(sets);
     resolve->sets = sets;
     for (int y = 0; y < 8; y++)
         for (int x = 0; x < 8; x++)
             resolve->round_q7[y][x] =
-                (int16_t)(dither ? 2 * compute_bayer_rank(x, y) + 1 : 64);
+                (int16_t)(dither ? 2 * compute_dither_rank(x, y) + 1 : 64);
 }
 
 static int round_up_to_lanes(int n)
@@ -57,8 +58,8 @@ static void compute_luminance(const struct glint_light_rows *light, int row,
 }
 
 /* Adds light to one row of chroma that has one sample per pixel. OWN is the
- * change of B' (for Cb) or R' (for Cr), LUMA the change of Y'; FACTOR[2] are
- * the factors of both. */
+ * change of B' (for Cb) or R' (for Cr), LUMA the change of Y'. FACTOR[2] are
+ * the factors by which OWN and LUMA change chroma. */
 static void add_change_to_chroma(uint8_t *code, const int16_t *own,
                                  const int16_t *luma, const int16_t *factor_q15,
                                  int n, const int16_t *round)
@@ -72,12 +73,13 @@ static void add_change_to_chroma(uint8_t *code, const int16_t *own,
     }
 }
 
-/* Adds light to a row in which each pixel has its own chroma, or of a grey
- * picture. */
-static void add_light_to_unpaired(const struct glint_resolve *r,
-                                  const struct glint_image *image, int y, int n,
-                                  int row, const struct glint_light_rows *light,
-                                  struct glint_resolve_rows *rows)
+/* Adds light to a row in which each pixel has its own chroma, or to a row of a
+ * grey picture. */
+static void add_light_to_unpaired_pixels(const struct glint_resolve *r,
+                                         const struct glint_image *image, int y,
+                                         int n, int row,
+                                         const struct glint_light_rows *light,
+                                         struct glint_resolve_rows *rows)
 {
     const int grey = image->format == GLINT_GREY;
     const uint16_t *rgb[3] = {light->rgb_q16[0][row], light->rgb_q16[1][row],
@@ -103,23 +105,25 @@ static void add_light_to_unpaired(const struct glint_resolve *r,
 
 /* Completes the last pair of a run of odd width: copies the light of the last
  * pixel to the missing pixel. */
-static void mirror_last_pixel(struct glint_light_rows *light, int n_x, int n_y)
+static void repeat_last_pixel_in_pair(struct glint_light_rows *light, int n_x,
+                                      int n_y)
 {
     for (int c = 0; c < 3; c++)
         for (int row = 0; row < n_y; row++)
             light->rgb_q16[c][row][n_x] = light->rgb_q16[c][row][n_x - 1];
 }
 
-static void add_light_to_pairs(const struct glint_resolve *r,
-                               const struct glint_layout *l, int y, int n_x,
-                               int n_y, struct glint_light_rows *light,
-                               struct glint_resolve_rows *rows)
+static void add_light_to_chroma_pairs(const struct glint_resolve *r,
+                                      const struct glint_layout *l, int y,
+                                      int n_x, int n_y,
+                                      struct glint_light_rows *light,
+                                      struct glint_resolve_rows *rows)
 {
     int16_t *const mean[3] = {rows->change[0], rows->change[1],
                               rows->change[2]};
 
     if (n_x & 1)
-        mirror_last_pixel(light, n_x, n_y);
+        repeat_last_pixel_in_pair(light, n_x, n_y);
     for (int row = 0; row < n_y; row++) {
         const uint16_t *const rgb[3] = {light->rgb_q16[0][row],
                                         light->rgb_q16[1][row],
@@ -139,11 +143,12 @@ static void add_light_to_pairs(const struct glint_resolve *r,
 
 /* Adds light in place to packed pictures like YUYV. Pixels after the last
  * whole vector are copied, changed and copied back. */
-static void add_light_to_packed(const struct glint_resolve *r,
-                                const struct glint_layout *l,
-                                const struct glint_image *image, int x, int y,
-                                int n, int row, struct glint_light_rows *light,
-                                struct glint_resolve_rows *rows)
+static void add_light_to_packed_pixels(const struct glint_resolve *r,
+                                       const struct glint_layout *l,
+                                       const struct glint_image *image, int x,
+                                       int y, int n, int row,
+                                       struct glint_light_rows *light,
+                                       struct glint_resolve_rows *rows)
 {
     uint8_t *px =
         image->plane[0] + y * image->stride_bytes[0] + 2 * (ptrdiff_t)x;
@@ -179,11 +184,11 @@ void glint_resolve_add_to_codes(const struct glint_resolve *resolve,
     if (l->kind == GLINT_LAYOUT_RGB || l->kind == GLINT_LAYOUT_565)
         add_light_to_rgb(resolve, y, n_x, n_y, light, &rows->codes);
     else if (l->log2_x)
-        add_light_to_pairs(resolve, l, y, n_x, n_y, light, rows);
+        add_light_to_chroma_pairs(resolve, l, y, n_x, n_y, light, rows);
     else
         for (int row = 0; row < n_y; row++)
-            add_light_to_unpaired(resolve, image, y + row, n_x, row, light,
-                                  rows);
+            add_light_to_unpaired_pixels(resolve, image, y + row, n_x, row,
+                                         light, rows);
 }
 
 void glint_resolve_add_to_run(const struct glint_resolve *resolve,
@@ -195,8 +200,8 @@ void glint_resolve_add_to_run(const struct glint_resolve *resolve,
 
     if (glint_layout_is_packed(l) && n_x % 2 == 0) {
         for (int row = 0; row < n_y; row++)
-            add_light_to_packed(resolve, l, image, x, y + row, n_x, row, light,
-                                rows);
+            add_light_to_packed_pixels(resolve, l, image, x, y + row, n_x, row,
+                                       light, rows);
         return;
     }
     glint_codes_read_pixels(&rows->codes, image, x, y, n_x, n_y);

@@ -33,8 +33,8 @@ struct glint_resolve {
     struct glint_mix mix;
     const struct glint_kernels *kernels;
     unsigned sets;
-    /* The fraction of a code that is added before rounding down: 1/2
-     * everywhere, or an 8 x 8 dither pattern with that mean, whose values are
+    /* The fraction of a code that is added before rounding down: 1/2 for all
+     * pixels, or an 8 x 8 dither pattern whose mean is 1/2 and whose values are
      * below 1, so that integer codes do not change. */
     int16_t round_q7[8][8];
 };
@@ -61,10 +61,11 @@ void glint_resolve_init(struct glint_resolve *resolve,
                         const struct glint_image *image, int dither,
                         unsigned sets);
 
-/* Adds LIGHT to pixels X .. X + N_X - 1 of the N_Y (1 or 2) rows from Y on of
- * IMAGE, which is not LINEAR_Q20. X must be a multiple of 8 and Y even; N_X
- * must be even except at the picture's right side, N_Y 2 except at its lower
- * side. So calls share no sample and may run in any order, or concurrently. */
+/* Adds LIGHT to pixels X .. X + N_X - 1 of N_Y rows (1 or 2) of IMAGE, from row
+ * Y down. IMAGE must not be LINEAR_Q20. X must be a multiple of 8 and Y even;
+ * N_X must be even except at the picture's right side, and N_Y must be 2 except
+ * in its last row. So calls share no sample, and may run in any order or
+ * concurrently. */
 void glint_resolve_add_to_run(const struct glint_resolve *resolve,
                               const struct glint_image *image, int x, int y,
                               int n_x, int n_y, struct glint_light_rows *light,

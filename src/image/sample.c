@@ -13,7 +13,7 @@ static void convert_ycc_sample(const struct glint_ycc *ycc, int y, int cb,
 {
     int32_t rgb_q7[3];
 
-    ycc_to_rgb(ycc, y, cb, cr, rgb_q7);
+    convert_ycc_to_rgb(ycc, y, cb, cr, rgb_q7);
     for (int c = 0; c < 3; c++)
         rgb[c] = clamp_to_code(rgb_q7[c]);
 }
@@ -38,8 +38,8 @@ static void read_pixel_rgb(const struct glint_layout *layout,
     const uint8_t *p[3];
 
     for (int i = 0; i < 3; i++)
-        p[i] = glint_layout_at(layout, image,
-                               layout->kind == GLINT_LAYOUT_GREY ? 0 : i, x, y);
+        p[i] = glint_layout_get_sample_address(
+            layout, image, layout->kind == GLINT_LAYOUT_GREY ? 0 : i, x, y);
     switch (layout->kind) {
     case GLINT_LAYOUT_GREY:
         convert_ycc_sample(ycc, *p[0], 128, 128, rgb);

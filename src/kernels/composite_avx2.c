@@ -49,8 +49,8 @@ static inline void v_load_pairs(const uint16_t *p, V x[1])
         0xd8);
 }
 
-/* Returns, for each half, the bytes of CODES that the shuffle control PLACES
- * selects, converted to _q7. */
+/* Converts codes to _q7. PLACES is a shuffle control that selects, for each
+ * half of the result, the bytes of CODES to convert. */
 static inline V shuffle_codes_to_q7(__m128i codes, V places)
 {
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);

@@ -5,14 +5,14 @@
 
 #include "base/compiler.h"
 
-static int16_t clamp_int16(int x, int low, int high)
+static int16_t clamp_to_int16(int x, int low, int high)
 {
     return (int16_t)(x < low ? low : x > high ? high : x);
 }
 
 static int16_t add_saturating(int a, int b)
 {
-    return clamp_int16(a + b, INT16_MIN, INT16_MAX);
+    return clamp_to_int16(a + b, INT16_MIN, INT16_MAX);
 }
 
 /* Returns a * b / 2^15, rounded. A and B must not both be INT16_MIN. */
@@ -21,7 +21,7 @@ static int16_t multiply_q15(int a, int b)
     return (int16_t)((a * b + (1 << 14)) >> 15);
 }
 
-static uint16_t decode_code(const struct glint_tone16 *t, int16_t code)
+static uint16_t decode_code_to_light(const struct glint_tone16 *t, int16_t code)
 {
     const int16_t *f = t->factor.one;
     const int w = code > t->toe_end[0] ? code - t->toe_end[0] : 0;
@@ -32,7 +32,8 @@ static uint16_t decode_code(const struct glint_tone16 *t, int16_t code)
                       multiply_q15(multiply_q15(w, w), rise));
 }
 
-static int16_t encode_light(const struct glint_tone16 *t, uint16_t light)
+static int16_t encode_light_to_code(const struct glint_tone16 *t,
+                                    uint16_t light)
 {
     const int zeros = 16 - bit_length(light);
     const int16_t z = (int16_t)(uint16_t)((uint32_t)light << zeros);
@@ -47,17 +48,17 @@ static int16_t encode_light(const struct glint_tone16 *t, uint16_t light)
 }
 
 /* Returns the increase of CODE when LIGHT is added to its linear light. */
-static int16_t compute_change(const struct glint_tone16 *t, int16_t code,
-                              uint16_t light_q16)
+static int16_t compute_code_change(const struct glint_tone16 *t, int16_t code,
+                                   uint16_t light_q16)
 {
-    const int16_t lit =
-        encode_light(t, (uint16_t)(decode_code(t, code) + (light_q16 >> 1)));
+    const int16_t lit = encode_light_to_code(
+        t, (uint16_t)(decode_code_to_light(t, code) + (light_q16 >> 1)));
 
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Indices of the three changes, among those of R', G', B' and Y', that chroma
- * depends on. */
+/* Indices of the three changes on which chroma depends, in the array of the
+ * changes of R', G', B' and Y'. */
 static const int chroma_changes[3] = {0, 2, 3};
 
 /* Sets RGB to the full-range R', G', B' of a pixel with Y', Cb and Cr, _q7. */
@@ -75,8 +76,8 @@ static WHOLLY_INLINE void convert_to_rgb(int luma_q7, int cb_q7, int cr_q7,
                          2 * multiply_q15(b_q7, from[GLINT_MIX_BLUE_CB])};
 
     for (int c = 0; c < 3; c++)
-        rgb[c] =
-            clamp_int16(2 * add_saturating(base, tint[c]), 0, GLINT_WHITE_Q15);
+        rgb[c] = clamp_to_int16(2 * add_saturating(base, tint[c]), 0,
+                                GLINT_WHITE_Q15);
 }
 
 /* Sets CHANGE to the changes of R', G', B' (_q15) and Y' (_q7) when LIGHT is
@@ -93,7 +94,7 @@ static void compute_pixel_change(int luma_q7, int cb_q7, int cr_q7,
         return;
     convert_to_rgb(luma_q7, cb_q7, cr_q7, rgb, mix);
     for (int c = 0; c < 3; c++) {
-        change[c] = compute_change(&mix->tone, rgb[c], light[c]);
+        change[c] = compute_code_change(&mix->tone, rgb[c], light[c]);
         change[3] = (int16_t)(change[3] +
                               multiply_q15(change[c], to[GLINT_MIX_LUMA + c]));
     }
@@ -104,7 +105,8 @@ static uint8_t add_light_to_luma(int code, int16_t change_q7, int16_t round_q7)
     return (uint8_t)(add_saturating(code * 128 + round_q7, change_q7) >> 7);
 }
 
-/* Adds light to one pixel. Returns its new luma and sets CHANGE. */
+/* Adds light to one pixel. Returns the pixel's new luma, and sets CHANGE to the
+ * changes of R', G', B' and Y'. */
 static uint8_t add_light_to_pixel(int luma, int cb, int cr,
                                   const uint16_t light[3], int16_t change[4],
                                   const struct glint_mix *mix, int16_t round_q7)
@@ -134,9 +136,9 @@ static int16_t average_rounded_up(int a, int b)
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* Returns the new CODE of chroma, Cb or Cr, after the mean of its pixels
- * changed: B' (for Cb) or R' (for Cr) by OWN, and Y' by LUMA. K is the index in
- * to_ycc of the factor of OWN; the factor of LUMA follows. */
+/* Returns the new code of chroma (CODE: the old one), after the mean of its
+ * pixels changed by OWN in B' (for Cb) or R' (for Cr), and by LUMA in Y'. K is
+ * the index in to_ycc of the factor of OWN; the factor of LUMA follows it. */
 static uint8_t add_change_to_chroma(int code, int own, int luma, int k,
                                     const struct glint_mix *mix,
                                     int16_t round_q7)
@@ -145,9 +147,9 @@ static uint8_t add_change_to_chroma(int code, int own, int luma, int k,
     const int change_q7 =
         multiply_q15(own, to[k]) - multiply_q15(luma, to[k + 1]);
 
-    return (
-        uint8_t)(clamp_int16(code * 128 + round_q7 + change_q7, 0, INT16_MAX) >>
-                 7);
+    return (uint8_t)(clamp_to_int16(code * 128 + round_q7 + change_q7, 0,
+                                    INT16_MAX) >>
+                     7);
 }
 
 void glint_add_pairs_c(uint8_t *luma, uint8_t *chroma,
@@ -209,8 +211,8 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
     }
 }
 
-/* Returns PART / WHOLE, both 0 or more, as _q15. PART is clamped to WHOLE.
- * Newton's method; the error is below 2^-12. */
+/* Returns PART / WHOLE as _q15, by Newton's method; the error is below 2^-12.
+ * Both must be 0 or more. PART is clamped to WHOLE. */
 static int16_t divide_clamped_q15(int part, int whole)
 {
     const int zeros = 16 - bit_length((uint32_t)whole);
@@ -264,11 +266,11 @@ static void add_light_to_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
                 change_c[k], multiply_q15(c_q7[k] - c[row][k] * 128, q));
 
             luma[row][k] = add_light_to_luma(
-                y[row][k], clamp_int16(more, 0, INT16_MAX), round[row][k]);
+                y[row][k], clamp_to_int16(more, 0, INT16_MAX), round[row][k]);
             chroma[row][k] =
-                (uint8_t)(clamp_int16(c[row][k] * 128 + round_chroma[row][k] +
-                                          more_c,
-                                      0, INT16_MAX) >>
+                (uint8_t)(clamp_to_int16(c[row][k] * 128 +
+                                             round_chroma[row][k] + more_c,
+                                         0, INT16_MAX) >>
                           7);
         }
 }
@@ -322,8 +324,8 @@ void glint_add_code_c(uint8_t *code, const uint16_t *light, int n,
 {
     for (int i = 0; i < n; i++) {
         const int16_t change =
-            light[i] ? compute_change(tone, (int16_t)((code[i] * 257) >> 1),
-                                      light[i])
+            light[i] ? compute_code_change(
+                           tone, (int16_t)((code[i] * 257) >> 1), light[i])
                      : 0;
         const int16_t change_q7 =
             multiply_q15(change, tone->factor.one[GLINT_TONE_Q7]);
@@ -352,13 +354,15 @@ void glint_run_sum_c(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
     *carry = sum;
 }
 
-/* Returns the full-range CODE after the fraction COVER_Q8 of its light is
- * hidden. */
-static int16_t hide_code_light(const struct glint_tone16 *t, int16_t code,
-                               int cover_q8)
+/* Returns the full-range CODE after the fraction COVER_Q8 of the pixel's light
+ * is hidden. */
+static int16_t hide_light_fraction_of_code(const struct glint_tone16 *t,
+                                           int16_t code, int cover_q8)
 {
-    const uint32_t light = decode_code(t, code) * (uint32_t)(256 - cover_q8);
-    const int16_t left = encode_light(t, (uint16_t)((light + 128) >> 8));
+    const uint32_t light =
+        decode_code_to_light(t, code) * (uint32_t)(256 - cover_q8);
+    const int16_t left =
+        encode_light_to_code(t, (uint16_t)((light + 128) >> 8));
 
     return left < code ? left : code;
 }
@@ -368,9 +372,9 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
 {
     for (int i = 0; i < n; i++) {
         const int16_t full = (int16_t)((code[i] * 257) >> 1);
-        const int change_q7 =
-            multiply_q15(hide_code_light(tone, full, cover_q8[i]) - full,
-                         tone->factor.one[GLINT_TONE_Q7]);
+        const int change_q7 = multiply_q15(
+            hide_light_fraction_of_code(tone, full, cover_q8[i]) - full,
+            tone->factor.one[GLINT_TONE_Q7]);
 
         if (cover_q8[i])
             code[i] = cover_q8[i] < 256
@@ -381,8 +385,8 @@ void glint_cover_code_c(uint8_t *code, const uint16_t *cover_q8, int n,
 
 /* Hides the fraction COVER_Q8 of the light of one pixel, given as Y', Cb, Cr
  * in _q7. */
-static void hide_pixel_light(int16_t ycc_q7[3], int cover_q8,
-                             const struct glint_mix *mix)
+static void hide_light_fraction_of_pixel(int16_t ycc_q7[3], int cover_q8,
+                                         const struct glint_mix *mix)
 {
     const int16_t *to = mix->to_ycc.one;
     int16_t rgb[3];
@@ -390,18 +394,19 @@ static void hide_pixel_light(int16_t ycc_q7[3], int cover_q8,
 
     convert_to_rgb(ycc_q7[0], ycc_q7[1], ycc_q7[2], rgb, mix);
     for (int c = 0; c < 3; c++) {
-        change[c] = hide_code_light(&mix->tone, rgb[c], cover_q8) - rgb[c];
+        change[c] =
+            hide_light_fraction_of_code(&mix->tone, rgb[c], cover_q8) - rgb[c];
         change[3] += multiply_q15(change[c], to[GLINT_MIX_LUMA + c]);
     }
-    ycc_q7[0] = clamp_int16(ycc_q7[0] + change[3], 0, INT16_MAX);
-    ycc_q7[1] =
-        clamp_int16(ycc_q7[1] + multiply_q15(change[2], to[GLINT_MIX_CB_BLUE]) -
-                        multiply_q15(change[3], to[GLINT_MIX_CB_LUMA]),
-                    0, INT16_MAX);
-    ycc_q7[2] =
-        clamp_int16(ycc_q7[2] + multiply_q15(change[0], to[GLINT_MIX_CR_RED]) -
-                        multiply_q15(change[3], to[GLINT_MIX_CR_LUMA]),
-                    0, INT16_MAX);
+    ycc_q7[0] = clamp_to_int16(ycc_q7[0] + change[3], 0, INT16_MAX);
+    ycc_q7[1] = clamp_to_int16(
+        ycc_q7[1] + multiply_q15(change[2], to[GLINT_MIX_CB_BLUE]) -
+            multiply_q15(change[3], to[GLINT_MIX_CB_LUMA]),
+        0, INT16_MAX);
+    ycc_q7[2] = clamp_to_int16(
+        ycc_q7[2] + multiply_q15(change[0], to[GLINT_MIX_CR_RED]) -
+            multiply_q15(change[3], to[GLINT_MIX_CR_LUMA]),
+        0, INT16_MAX);
 }
 
 void glint_cover_ycc_c(int16_t *const ycc_q7[3], const uint16_t *cover_q8,
@@ -413,7 +418,7 @@ void glint_cover_ycc_c(int16_t *const ycc_q7[3], const uint16_t *cover_q8,
         if (cover_q8[i] == 0)
             continue;
         if (cover_q8[i] < 256)
-            hide_pixel_light(here_q7, cover_q8[i], mix);
+            hide_light_fraction_of_pixel(here_q7, cover_q8[i], mix);
         else {
             here_q7[0] = (int16_t)(black * 128);
             here_q7[1] = here_q7[2] = 1 << 14;

@@ -28,8 +28,8 @@
 #define v_and_not(mask, x)       vbicq_s16(x, mask)
 #define v_equal(a, b)            S(vceqq_s16(a, b))
 
-/* Make the compiler compute X, or load from P, after the computation of Y. The
- * empty assembly pretends to use both. */
+/* Makes the compiler compute X, or load from P, only after it has computed Y.
+ * The empty assembly pretends to use both. */
 #define AFTER(x, y)      __asm__("" : "+w"(x) : "w"(y))
 #define LOAD_AFTER(p, y) __asm__("" : "+r"(p) : "w"(y))
 
@@ -76,8 +76,8 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
-/* 64-bit ARM loads the tables once, as it has enough registers; 32-bit ARM
- * loads them at each use. */
+/* On 64-bit ARM the tables are loaded once, as there are enough registers; on
+ * 32-bit ARM they are loaded at each use. */
 #if defined(__aarch64__)
 #define TABLES(t, tone)                                       \
     const uint8x16x2_t t##_level = load_table((tone)->level), \
@@ -150,8 +150,8 @@ static inline V v_look_up_entries(const uint8x16x2_t *table, PLACES at)
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
 #else
-    /* Inline assembly, as GCC would copy the four table registers through the
-     * stack. */
+    /* Inline assembly, as GCC would copy the four registers of the table
+     * through the stack. */
     uint8x8x4_t quarters;
     uint8x16_t entry;
 

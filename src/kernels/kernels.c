@@ -10,7 +10,7 @@
 
 PIXEL_SETS(KERNELS)
 
-const struct glint_kernels *glint_choose_kernels(unsigned sets)
+const struct glint_kernels *glint_choose_pixel_kernels(unsigned sets)
 {
     return BEST_OF_PIXELS(sets, &of_);
 }

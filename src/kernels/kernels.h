@@ -32,9 +32,8 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* How a row uses chroma in 4:2:2 or 4:2:0, where pixels share chroma by pairs.
- * The mean changes of R', B' and Y' of the pixels that share it change
- * chroma. */
+/* How a row of 4:2:2 or 4:2:0 changes chroma, which pixels share by pairs: by
+ * the mean changes of R', B' and Y' over all pixels that share it. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* 4:2:2: the row's pairs have their own chroma */
     GLINT_PAIRS_FIRST, /* 4:2:0, first row: stores the mean changes of pairs */
@@ -139,7 +138,7 @@ struct glint_quad_kernels {
 
 /* Return the best kernels that the GLINT_SET_ bits SETS allow: kernels in C if
  * no bit is set, or NEON kernels where all CPUs have NEON (choose.h). */
-const struct glint_kernels *glint_choose_kernels(unsigned sets);
+const struct glint_kernels *glint_choose_pixel_kernels(unsigned sets);
 const struct glint_quad_kernels *glint_choose_quad_kernels(unsigned sets);
 
 glint_add_luma_fn glint_add_luma_c, glint_add_luma_sse41, glint_add_luma_avx2,

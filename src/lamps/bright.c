@@ -93,8 +93,8 @@ void glint_bright_select_row(struct glint_bright *b, int y)
 
     for (int i = 0; i < b->n_codes; i++)
         b->code[i] = (struct glint_bright_code){
-            glint_layout_at(layout, b->image, i, 0, y), layout->sample[i].step,
-            i ? layout->log2_x : 0};
+            glint_layout_get_sample_address(layout, b->image, i, 0, y),
+            layout->sample[i].step, i ? layout->log2_x : 0};
     for (int i = b->n_codes; i < 3; i++)
         b->code[i] = b->code[0];
     if (layout->kind == GLINT_LAYOUT_565)
@@ -120,8 +120,8 @@ int32_t glint_bright_compute_code_step_q20(const struct glint_bright *b, int c,
         return 0;
     for (int bit = 1 << 14; bit > 0; bit >>= 1)
         if (code_q7 + bit <= CODE_WHITE_Q7 - step_q7 &&
-            curve_decode(b->curve, code_q7 + bit) <= light_q20)
+            curve_decode_to_light(b->curve, code_q7 + bit) <= light_q20)
             code_q7 += bit;
-    return curve_decode(b->curve, code_q7 + step_q7) -
-           curve_decode(b->curve, code_q7);
+    return curve_decode_to_light(b->curve, code_q7 + step_q7) -
+           curve_decode_to_light(b->curve, code_q7);
 }

@@ -44,11 +44,11 @@ static WHOLLY_INLINE void bright_decode_ycc_pixel(const struct glint_bright *b,
 {
     int32_t rgb_q7[3];
 
-    ycc_to_rgb(&b->ycc, code_at(b, 0, x), code_at(b, 1, x), code_at(b, 2, x),
-               rgb_q7);
+    convert_ycc_to_rgb(&b->ycc, code_at(b, 0, x), code_at(b, 1, x),
+                       code_at(b, 2, x), rgb_q7);
     for (int i = 0; i < 3; i++)
-        rgb_q20[i] =
-            curve_decode(b->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
+        rgb_q20[i] = curve_decode_to_light(
+            b->curve, q_clamp_sat(rgb_q7[i], 0, CODE_WHITE_Q7));
 }
 
 /* Sets RGB to the linear light of pixel X, 0 .. white. */

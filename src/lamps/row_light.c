@@ -89,9 +89,9 @@ static WHOLLY_INLINE void compute_chroma_terms(const struct glint_ycc *ycc,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Sets RGB to the linear light of luma Y and CHROMA. The result equals that of
- * curve_decode() after ycc_to_rgb(). The factor of luma is the same for R, G
- * and B. */
+/* Sets RGB to the linear light of luma Y and CHROMA. Equals
+ * curve_decode_to_light() of convert_ycc_to_rgb(). The first column of the
+ * matrix has the same value in all rows. */
 static WHOLLY_INLINE void decode_ycc_to_linear(const struct glint_bright *b,
                                                int y,
                                                const int32_t chroma_q16[3],
@@ -104,7 +104,7 @@ static WHOLLY_INLINE void decode_ycc_to_linear(const struct glint_bright *b,
         const int32_t held_q7 =
             code_q7 < CODE_WHITE_Q7 ? code_q7 : CODE_WHITE_Q7;
 
-        rgb_q20[i] = curve_decode(b->curve, held_q7 > 0 ? held_q7 : 0);
+        rgb_q20[i] = curve_decode_to_light(b->curve, held_q7 > 0 ? held_q7 : 0);
     }
 }
 

@@ -46,11 +46,12 @@ static uint16_t compute_cell_mean(int64_t sum_q20, int n, int whole_log2)
     return (uint16_t)(mean_q15 < MOST_Q15 ? mean_q15 : MOST_Q15);
 }
 
-/* Adds the light of rows Y0 .. Y1 - 1, pixels X0 .. X0 + N - 1, to the sums RGB
- * of the cells that the pixels lie in. Not inlined, as its local buffer and its
- * caller's sums are too large for one stack frame. */
-static NEVER_INLINE void add_run_to_cells(const struct look *l, int x0, int n,
-                                          int y0, int y1, int64_t (*rgb_q20)[3])
+/* Adds the light of pixels X0 .. X0 + N - 1 of rows Y0 .. Y1 - 1 to RGB, the
+ * sums of the cells that contain these pixels. Not inlined, as its local buffer
+ * and its caller's sums are too large for one stack frame. */
+static NEVER_INLINE void add_pixel_run_to_cells(const struct look *l, int x0,
+                                                int n, int y0, int y1,
+                                                int64_t (*rgb_q20)[3])
 {
     const int side = 1 << l->around->cell_log2;
     struct glint_light_sum sum = l->sum;
@@ -59,12 +60,12 @@ static NEVER_INLINE void add_run_to_cells(const struct look *l, int x0, int n,
     for (int y = y0; y < y1; y += 2) {
         const int n_y = q_smaller(2, y1 - y);
 
-        glint_light_sum_read(&sum, &codes, x0, y, n, n_y);
+        glint_light_sum_read_pixels(&sum, &codes, x0, y, n, n_y);
         for (int x = 0; x < n; x += side)
             for (int k = 0; k < n_y; k++)
-                glint_light_sum_add(&sum, &codes, k, x0 + x,
-                                    x0 + q_smaller(x + side, n),
-                                    rgb_q20[x >> l->around->cell_log2]);
+                glint_light_sum_add_row(&sum, &codes, k, x0 + x,
+                                        x0 + q_smaller(x + side, n),
+                                        rgb_q20[x >> l->around->cell_log2]);
     }
 }
 
@@ -83,7 +84,7 @@ static void average_cell_row(void *ctx, int job, int worker)
         const int n = q_smaller(GLINT_CODES_WIDTH, a->width - x0);
         int64_t rgb_q20[GLINT_CODES_WIDTH / 2][3] = {{0}};
 
-        add_run_to_cells(l, x0, n, y0, y1, rgb_q20);
+        add_pixel_run_to_cells(l, x0, n, y0, y1, rgb_q20);
         for (int x = 0; x < n; x += side)
             for (int c = 0; c < 3; c++)
                 *to_q15++ = compute_cell_mean(
@@ -115,14 +116,14 @@ void glint_background_store(struct glint_around *around,
  * axis. */
 struct between {
     int cell, next;
-    int32_t part_q15; /* weight of the cell next; 1 minus it is that of the
-                         other */
+    int32_t part_q15; /* weight of cell NEXT, 0 .. 1; the other cell has 1 minus
+                         this weight */
 };
 
 static struct between find_neighbour_cells(int32_t share_q16, int side, int n,
                                            int cell_log2)
 {
-    /* position in cells, measured from the middle of the first cell */
+    /* position on the axis, in cells from the middle of the first cell */
     const int64_t at_q15 =
         q_shift((int64_t)share_q16 * side, cell_log2 + 1) - (1 << 14);
     const int32_t held_q15 = q_clamp_sat(at_q15, 0, (n - 1) << 15);

@@ -19,20 +19,22 @@ static struct glint_box compute_ball_box(const struct glint_scene *s,
     for (int k = 0; k < 8; k++)
         for (int i = 0; i < 3; i++)
             v[k][i] = seen[i] + (k >> i & 1 ? reach : -reach);
-    return glint_view_find_box(&s->view, (const int32_t(*)[3])v, 8);
+    return glint_view_find_box_of_points(&s->view, (const int32_t(*)[3])v, 8);
 }
 
-/* Returns how far apart, at the far side of a ball, the ray through the middle
- * of a pixel is from the rays through its samples; steps, rounded up. With four
- * samples, these are 104/256 of a pixel from the middle. */
-static int32_t compute_sample_margin(const struct glint_scene *s,
-                                     const int32_t seen[3], int32_t reach)
+/* Returns the max distance, steps, rounded up, between the ray through a
+ * pixel's middle and the rays through its samples, at the far side of a ball.
+ * With four samples per pixel these are 104/256 pixel from the middle. */
+static int32_t compute_max_sample_ray_distance(const struct glint_scene *s,
+                                               const int32_t seen[3],
+                                               int32_t reach)
 {
     const struct glint_scene_view *v = &s->view;
     const int64_t step_q56 =
         v->step_q56[0] > v->step_q56[1] ? v->step_q56[0] : v->step_q56[1];
     const int64_t far =
-        (int64_t)glint_square_root((uint64_t)v3_dot(seen, seen)) + reach;
+        (int64_t)glint_compute_square_root((uint64_t)v3_dot(seen, seen)) +
+        reach;
     const int64_t off_q30 =
         (step_q56 >> 26) * (s->cfg.edge_samples > 4 ? 184 : 104);
 
@@ -58,19 +60,19 @@ int32_t glint_scene_find_object_box(const struct glint_scene *s,
         p->is_seen = 1;
         return (int32_t)(q_magnitude(q_shift(v3_dot(off, p->centre), 30)) / 4);
     }
-    glint_view_to_camera(&s->view, p->centre, seen);
+    glint_view_convert_to_camera(&s->view, p->centre, seen);
     if (seen[2] + p->reach <= 0)
         return GLINT_FAR;
     p->z[0] = seen[2] - p->reach;
     p->z[1] = seen[2] + p->reach;
     p->box = compute_ball_box(s, seen, p->reach + 2);
-    p->margin = compute_sample_margin(s, seen, p->reach);
+    p->margin = compute_max_sample_ray_distance(s, seen, p->reach);
     p->is_seen = !glint_box_is_empty(p->box);
     return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
 }
 
-/* Sets the depth functions of all planes; s->nearest must be set before. */
-static void set_plane_depths(struct glint_scene *s)
+/* Sets the depth functions of all planes. s->nearest must be set before. */
+static void set_plane_depth_functions(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         struct glint_placed *p = &s->placed[i];
@@ -78,7 +80,7 @@ static void set_plane_depths(struct glint_scene *s)
 
         if (p->object->kind != GLINT_OBJECT_PLANE || !p->is_seen)
             continue;
-        glint_view_to_camera(&s->view, p->at, seen);
+        glint_view_convert_to_camera(&s->view, p->at, seen);
         v3_rotate(&s->view.turn, p->centre, normal_q30);
         p->is_seen = glint_view_set_plane_depth(&s->view, seen, normal_q30,
                                                 s->nearest, &p->depth);
@@ -117,18 +119,19 @@ void glint_scene_begin(struct glint_scene *scene,
         if (z < GLINT_FAR)
             farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
     }
-    if (scene->motion) /* lines of a recorded motion may be nearer than all
+    if (scene->motion) /* the recording's lines may be nearer than all
                           objects */
         nearest = q_smaller(nearest, farthest >> 13);
-    /* All points nearer than 2^-14 of the max z get the same depth. */
+    /* All points nearer than 2^-14 times the max z get the same depth. */
     scene->nearest =
         q_clamp_sat(q_larger(nearest, farthest >> 14), 1, GLINT_SCENE_SPAN);
-    set_plane_depths(scene);
+    set_plane_depth_functions(scene);
     glint_quick_prepare_balls(scene);
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
-    else /* shells and lines of a motion need exact depths */
-        glint_scene_set_flat_depths(scene);
+    else /* not with a recorded motion, whose shells and lines need exact
+            depths */
+        glint_scene_set_single_depths_of_balls(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)
         scene->cfg.parts.meshes->project(scene, stats);
@@ -136,5 +139,5 @@ void glint_scene_begin(struct glint_scene *scene,
         stats->objects += scene->placed[i].is_seen;
     if (stats->objects > 0)
         rebuild_shadow_grids(scene);
-    glint_scene_confine_catchers(scene);
+    glint_scene_shrink_catcher_boxes(scene);
 }

@@ -16,7 +16,7 @@
 struct passing {
     struct glint_scene_ray ray;
     uint32_t object, triangle;
-    int32_t weight_q15; /* factor of this ray's light in the light of the
+    int32_t weight_q15; /* fraction of this ray's light that reaches the
                            pixel */
     int is_bent; /* 1: its direction differs from that of the primary ray */
     int64_t spread_q40; /* angular variance of the rays of a pixel, radians^2 */
@@ -57,7 +57,8 @@ static void sample_camera_picture(const struct glint_scene *s,
     int32_t seen_q30[3], half_q15[2];
 
     v3_rotate(&v->turn, p->ray.toward_q30, seen_q30);
-    /* All three coordinates times both tangents, _q30: within 2^36 and 2^43. */
+    /* All three coordinates multiplied by both tangents, _q30; they stay within
+     * 2^36 and 2^43. */
     x = q_shift(seen_q30[0] * tan_y_q24, 24);
     y = q_shift(-seen_q30[1] * tan_x_q24, 24);
     z = q_shift(q_shift(seen_q30[2], 6) * both_q24, 18);
@@ -74,8 +75,8 @@ static void sample_camera_picture(const struct glint_scene *s,
 
 /* Adds to RGB the background that P sees in its direction, times P's weight: a
  * colour, the environment, or the camera's picture. */
-static void add_background(const struct glint_scene *s, const struct passing *p,
-                           int32_t rgb_q15[3])
+static void add_background_light(const struct glint_scene *s,
+                                 const struct passing *p, int32_t rgb_q15[3])
 {
     int32_t light_q15[3];
 
@@ -98,10 +99,10 @@ static int find_next_surface(const struct glint_scene *s,
 
     return glint_scene_find_nearest_hit(s, &p->ray, p->object, p->triangle,
                                         &met) &&
-           glint_scene_set_surface(s, &p->ray, &met, next);
+           glint_scene_find_surface_at_hit(s, &p->ray, &met, next);
 }
 
-/* Refracts P's direction at SURFACE. At total reflection returns 1 and does not
+/* Refracts the ray P at SURFACE. At total reflection returns 1 and does not
  * change P. */
 static int refract_ray(const struct glint_met_surface *surface,
                        uint32_t index_q16, struct passing *p)
@@ -135,9 +136,10 @@ static void move_ray_through_sphere(const struct glint_scene *s,
     struct glint_chord chord;
 
     if (!glint_ray_intersect_sphere(&p->ray, ball->at, ball->radius, &chord))
-        return; /* grazing ray: it leaves where it entered */
-    glint_chord_find_end_surface(&chord, &p->ray, ball->at, 1, end.place,
-                                 end.normal_q30);
+        return; /* a grazing ray leaves the sphere at the point where it
+                   enters */
+    glint_chord_set_end_point_and_normal(&chord, &p->ray, ball->at, 1,
+                                         end.place, end.normal_q30);
     for (int k = 0; k < 3; k++)
         end.normal_q30[k] = -end.normal_q30[k];
     end.is_inside = 1;
@@ -146,11 +148,11 @@ static void move_ray_through_sphere(const struct glint_scene *s,
     start_secondary_ray(s, &end, 1, p);
 }
 
-/* Continues P behind SURFACE, refracted, with the transmitted fraction of its
- * weight. */
-static void transmit_ray(const struct glint_scene *s,
-                         const struct glint_met_surface *surface,
-                         struct passing *p)
+/* Continues the ray P behind SURFACE: refracts it, and multiplies its weight by
+ * the transmitted fraction. */
+static void continue_ray_behind_surface(const struct glint_scene *s,
+                                        const struct glint_met_surface *surface,
+                                        struct passing *p)
 {
     const struct glint_scene_material *m = surface->material;
     const int is_straight = m->index_q16 == 1 << 16;
@@ -171,7 +173,7 @@ static void transmit_ray(const struct glint_scene *s,
 }
 
 /* Returns the angular variance of a pixel's rays, radians^2, after reflection
- * at SURFACE: curved mirrors increase it. */
+ * at SURFACE. Curved mirrors increase the variance. */
 static int64_t
 compute_mirror_spread_q40(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,
@@ -183,10 +185,10 @@ compute_mirror_spread_q40(const struct glint_scene *s,
            (int64_t)s->cfg.parts.wards->spread(s, ray, surface) * 2048;
 }
 
-static void trace_reflection(const struct glint_scene *s,
-                             const struct passing *from,
-                             const struct glint_met_surface *surface,
-                             int32_t rgb_q15[3])
+static void trace_reflected_ray(const struct glint_scene *s,
+                                const struct passing *from,
+                                const struct glint_met_surface *surface,
+                                int32_t rgb_q15[3])
 {
     struct passing p = *from;
     struct glint_met_surface next;
@@ -199,7 +201,7 @@ static void trace_reflection(const struct glint_scene *s,
     if (find_next_surface(s, &p, &next))
         glint_scene_add_phong_light(s, &p.ray, &next, p.weight_q15, rgb_q15);
     else
-        add_background(s, &p, rgb_q15);
+        add_background_light(s, &p, rgb_q15);
 }
 
 static void add_secondary_light(const struct glint_scene *s,
@@ -213,9 +215,9 @@ static void add_secondary_light(const struct glint_scene *s,
     struct glint_met_surface at = *surface;
 
     if (at.material->reflect_q15)
-        trace_reflection(s, &p, &at, shade->rgb_q15);
+        trace_reflected_ray(s, &p, &at, shade->rgb_q15);
     for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
-        transmit_ray(s, &at, &p);
+        continue_ray_behind_surface(s, &at, &p);
         if (p.weight_q15 == 0)
             return;
         if (!find_next_surface(s, &p, &at)) {
@@ -225,7 +227,7 @@ static void add_secondary_light(const struct glint_scene *s,
             if (is_picture && !p.is_bent)
                 shade->cover_q8 -= q_mul(p.weight_q15, GLINT_COVER_ALL, 15);
             else
-                add_background(s, &p, shade->rgb_q15);
+                add_background_light(s, &p, shade->rgb_q15);
             return;
         }
         glint_scene_add_phong_light(s, &p.ray, &at, p.weight_q15,

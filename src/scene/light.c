@@ -33,8 +33,8 @@ static const int32_t log2_q30[(1 << STEPS_LOG2) + 2] = {
     1024560487, 1030794226, 1037002979, 1043186948, 1049346328, 1055481314,
     1061592099, 1067678873, 1073741824, 1079781138};
 
-/* Evenly distributed sample points of the unit disc, x and y: four, and sixteen
- * along a spiral. */
+/* Sample points (x, y), evenly distributed on the unit disc: a set of four
+ * points, and a set of sixteen along a spiral. */
 static const int32_t four_q15[4][2] = {
     {21773, 7925}, {-7925, 21773}, {-21773, -7925}, {7925, -21773}};
 static const int32_t sixteen_q15[16][2] = {
@@ -64,8 +64,8 @@ static int32_t compute_minus_log2_q26(uint32_t x_q30)
     return (int32_t)(((int64_t)up << 26) - q_shift(y_q30, 4));
 }
 
-/* The fractional power 2^-f, f = 0 .. 1, is a series of six terms, with a max
- * error of 2^-12.6. */
+/* 2^-f for the fractional part f, 0 .. 1, is computed by a series of six terms
+ * with a max error of 2^-12.6. */
 int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8)
 {
     int64_t down_q26;
@@ -89,13 +89,13 @@ int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8)
 
 /* ------------------------------------------------------------------- level */
 
-/* Returns REAL * 4^UNIT_LOG2 / SQUARE, _q15, saturated: the light at a distance
- * whose square is SQUARE. */
-static int32_t compute_light_level(struct glint_real real, int unit_log2,
-                                   uint64_t square)
+/* Returns the light of a lamp of intensity REAL at distance sqrt(SQUARE): REAL
+ * * 4^UNIT_LOG2 / SQUARE, _q15, clamped to GLINT_SCENE_MOST_LIGHT. */
+static int32_t compute_light_at_distance(struct glint_real real, int unit_log2,
+                                         uint64_t square)
 {
     const int up = q_count_normalising_shift(square);
-    /* quotient of the mantissa and SQUARE, times 2^63 / 2^UP; below 2^63 */
+    /* mantissa / SQUARE, times 2^63 / 2^UP; below 2^63 */
     const uint64_t over =
         (uint64_t)real.mantissa * q_reciprocal(q_shift_to_32_bits(square, up));
     const int down = 63 - up - real.exponent - 2 * unit_log2 - 15;
@@ -131,15 +131,15 @@ int32_t glint_scene_compute_light_at(const struct glint_scene *scene,
         return 0;
     square = (uint64_t)v3_dot(off, off);
     for (int k = 0; k < 3; k++)
-        level_q15[k] = compute_light_level(
+        level_q15[k] = compute_light_at_distance(
             lit->light->rgb[k], scene->model.header->unit_log2, square);
-    return (int32_t)glint_square_root(square);
+    return (int32_t)glint_compute_square_root(square);
 }
 
 /* ------------------------------------------------------------------ shadows */
 
-void glint_scene_set_perpendiculars(const int32_t d_q30[3], int32_t u_q30[3],
-                                    int32_t v_q30[3])
+void glint_scene_find_perpendicular_vectors(const int32_t d_q30[3],
+                                            int32_t u_q30[3], int32_t v_q30[3])
 {
     int32_t axis_q30[3] = {0, 0, 0};
     int64_t cross[3];
@@ -151,8 +151,8 @@ void glint_scene_set_perpendiculars(const int32_t d_q30[3], int32_t u_q30[3],
     glint_normalise_vector(cross, v_q30);
 }
 
-/* Turns RAY to sample point I of N on a disc of radius RADIUS, in the plane of
- * the unit vectors U and V, at distance T. */
+/* Turns RAY to sample point I of N on a disc at distance T. The disc has radius
+ * RADIUS and lies in the plane of the unit vectors U and V. */
 static void aim_at_disc_point(struct glint_scene_ray *ray,
                               const int32_t u_q30[3], const int32_t v_q30[3],
                               int32_t t, int32_t radius, int i, int n)
@@ -160,7 +160,8 @@ static void aim_at_disc_point(struct glint_scene_ray *ray,
     const int32_t *at_q15 = n == 4 ? four_q15[i] : sixteen_q15[i];
     int64_t to[3];
 
-    for (int k = 0; k < 3; k++) { /* at most 2^60, plus 1.5 * 2^30 times 2^29 */
+    for (int k = 0; k < 3; k++) { /* sum of at most 2^60 and 1.5 * 2^30 *
+                                     2^29 */
         const int64_t aside_q30 = q_shift(
             (int64_t)u_q30[k] * at_q15[0] + (int64_t)v_q30[k] * at_q15[1], 15);
 
@@ -176,7 +177,7 @@ void glint_scene_aim_at_light_point(struct glint_scene_ray *ray, int32_t t,
 
     if (radius == 0 || n == 1)
         return;
-    glint_scene_set_perpendiculars(ray->toward_q30, u_q30, v_q30);
+    glint_scene_find_perpendicular_vectors(ray->toward_q30, u_q30, v_q30);
     aim_at_disc_point(ray, u_q30, v_q30, t, radius, i, n);
 }
 
@@ -196,7 +197,7 @@ int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
     distance = glint_scene_compute_light_at(scene, lit, middle.at,
                                             middle.toward_q30, level_q15);
     if (n > 1)
-        glint_scene_set_perpendiculars(middle.toward_q30, u_q30, v_q30);
+        glint_scene_find_perpendicular_vectors(middle.toward_q30, u_q30, v_q30);
     for (int i = 0; i < n; i++) {
         struct glint_scene_ray to = middle;
 

@@ -8,11 +8,12 @@
 
 enum { POINTS = 16 };
 
-/* Returns how many of the 16 sample points of LIT the camera sees. RAY
- * points to the light's middle, at distance T. */
-static int count_visible_points(const struct glint_scene *s,
-                                const struct glint_lit *lit,
-                                const struct glint_scene_ray *ray, int32_t t)
+/* Returns how many of the 16 sample points on the disc of LIT the camera sees.
+ * RAY points to the disc's middle, at distance T. */
+static int count_visible_light_points(const struct glint_scene *s,
+                                      const struct glint_lit *lit,
+                                      const struct glint_scene_ray *ray,
+                                      int32_t t)
 {
     const int n = lit->light->radius ? POINTS : 1;
     int seen = 0;
@@ -27,11 +28,12 @@ static int count_visible_points(const struct glint_scene *s,
     return seen * (POINTS / n);
 }
 
-/* Sets the flux of LAMP at distance T: pi times the light of a white surface
- * there, times the number of pixels per solid angle, f^2 / cosine^3. */
-static void set_lamp_power(const struct glint_scene *s,
-                           const struct glint_lit *lit, int32_t t,
-                           int32_t cosine_q30, struct glint_scene_lamp *lamp)
+/* Sets the flux of LAMP, whose light LIT is at distance T: pi times the light
+ * of a white surface at that distance, times the number of pixels per solid
+ * angle, f^2 / cosine^3 (f: focal length, pixels). */
+static void set_lamp_flux(const struct glint_scene *s,
+                          const struct glint_lit *lit, int32_t t,
+                          int32_t cosine_q30, struct glint_scene_lamp *lamp)
 {
     const struct glint_real cosine = real_of(cosine_q30, -30);
     const struct glint_real pi = {
@@ -54,9 +56,9 @@ static void set_lamp_power(const struct glint_scene *s,
 
 /* Sets LAMP to the position, size and flux of light LIT in the picture. Returns
  * 0 if LIT is behind the camera. */
-static int project_light(const struct glint_scene *s,
-                         const struct glint_lit *lit,
-                         struct glint_scene_lamp *lamp)
+static int project_light_to_picture(const struct glint_scene *s,
+                                    const struct glint_lit *lit,
+                                    struct glint_scene_lamp *lamp)
 {
     struct glint_scene_ray ray = {.at = {0}};
     int32_t level_q15[3], seen_q30[3], t;
@@ -74,7 +76,7 @@ static int project_light(const struct glint_scene *s,
     corner = glint_view_project_vertex(&s->view, seen_q30);
     if (corner.w != 1)
         return 0;
-    lamp->share = count_visible_points(s, lit, &ray, t);
+    lamp->share = count_visible_light_points(s, lit, &ray, t);
     lamp->x_q8 = corner.x + 128 * s->view.width;
     lamp->y_q8 = corner.y + 128 * s->view.height;
     radius = t == GLINT_FAR
@@ -83,7 +85,7 @@ static int project_light(const struct glint_scene *s,
     radius = real_over(real_times(radius, s->view.focal_q8[0]),
                        real_of(seen_q30[2], -30));
     lamp->radius_q8 = (int32_t)real_integer(radius, 0, 1 << 22);
-    set_lamp_power(s, lit, t, seen_q30[2], lamp);
+    set_lamp_flux(s, lit, t, seen_q30[2], lamp);
     return 1;
 }
 
@@ -95,7 +97,7 @@ int glint_scene_lights(const struct glint_scene *scene,
 
     for (uint32_t i = 0; h->flare && i < scene->n_lit; i++) {
         lamps[n].light = (int)i;
-        n += project_light(scene, &scene->lit[i], &lamps[n]);
+        n += project_light_to_picture(scene, &scene->lit[i], &lamps[n]);
     }
     return n;
 }

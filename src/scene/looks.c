@@ -48,7 +48,7 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
 }
 
 /* Returns whether all members of LOOK are in range. If IS_METAL is set, also
- * checks the metal parameters and copies them to WARD. */
+ * checks LOOK's metal parameters and copies them to WARD. */
 static int is_valid_look(const struct glint_scene_look *look, int is_metal,
                          struct glint_scene_ward *ward)
 {
@@ -140,7 +140,7 @@ enum glint_status glint_scene_set_radius(struct glint_scene *scene, int object,
 
 /* ------------------------------------------------------------- environments */
 
-/* Discards the lighting that is cached for several frames. */
+/* Marks the lighting that is cached over several frames as outdated. */
 static enum glint_status invalidate_cached_light(struct glint_scene *scene)
 {
     if (scene->stones)

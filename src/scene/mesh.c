@@ -26,14 +26,14 @@
  * triangles. Depths are interpolated linearly in the picture between the
  * corners' depths. */
 
-/* The edge function of two corners: across x + down y + at at position (x, y);
- * positive on one side of the edge, 0 on it. */
+/* The edge function of two corners. At position (x, y) its value is ACROSS x +
+ * DOWN y + AT: positive on one side of the edge, 0 on the edge. */
 struct line {
     int64_t across, down, at;
 };
 
-static inline int64_t evaluate_edge_line(const struct line *l, int64_t x,
-                                         int64_t y)
+static inline int64_t evaluate_edge_function(const struct line *l, int64_t x,
+                                             int64_t y)
 {
     return l->across * x + l->down * y + l->at;
 }
@@ -42,7 +42,8 @@ static inline int64_t evaluate_edge_line(const struct line *l, int64_t x,
 struct small {
     uint32_t id;
     int32_t across[3], down[3]; /* change of the edge functions per pixel */
-    int32_t at[3]; /* edge functions in the middle of the box's first pixel */
+    int32_t at[3]; /* edge functions at the middle of the first pixel of the
+                      box */
     struct glint_depth depth;
     int32_t off[3][GLINT_SCENE_SAMPLES], deeper[GLINT_SCENE_SAMPLES];
 };
@@ -69,15 +70,16 @@ static inline int compute_corner_depths(const struct glint_scene *s,
     return fits;
 }
 
-/* Returns whether, at all samples of box B, an object nearer than DEPTH_Q30 was
- * drawn before. */
-static int are_samples_nearer(const struct glint_scene_worker *w,
-                              struct glint_box b, int32_t depth_q30)
+/* Returns whether objects nearer than DEPTH_Q30 were drawn before at all
+ * samples of box B. */
+static int are_all_samples_nearer_than(const struct glint_scene_worker *w,
+                                       struct glint_box b, int32_t depth_q30)
 {
     const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
 
     for (int y = b.y0; y < b.y1; y++) {
-        const int32_t *at_q30 = w->depth + glint_sample_index(w, b.x0, y, 0);
+        const int32_t *at_q30 =
+            w->depth + glint_get_sample_index(w, b.x0, y, 0);
         int32_t min_q30 = at_q30[0];
 
         for (int i = 1; i < n; i++)
@@ -88,12 +90,13 @@ static int are_samples_nearer(const struct glint_scene_worker *w,
     return 1;
 }
 
-/* Returns whether triangle ID is hidden, at all samples of box B, by objects
- * drawn before. The depth of a sample inside lies between the corners' depths,
- * apart from rounding: each of three edge functions may be 1 too low, together
- * at most half of twice an area of 6, and slopes of depth are truncated.
- * Slopes, at most 2 * 2 * 48 * 256 range / area, are below 2^20, so that depths
- * are set as in set_depth_function(). */
+/* Returns whether objects drawn before hide triangle ID at all samples of box
+ * B. The depth of a sample inside lies between the corners' depths, apart from
+ * rounding errors, for which the compared depth has a margin: each of the three
+ * edge functions may be 1 too low, which changes the depth by at most half of
+ * its range if twice the triangle's area is 6 or more; and slopes of depth are
+ * truncated. Slopes are at most 2 * 2 * 48 * 256 range / area, below 2^20, so
+ * set_triangle_depth_function() sets the same depths. */
 static int is_triangle_hidden(const struct glint_scene_worker *w, uint32_t id,
                               const struct glint_scene_triangle *t,
                               struct glint_box b)
@@ -115,15 +118,17 @@ static int is_triangle_hidden(const struct glint_scene_worker *w, uint32_t id,
     range =
         most - q_smaller(depth_q30[0], q_smaller(depth_q30[1], depth_q30[2]));
     return range < MOST_RANGE && range <= 16 * area &&
-           are_samples_nearer(w, b, most + range + SLACK);
+           are_all_samples_nearer_than(w, b, most + range + SLACK);
 }
 
 /* Sets the triangle's depth as a function of position, interpolated between its
- * corners; the edge functions are the barycentric weights. Returns 0 if slopes
+ * corners with the edge functions as barycentric weights. Returns 0 if slopes
  * need more than 32 bits. */
-static int set_depth_function(const struct glint_scene *s, uint32_t object,
-                              const struct glint_scene_triangle *t,
-                              const struct line line[3], struct small *small)
+static int set_triangle_depth_function(const struct glint_scene *s,
+                                       uint32_t object,
+                                       const struct glint_scene_triangle *t,
+                                       const struct line line[3],
+                                       struct small *small)
 {
     const struct glint_corner *c =
         &s->corner[s->placed[object].first_vertex + t->vertex[0]];
@@ -133,7 +138,7 @@ static int set_depth_function(const struct glint_scene *s, uint32_t object,
     if (!compute_corner_depths(s, object, t, depth_q30))
         return 0;
     for (int k = 0; k < 3; k++)
-        all += evaluate_edge_line(&line[k], c->x, c->y);
+        all += evaluate_edge_function(&line[k], c->x, c->y);
     if (all <= 0)
         return 0;
     for (int k = 1; k < 3; k++) { /* below 2^46 */
@@ -154,9 +159,10 @@ static int set_depth_function(const struct glint_scene *s, uint32_t object,
 
 /* Sets the values that all pixels of a small triangle share: edge functions in
  * the middle (X, Y) of the first pixel, and the differences between samples. */
-static inline void set_small_triangle(const struct glint_scene *s, int n,
-                                      const struct line line[3], int32_t x_q8,
-                                      int32_t y_q8, struct small *small)
+static inline void prepare_small_triangle(const struct glint_scene *s, int n,
+                                          const struct line line[3],
+                                          int32_t x_q8, int32_t y_q8,
+                                          struct small *small)
 {
     for (int i = 0; i < 3; i++) {
         const int32_t across = (int32_t)line[i].across;
@@ -172,7 +178,8 @@ static inline void set_small_triangle(const struct glint_scene *s, int n,
             small->off[i][k] -= most;
         small->across[i] = 256 * across;
         small->down[i] = 256 * down;
-        small->at[i] = (int32_t)evaluate_edge_line(&line[i], x_q8, y_q8) + most;
+        small->at[i] =
+            (int32_t)evaluate_edge_function(&line[i], x_q8, y_q8) + most;
     }
     for (int k = 0; k < n; k++)
         small->deeper[k] =
@@ -181,13 +188,14 @@ static inline void set_small_triangle(const struct glint_scene *s, int n,
                       DEPTH_BITS);
 }
 
-/* Draws the N samples of a pixel in whose middle the edge functions are AT and
- * the depth is Z. The loop is written so that compilers vectorise it before
- * they unroll it. */
-static inline void draw_pixel_samples(const struct small *small, int n,
-                                      const int32_t at[3], int32_t z,
-                                      int32_t *restrict depth,
-                                      uint32_t *restrict id)
+/* Draws the N samples of a pixel. AT and Z are the edge functions and the depth
+ * at the pixel's middle. The loop is written so that compilers vectorise it
+ * before they unroll it. */
+static inline void draw_pixel_of_small_triangle(const struct small *small,
+                                                int n, const int32_t at[3],
+                                                int32_t z,
+                                                int32_t *restrict depth,
+                                                uint32_t *restrict id)
 {
     const uint32_t own = small->id;
 
@@ -205,9 +213,9 @@ static inline void draw_pixel_samples(const struct small *small, int n,
     }
 }
 
-static inline void draw_small_triangle_rows(struct glint_scene_worker *w, int n,
-                                            const struct small *small,
-                                            struct glint_box b)
+static inline void draw_rows_of_small_triangle(struct glint_scene_worker *w,
+                                               int n, const struct small *small,
+                                               struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_depth d = small->depth;
@@ -218,11 +226,11 @@ static inline void draw_small_triangle_rows(struct glint_scene_worker *w, int n,
         int64_t depth =
             d.across * x_q8 + d.down * glint_pixel_position_q8(s, y, 1) + d.at;
         int32_t at[3] = {first[0], first[1], first[2]};
-        int k = glint_sample_index(w, b.x0, y, 0);
+        int k = glint_get_sample_index(w, b.x0, y, 0);
 
         for (int x = b.x0; x < b.x1; x++, k += n) {
             if ((at[0] | at[1] | at[2]) >= 0)
-                draw_pixel_samples(
+                draw_pixel_of_small_triangle(
                     small, n, at,
                     q_clamp_sat(depth >> DEPTH_BITS, -(3 << 29), 3 << 29),
                     w->depth + k, w->id + k);
@@ -249,17 +257,17 @@ static int draw_small_triangle(struct glint_scene_worker *w, uint32_t id,
     struct small small;
 
     small.id = id;
-    if (!set_depth_function(s, id >> 20, t, line, &small))
+    if (!set_triangle_depth_function(s, id >> 20, t, line, &small))
         return 0;
     if (n == 1) {
-        set_small_triangle(s, 1, line, x_q8, y_q8, &small);
-        draw_small_triangle_rows(w, 1, &small, b);
+        prepare_small_triangle(s, 1, line, x_q8, y_q8, &small);
+        draw_rows_of_small_triangle(w, 1, &small, b);
     } else if (n == 4) {
-        set_small_triangle(s, 4, line, x_q8, y_q8, &small);
-        draw_small_triangle_rows(w, 4, &small, b);
+        prepare_small_triangle(s, 4, line, x_q8, y_q8, &small);
+        draw_rows_of_small_triangle(w, 4, &small, b);
     } else {
-        set_small_triangle(s, n, line, x_q8, y_q8, &small);
-        draw_small_triangle_rows(w, n, &small, b);
+        prepare_small_triangle(s, n, line, x_q8, y_q8, &small);
+        draw_rows_of_small_triangle(w, n, &small, b);
     }
     return 1;
 }
@@ -280,9 +288,9 @@ struct inside {
     const struct glint_scene_mesh *mesh;
     struct glint_scene_ray ray;
     struct glint_sheared sheared;
-    /* distance along the original ray at which this ray begins */
+    /* distance along the original ray, steps, at which this ray begins */
     int32_t start;
-    uint32_t but; /* index of the triangle that the ray starts on, which is
+    uint32_t but; /* index of the triangle on which the ray starts, which is
                      skipped */
 };
 
@@ -311,14 +319,15 @@ static int transform_ray_to_mesh(const struct glint_scene *s, uint32_t object,
 /* The cell of the grid that a ray is in, and its distance to the next cells. */
 struct walk {
     int32_t cell[3], step[3];
-    int64_t away[3];  /* distance along each axis to the side by which the ray
-                         leaves the cell, steps */
-    int64_t speed[3]; /* absolute value of the ray's direction, q30 */
+    int64_t away[3];  /* distance along each axis to the face through which the
+                         ray leaves the cell, steps */
+    int64_t speed[3]; /* magnitude of each component of the ray's direction,
+                         q30 */
 };
 
-/* Starts a walk at the point where the ray enters the grid. Returns 0 if the
- * ray misses the grid. A start that rounding has moved out of the grid is
- * clamped to the nearest cell. */
+/* Starts the walk at the point where the ray enters the grid. Returns 0 if the
+ * ray misses the grid. If rounding has moved that point out of the grid, the
+ * walk starts in the nearest cell. */
 static int begin_grid_walk(struct inside *in, struct walk *w)
 {
     enum { SLACK = GLINT_SCENE_MARGIN / 2 };
@@ -357,7 +366,8 @@ static int begin_grid_walk(struct inside *in, struct walk *w)
                          : (((int64_t)w->cell[k] + 1) << m->cell_log2) - from;
     }
     in->start += t;
-    /* Includes triangles in the face of the grid by which the ray enters. */
+    /* The negative limit includes triangles that lie in the face through which
+     * the ray enters the grid. */
     in->sheared.least = -q_smaller(t, SLACK);
     for (int k = 0; k < 3; k++)
         in->ray.at[k] = in->sheared.at[k] = at[k];
@@ -378,8 +388,8 @@ static int advance_to_next_cell(const struct inside *in, struct walk *w,
     for (int k = 0; k < 3; k++)
         if (w->away[k] * w->speed[next] < w->away[next] * w->speed[k])
             next = k;
-    /* away / speed > limit; away, speed and limit are below 2^30, and away may
-     * be a few steps below 0 */
+    /* equals away / speed > limit; away, speed and limit are below 2^30, and
+     * away may be a few steps below 0 */
     if (w->away[next] * (INT64_C(1) << 30) > limit * w->speed[next])
         return 0;
     w->away[next] += INT64_C(1) << m->cell_log2;
@@ -474,8 +484,8 @@ static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* Sets TO to the mean of the three vertices' rows of N numbers, weighted by the
- * barycentric weights in SPOT. */
+/* Sets TO to the weighted mean of three vertices' rows of N numbers. The
+ * weights are the barycentric weights in SPOT. */
 static void interpolate_vertex_rows(const struct glint_spot_on *spot,
                                     const int32_t *const row[3], int n,
                                     int32_t *to)
@@ -511,14 +521,12 @@ static int32_t compute_log2_length_q16(const int64_t v[3])
     return square ? q_log2_q16(square) / 2 + down * 65536 : -(1 << 24);
 }
 
-/* Sets the texture coordinates of SURFACE, and the triangle's area in uv space
- * per area. */
-static void set_surface_uv(const struct glint_scene *s,
-                           const struct glint_scene_mesh *m,
-                           const struct glint_scene_triangle *t,
-                           const int32_t *const vertex[3],
-                           const struct glint_met *met,
-                           struct glint_met_surface *surface)
+/* Sets the texture coordinates of SURFACE, and log2 of the triangle's area in
+ * uv space divided by its area on the surface. */
+static void set_texture_coordinates_of_surface(
+    const struct glint_scene *s, const struct glint_scene_mesh *m,
+    const struct glint_scene_triangle *t, const int32_t *const vertex[3],
+    const struct glint_met *met, struct glint_met_surface *surface)
 {
     const int32_t *uv_q16[3];
     int32_t first[3] = {0}, second[3] = {0}, uv[2][3] = {{0}};
@@ -571,7 +579,7 @@ static int set_mesh_surface(const struct glint_scene *scene,
         surface->material = &scene->model.material[t->material];
     if (m->uv_at &&
         (surface->material->texture != GLINT_SCENE_NONE || p->skin >= 0))
-        set_surface_uv(scene, m, t, vertex, met, surface);
+        set_texture_coordinates_of_surface(scene, m, t, vertex, met, surface);
     return 1;
 }
 
@@ -612,28 +620,29 @@ static void transform_vertices(struct glint_scene *s, uint32_t object)
         v3_rotate(&p->turn, vertex + 3 * (size_t)i, place);
         for (int k = 0; k < 3; k++)
             place[k] += p->at[k];
-        glint_view_to_camera(&s->view, place, to);
+        glint_view_convert_to_camera(&s->view, place, to);
         s->corner[p->first_vertex + i] =
             glint_view_project_vertex(&s->view, to);
     }
 }
 
-/* Returns the max offset of a sample from the middle of its pixel, 1/256
- * pixel. */
-static int32_t max_sample_offset_q8(const struct glint_scene *s)
+/* Returns the max distance on one axis of a sample from the middle of its
+ * pixel, 1/256 pixel. */
+static int32_t compute_max_sample_offset_q8(const struct glint_scene *s)
 {
     return s->cfg.edge_samples > 4 ? 120 : 96;
 }
 
-/* Returns the first pixel that may have a sample at X or to the right of it. */
-static int find_first_pixel(int32_t x_q8, int side, int32_t off_q8)
+/* Returns the first pixel, 0 .. SIDE, that may have a sample at X_Q8 or to the
+ * right of it. OFF_Q8 is the max offset of samples. */
+static int find_first_pixel_right_of(int32_t x_q8, int side, int32_t off_q8)
 {
     return (x_q8 + 128 * (side - 1) - off_q8 + 255) >> 8;
 }
 
-/* Returns 1 + the last pixel that may have a sample at X or to the left of
+/* Returns 1 + the last pixel that may have a sample at X_Q8 or to the left of
  * it. */
-static int find_end_pixel(int32_t x_q8, int side, int32_t off_q8)
+static int find_end_pixel_left_of(int32_t x_q8, int side, int32_t off_q8)
 {
     return ((x_q8 + 128 * (side - 1) + off_q8) >> 8) + 1;
 }
@@ -651,7 +660,7 @@ compute_triangle_box(const struct glint_scene *s, uint32_t object,
 {
     const struct glint_box all = {0, 0, s->view.width, s->view.height};
     int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
-    const int32_t off_q8 = max_sample_offset_q8(s);
+    const int32_t off_q8 = compute_max_sample_offset_q8(s);
     int n_near = 0, n_behind = 0;
 
     for (int k = 0; k < 3; k++) {
@@ -672,17 +681,19 @@ compute_triangle_box(const struct glint_scene *s, uint32_t object,
     if (n_near < 3)
         return all;
     return glint_box_intersect(
-        all, (struct glint_box){find_first_pixel(lo[0], all.x1, off_q8),
-                                find_first_pixel(lo[1], all.y1, off_q8),
-                                find_end_pixel(hi[0], all.x1, off_q8),
-                                find_end_pixel(hi[1], all.y1, off_q8)});
+        all,
+        (struct glint_box){find_first_pixel_right_of(lo[0], all.x1, off_q8),
+                           find_first_pixel_right_of(lo[1], all.y1, off_q8),
+                           find_end_pixel_left_of(hi[0], all.x1, off_q8),
+                           find_end_pixel_left_of(hi[1], all.y1, off_q8)});
 }
 
 /* -------------------------------------------------------------------- lists */
 
-/* Returns the number of entries in tile lists (bins) that the triangles of an
- * object need. */
-static int64_t count_bin_entries(struct glint_scene *s, uint32_t object)
+/* Returns the number of entries that the triangles of an object need in the
+ * tiles' lists (bins). */
+static int64_t count_tile_list_entries_of_object(struct glint_scene *s,
+                                                 uint32_t object)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
     int64_t n = 0;
@@ -696,8 +707,9 @@ static int64_t count_bin_entries(struct glint_scene *s, uint32_t object)
 }
 
 /* Returns whether triangle T may face the camera. */
-static int is_facing_camera(const struct glint_scene *s, uint32_t object,
-                            const struct glint_scene_triangle *t)
+static int is_triangle_facing_camera(const struct glint_scene *s,
+                                     uint32_t object,
+                                     const struct glint_scene_triangle *t)
 {
     const struct glint_corner *a =
         get_projected_vertex(s, object, t->vertex[0]);
@@ -716,7 +728,7 @@ enum { BOTH_SIDES = -1 };
 /* If FACING is BOTH_SIDES, counts the entries in tile lists (bins) for the
  * triangles of all meshes. Otherwise appends to these lists the triangles that
  * face the camera (1) or those that face away (0). */
-static void bin_triangles(struct glint_scene *s, int facing)
+static void sort_triangles_into_tile_lists(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
         const struct glint_scene_triangle *t;
@@ -731,7 +743,8 @@ static void bin_triangles(struct glint_scene *s, int facing)
             struct glint_box b;
             int is_small;
 
-            if (facing != BOTH_SIDES && facing != is_facing_camera(s, k, t))
+            if (facing != BOTH_SIDES &&
+                facing != is_triangle_facing_camera(s, k, t))
                 continue;
             b = compute_triangle_box(s, k, t, &is_small);
             if (glint_box_is_empty(b))
@@ -758,7 +771,7 @@ static void project_meshes(struct glint_scene *s,
         if (p->object->kind != GLINT_OBJECT_MESH || !p->is_seen)
             continue;
         transform_vertices(s, k);
-        span = count_bin_entries(s, k);
+        span = count_tile_list_entries_of_object(s, k);
         need += span;
         if (stats->refs + span > s->cfg.max_refs) {
             p->is_seen = 0;
@@ -769,29 +782,30 @@ static void project_meshes(struct glint_scene *s,
         stats->triangles += (int)glint_mesh_of(s, k)->n_triangles;
     }
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
-    bin_triangles(s, BOTH_SIDES);
+    sort_triangles_into_tile_lists(s, BOTH_SIDES);
     glint_bins_convert_counts_to_starts(&s->bins);
-    bin_triangles(s, 1); /* triangles that face the camera first, as they hide
-                            most others */
-    bin_triangles(s, 0);
+    sort_triangles_into_tile_lists(s, 1); /* triangles that face the camera
+                            first, as they hide most of the others */
+    sort_triangles_into_tile_lists(s, 0);
     glint_bins_reset_starts(&s->bins);
     s->has_triangles = stats->refs > 0;
 }
 
 /* --------------------------------------------------------------------- tile */
 
-static struct line compute_edge_line(const struct glint_corner *a,
-                                     const struct glint_corner *b)
+static struct line
+compute_edge_function_of_corners(const struct glint_corner *a,
+                                 const struct glint_corner *b)
 {
     return (struct line){(int64_t)a->y * b->w - (int64_t)b->y * a->w,
                          (int64_t)b->x * a->w - (int64_t)a->x * b->w,
                          (int64_t)a->x * b->y - (int64_t)b->x * a->y};
 }
 
-/* Decides on which side of an edge samples exactly on it lie, by the sign of
- * the edge function's first nonzero coefficient. Returns 0 if all coefficients
- * are 0. */
-static int apply_edge_rule(struct line *l)
+/* Decides on which side of an edge samples exactly on the edge lie, by the sign
+ * of the edge function's first nonzero coefficient. Returns 0 if all
+ * coefficients are 0. */
+static int assign_edge_samples_to_side(struct line *l)
 {
     const int is_out =
         l->across < 0 ||
@@ -805,9 +819,10 @@ static int apply_edge_rule(struct line *l)
 
 /* Sets the three edge functions of a triangle, which are not negative inside.
  * Returns 0 if the triangle is edge-on or not visible. */
-static int compute_edge_lines(const struct glint_scene *s, uint32_t object,
-                              const struct glint_scene_triangle *t,
-                              struct line line[3])
+static int
+compute_edge_functions_of_triangle(const struct glint_scene *s, uint32_t object,
+                                   const struct glint_scene_triangle *t,
+                                   struct line line[3])
 {
     const struct glint_corner *c[3];
     int64_t side;
@@ -815,7 +830,8 @@ static int compute_edge_lines(const struct glint_scene *s, uint32_t object,
     for (int k = 0; k < 3; k++)
         c[k] = get_projected_vertex(s, object, t->vertex[k]);
     for (int k = 0; k < 3; k++)
-        line[k] = compute_edge_line(c[(k + 1) % 3], c[(k + 2) % 3]);
+        line[k] =
+            compute_edge_function_of_corners(c[(k + 1) % 3], c[(k + 2) % 3]);
     side = line[0].across * c[0]->x + line[0].down * c[0]->y +
            line[0].at * c[0]->w;
     if (side == 0)
@@ -824,7 +840,7 @@ static int compute_edge_lines(const struct glint_scene *s, uint32_t object,
         if (side < 0)
             line[k] =
                 (struct line){-line[k].across, -line[k].down, -line[k].at};
-        if (!apply_edge_rule(&line[k]))
+        if (!assign_edge_samples_to_side(&line[k]))
             return 0;
     }
     return 1;
@@ -855,7 +871,8 @@ struct seen {
     int64_t off[GLINT_SCENE_SAMPLES][3], most[3], deeper[GLINT_SCENE_SAMPLES];
 };
 
-static void set_sample_offsets(const struct glint_scene *s, struct seen *seen)
+static void set_function_offsets_of_samples(const struct glint_scene *s,
+                                            struct seen *seen)
 {
     const int n = s->cfg.edge_samples;
 
@@ -877,12 +894,13 @@ static void set_sample_offsets(const struct glint_scene *s, struct seen *seen)
                           seen->depth.down * glint_sample_offset_q8(s, k, 1);
 }
 
-/* Draws the samples of a pixel, the first of which has index I. AT_0 .. AT_2:
- * the edge functions in the pixel's middle, plus most. */
-static inline void draw_large_pixel(const struct glint_scene_worker *w,
-                                    const struct seen *seen, int64_t at_0,
-                                    int64_t at_1, int64_t at_2, int64_t depth,
-                                    int i)
+/* Draws the samples of a pixel; I is the index of its first sample. AT_0 ..
+ * AT_2 are the edge functions at the pixel's middle, each plus its element of
+ * seen->most. */
+static inline void
+draw_pixel_of_large_triangle(const struct glint_scene_worker *w,
+                             const struct seen *seen, int64_t at_0,
+                             int64_t at_1, int64_t at_2, int64_t depth, int i)
 {
     const int n = w->scene->cfg.edge_samples, shift = seen->depth.shift;
 
@@ -906,8 +924,9 @@ static inline void draw_large_pixel(const struct glint_scene_worker *w,
 
 /* Draws the triangle in box B row by row, adding constant differences to the
  * edge functions from pixel to pixel. */
-static void draw_large_rows(struct glint_scene_worker *w,
-                            const struct seen *seen, struct glint_box b)
+static void draw_rows_of_large_triangle(struct glint_scene_worker *w,
+                                        const struct seen *seen,
+                                        struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_depth d = seen->depth;
@@ -918,15 +937,18 @@ static void draw_large_rows(struct glint_scene_worker *w,
     for (int y = b.y0; y < b.y1; y++) {
         const int32_t y_q8 = glint_pixel_position_q8(s, y, 1);
         const int64_t depth = d.across * x_q8 + d.down * y_q8 + d.at;
-        int64_t at_0 = evaluate_edge_line(&l[0], x_q8, y_q8) + seen->most[0];
-        int64_t at_1 = evaluate_edge_line(&l[1], x_q8, y_q8) + seen->most[1];
-        int64_t at_2 = evaluate_edge_line(&l[2], x_q8, y_q8) + seen->most[2];
-        int i = glint_sample_index(w, b.x0, y, 0);
+        int64_t at_0 =
+            evaluate_edge_function(&l[0], x_q8, y_q8) + seen->most[0];
+        int64_t at_1 =
+            evaluate_edge_function(&l[1], x_q8, y_q8) + seen->most[1];
+        int64_t at_2 =
+            evaluate_edge_function(&l[2], x_q8, y_q8) + seen->most[2];
+        int i = glint_get_sample_index(w, b.x0, y, 0);
 
         for (int x = 0; x < b.x1 - b.x0; x++, i += n) {
             if ((at_0 | at_1 | at_2) >= 0)
-                draw_large_pixel(w, seen, at_0, at_1, at_2,
-                                 depth + 256 * x * d.across, i);
+                draw_pixel_of_large_triangle(w, seen, at_0, at_1, at_2,
+                                             depth + 256 * x * d.across, i);
             at_0 += 256 * l[0].across;
             at_1 += 256 * l[1].across;
             at_2 += 256 * l[2].across;
@@ -947,8 +969,8 @@ draw_large_triangle(struct glint_scene_worker *w, uint32_t id,
         seen.line[k] = line[k];
     if (!compute_depth_function(w->scene, id >> 20, t, &seen.depth))
         return;
-    set_sample_offsets(w->scene, &seen);
-    draw_large_rows(w, &seen, b);
+    set_function_offsets_of_samples(w->scene, &seen);
+    draw_rows_of_large_triangle(w, &seen, b);
 }
 
 static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
@@ -964,7 +986,7 @@ static void draw_triangle(struct glint_scene_worker *w, uint32_t id)
 
     if (glint_box_is_empty(b) ||
         (is_small && is_triangle_hidden(w, id, t, b)) ||
-        !compute_edge_lines(s, object, t, line))
+        !compute_edge_functions_of_triangle(s, object, t, line))
         return;
     if (!is_small || !draw_small_triangle(w, id, t, line, b))
         draw_large_triangle(w, id, t, line, b);

@@ -41,7 +41,7 @@ static const char *check_vertices(struct check *c,
         return OUTSIDE;
     if (!glint_scene_is_vector_within(m->centre, 3, SPAN / 2) ||
         m->radius < 0 ||
-        glint_scene_vector_length(m->centre) + m->radius > SPAN / 2)
+        glint_scene_compute_vector_length(m->centre) + m->radius > SPAN / 2)
         return "a mesh is too large, or outside the scene's range";
     for (size_t i = 0; i < m->n_vertices; i++) {
         int32_t off[3];
@@ -50,7 +50,7 @@ static const char *check_vertices(struct check *c,
             return "a vertex is outside the scene's range";
         for (int k = 0; k < 3; k++)
             off[k] = at[3 * i + (size_t)k] - m->centre[k];
-        if (glint_scene_vector_length(off) > reach)
+        if (glint_scene_compute_vector_length(off) > reach)
             return "a vertex is outside the bounding sphere of its mesh";
     }
     return NULL;
@@ -269,8 +269,9 @@ static const char *check_translucent_medium(struct check *c,
     return NULL;
 }
 
-/* Returns log2 of the side, in texels, of the map for SKIN, read from the
- * unchecked header of the translucent medium; 0 if it is out of range. */
+/* Returns log2 of the side, in texels, of the map that SKIN describes. Reads it
+ * from the medium's header, which is not checked yet; returns 0 if it is out of
+ * range. */
 static uint32_t read_map_side_log2(const struct glint_scene_model *m,
                                    const struct glint_scene_skin *skin)
 {
@@ -342,13 +343,14 @@ static const char *check_translucency_map(struct check *c, uint32_t i)
                                 UINT32_C(1) << log2);
 }
 
-/* Returns 0 if object I is translucent but has no map, which it needs. */
-static int has_required_map(const struct glint_scene_model *m, uint32_t i)
+/* Returns 0 if object I is translucent but has no map. */
+static int has_map_if_translucent(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
         int has = m->stone[k].material != m->object[i].material ||
-                  m->object[i].catcher_q15 > 0; /* a catcher shows no
-                                                   material */
+                  m->object[i].catcher_q15 > 0; /* a shadow catcher shows no
+                                                   material, so it needs no
+                                                   map */
 
         for (uint32_t j = 0; j < m->header->n_skins; j++)
             has |= m->skin[j].object == i && m->skin[j].stone == k;
@@ -370,7 +372,7 @@ static const char *check_translucent_tables(struct check *c)
     for (uint32_t i = 0; !wrong && i < h->n_skins; i++)
         wrong = check_translucency_map(c, i);
     for (uint32_t i = 0; !wrong && i < h->n_objects; i++)
-        if (!has_required_map(&c->model, i))
+        if (!has_map_if_translucent(&c->model, i))
             wrong = "a translucent object has no map";
     return wrong;
 }
@@ -410,8 +412,8 @@ static const char *check_light(const struct glint_scene_light *light)
         return "a light's kind is unknown";
     if (!glint_scene_is_vector_within(light->at, 3,
                                       is_sun ? 0 : GLINT_SCENE_SPAN - 1) ||
-        !glint_scene_is_between(light->radius, 0,
-                                is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
+        !glint_scene_is_number_in_range(light->radius, 0,
+                                        is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
         return "a light is outside the scene's range, or too large";
     if (is_sun ? !glint_scene_is_unit_vector(light->toward_q30, 3)
                : !glint_scene_is_vector_within(light->toward_q30, 3, 0))
@@ -448,13 +450,13 @@ static const char *check_material(const struct check *c,
     if (!glint_scene_is_valid_name(m->name))
         return "a material's name is empty, unterminated or not printable";
     for (size_t k = 0; k < sizeof weight / sizeof *weight; k++)
-        if (!glint_scene_is_between(weight[k], 0, ONE_Q15))
+        if (!glint_scene_is_number_in_range(weight[k], 0, ONE_Q15))
             return "a material's weight or colour is not 0 .. 1";
     if (m->ambient_q15 + m->diffuse_q15 + m->specular_q15 > ONE_Q15 ||
         m->reflect_q15 + m->pass_q15 > ONE_Q15)
         return "a material's weights sum to more than 1";
-    if (!glint_scene_is_between(m->power_q8, 1 << 8, 1 << 20) ||
-        !glint_scene_is_between(m->index_q16, 1 << 14, 1 << 18))
+    if (!glint_scene_is_number_in_range(m->power_q8, 1 << 8, 1 << 20) ||
+        !glint_scene_is_number_in_range(m->index_q16, 1 << 14, 1 << 18))
         return "a material's power or index is out of range";
     if (m->texture != GLINT_SCENE_NONE &&
         m->texture >= c->model.header->n_textures)
@@ -507,7 +509,7 @@ static const char *check_motion(const struct glint_scene_header *h,
     if (!glint_scene_is_valid_name(m->name))
         return "a motion's name is empty, unterminated or not printable";
     for (int k = 0; k < 4; k++)
-        if (!glint_scene_is_between(length[k], 0, GLINT_SCENE_SPAN / 4))
+        if (!glint_scene_is_number_in_range(length[k], 0, GLINT_SCENE_SPAN / 4))
             return "a size of the motion is out of range";
     for (int k = 0; k < 3; k++)
         if (material[k] >= h->n_materials)
@@ -522,13 +524,13 @@ static const char *check_header(const struct glint_scene_header *h)
 {
     if (h->variant > GLINT_HAND_RIGHT)
         return "the scene's variant is unknown";
-    if (!glint_scene_is_between(h->unit_log2, -28, 60))
+    if (!glint_scene_is_number_in_range(h->unit_log2, -28, 60))
         return "the scene's unit is out of range";
     if (h->shadow > 1 || h->flare > 1 || h->highlights > MAX_HIGHLIGHTS ||
         h->background > GLINT_BACKGROUND_ENVIRONMENT)
         return "the scene's settings are out of range";
     for (int k = 0; k < 3; k++)
-        if (!glint_scene_is_between(
+        if (!glint_scene_is_number_in_range(
                 h->background_q15[k], 0,
                 h->background == GLINT_BACKGROUND_COLOUR ? ONE_Q30 : 0))
             return "the background's colour is out of range";
@@ -550,7 +552,7 @@ static const char *check_header(const struct glint_scene_header *h)
 
 /* ------------------------------------------------------------------- whole */
 
-static const char *locate_tables(struct check *c)
+static const char *locate_tables_in_file(struct check *c)
 {
     const struct glint_scene_header *h = c->model.header;
     struct glint_scene_model *m = &c->model;
@@ -598,7 +600,7 @@ static const char *check_all_tables(struct check *c)
     if (!wrong)
         wrong = check_header(h);
     if (!wrong)
-        wrong = locate_tables(c);
+        wrong = locate_tables_in_file(c);
     for (uint32_t k = 0; !wrong && k < h->n_lights; k++)
         wrong = check_light(&m->light[k]);
     for (uint32_t k = 0; !wrong && k < h->n_environments; k++)
@@ -649,7 +651,7 @@ enum glint_status glint_scene_open(struct glint_scene_model *model,
     return GLINT_OK;
 }
 
-static int is_same_name(const char *a, const char *b)
+static int are_names_equal(const char *a, const char *b)
 {
     while (*a && *a == *b) {
         a++;
@@ -659,12 +661,12 @@ static int is_same_name(const char *a, const char *b)
 }
 
 /* Returns the index of NAME among N names that are STRIDE bytes apart, or -1 if
- * it is not there. */
+ * none of them is NAME. */
 static int find_name_index(const char *names, size_t stride, uint32_t n,
                            const char *name)
 {
     for (uint32_t k = 0; k < n; k++, names += stride)
-        if (is_same_name(names, name))
+        if (are_names_equal(names, name))
             return (int)k;
     return -1;
 }

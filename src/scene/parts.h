@@ -11,13 +11,13 @@ struct glint_scene_meshes {
     /* Transforms the vertices of all meshes to camera coordinates and sorts
      * triangles into tiles; called by glint_scene_begin(). */
     void (*project)(struct glint_scene *scene, struct glint_scene_stats *stats);
-    /* Rasterises triangle ID: writes its depth and id to the samples of the
-     * worker's tile that see it. */
+    /* Rasterises triangle ID: writes the triangle's depth and id to those
+     * samples of the worker's tile that see it. */
     void (*look)(struct glint_scene_worker *w, uint32_t id);
     /* Intersects RAY with mesh OBJECT, except with its triangle BUT_TRIANGLE.
-     * On entry MET->t is the max distance, steps. Sets MET to the nearest
-     * intersection and returns 1 if the ray hits a triangle within that. If ANY
-     * is set, stops at the first intersection found. */
+     * On entry MET->t is the max distance, steps. If the ray hits a triangle
+     * nearer than that, sets MET to the nearest intersection and returns 1. If
+     * ANY is set, stops at the first intersection found. */
     int (*meet)(const struct glint_scene *scene, uint32_t object,
                 uint32_t but_triangle, const struct glint_scene_ray *ray,
                 int any, struct glint_met *met);
@@ -33,8 +33,8 @@ struct glint_scene_meshes {
      * and share a vertex with the same normal, so that one shaded point serves
      * both. */
     int (*joins)(const struct glint_scene *scene, uint32_t a, uint32_t b);
-    /* Finds the surface that the middle of a pixel sees, by the fast path
-     * (quick.h). */
+    /* Finds the surface that the middle of a pixel sees, by the fast path for
+     * shading (quick.h). */
     int (*find)(struct glint_scene_worker *w, uint32_t id, int32_t x_q8,
                 int32_t y_q8, struct glint_met_surface *surface);
 };
@@ -55,8 +55,8 @@ struct glint_scene_bounces {
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface,
                    struct glint_met_shade *shade);
-    /* carve allocates memory for the background picture; look stores the
-     * reduced picture IMAGE there. */
+    /* carve allocates memory for the background picture, and look stores IMAGE
+     * there at reduced resolution. */
     void (*carve)(struct glint_scene *scene, struct glint_arena *arena);
     void (*look)(struct glint_scene *scene, const struct glint_image *image);
 };
@@ -125,8 +125,8 @@ struct glint_scene_stones {
     enum glint_status (*open)(struct glint_scene *scene);
     /* Adapts the module's state to a change of environment light. */
     void (*relight)(struct glint_scene *scene);
-    /* Recomputes the maps for the current frame; returns the number of texels
-     * computed. */
+    /* Recomputes the light maps for the current frame; returns the number of
+     * texels computed. */
     int (*update)(struct glint_scene *scene);
     /* Adds the light that leaves the translucent medium at SURFACE along RAY,
      * times WEIGHT_Q15. Returns the coat's reflectance for RAY / its
@@ -147,9 +147,9 @@ struct glint_scene_highlights {
                                            struct glint_arena *arena);
     /* Clears the sums of light of the previous picture. */
     void (*begin)(struct glint_highlight_state *bright);
-    /* Adds the fraction SHARE_Q4 of light RGB_Q15, reflected by object OBJECT,
-     * to the sums at the pixel whose middle is (X, Y), pixels q8 from the top
-     * left corner. */
+    /* Adds the fraction SHARE_Q4 of light RGB_Q15, which object OBJECT
+     * reflects, to the sums at the pixel whose middle is (X, Y), pixels q8 from
+     * the top left corner. */
     void (*note)(struct glint_highlight_state *bright, uint32_t object,
                  int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
                  int share_q4);

@@ -7,8 +7,8 @@
 #include "scene/parts.h"
 #include "scene/state.h"
 
-static inline void add_weighted_light(int32_t *to_q15, int64_t light_q15,
-                                      int32_t weight_q15)
+static inline void add_light_times_weight(int32_t *to_q15, int64_t light_q15,
+                                          int32_t weight_q15)
 {
     int64_t sum_q15 = light_q15 < GLINT_SCENE_MOST_LIGHT
                           ? light_q15
@@ -25,7 +25,7 @@ static inline void add_weighted_light(int32_t *to_q15, int64_t light_q15,
 
 /* The table ends at y = 1 - 2^(-17 / k), where x^k falls below 2^-17; larger y
  * give 0. */
-void glint_gloss_fill_table(struct glint_gloss *gloss, int32_t power_q8)
+void glint_gloss_fill_power_table(struct glint_gloss *gloss, int32_t power_q8)
 {
     int32_t end_q30 = 1 << 30;
 
@@ -44,8 +44,8 @@ void glint_gloss_fill_table(struct glint_gloss *gloss, int32_t power_q8)
             power_q8);
 }
 
-/* Returns the specular factor of a light: the power of the cosine between the
- * ray and the reflected direction of the light, L - 2 (L.N) N. */
+/* Returns the specular factor of a light: a power of the cosine between the ray
+ * and the light's direction L mirrored at the normal N, L - 2 (L.N) N. */
 static inline int32_t
 compute_specular_q15(const struct glint_gloss *gloss,
                      const struct glint_scene_ray *ray,
@@ -72,8 +72,8 @@ compute_specular_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Adds the highlight of light LIT, at distance T, on a metal, times the
- * fraction SHARE_Q15 of LIT that reaches it. */
+/* Adds the highlight of light LIT, at distance T, on a metal, times SHARE_Q15,
+ * the fraction of LIT that reaches the surface. */
 static void add_metal_highlight(
     const struct glint_scene *s, const struct glint_scene_ray *ray,
     const struct glint_met_surface *surface, struct glint_brushed *brushed,
@@ -94,7 +94,7 @@ static void add_metal_highlight(
                                    level_q15, radius_q30, shine_q15))
         return;
     for (int c = 0; c < 3; c++)
-        add_weighted_light(&rgb_q15[c], shine_q15[c], share_q15);
+        add_light_times_weight(&rgb_q15[c], shine_q15[c], share_q15);
 }
 
 /* Adds the reflection of one light source. BRUSHED must be NULL if SURFACE is
@@ -139,9 +139,9 @@ static WHOLLY_INLINE void add_light_reflection(
         const int64_t white_q30 =
             ((int64_t)cosine_q30 * colour_q15[c] >> 15) + gloss;
 
-        add_weighted_light(&rgb_q15[c],
-                           (level_q15[c] * white_q30 + (1 << 29)) >> 30,
-                           share_q15);
+        add_light_times_weight(&rgb_q15[c],
+                               (level_q15[c] * white_q30 + (1 << 29)) >> 30,
+                               share_q15);
     }
 }
 
@@ -173,7 +173,7 @@ add_phong_lights(const struct glint_scene *scene,
     if (m->texture != GLINT_SCENE_NONE)
         scene->cfg.parts.textures->colour(scene, ray, surface, colour_q15);
     for (int c = 0; c < 3; c++)
-        add_weighted_light(
+        add_light_times_weight(
             &rgb_q15[c], q_mul(m->ambient_q15, colour_q15[c], 15), weight_q15);
     if (is_metal)
         wards->lie(scene, surface, &brushed);
@@ -193,8 +193,8 @@ void glint_scene_add_phong_light(const struct glint_scene *scene,
     add_phong_lights(scene, ray, surface, weight_q15, rgb_q15);
 }
 
-/* Returns, for a plane that only receives shadows (a catcher), the fraction of
- * the lights' total light that is shadowed, q8. */
+/* Returns the fraction of the total light of all sources that is shadowed, q8,
+ * for a shadow catcher, a plane that only receives shadows. */
 static int compute_catcher_shadow_q8(const struct glint_scene *s,
                                      const struct glint_met_surface *surface,
                                      int32_t catcher_q15)

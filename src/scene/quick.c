@@ -31,7 +31,8 @@ void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
 /* Prepares ball P for the fast path, which computes in units of the ball's
  * radius. Balls with the camera inside, or more than 2^13 radii away, do not
  * use it. */
-static void prepare_ball(const struct glint_scene *s, struct glint_placed *p)
+static void prepare_ball_for_fast_path(const struct glint_scene *s,
+                                       struct glint_placed *p)
 {
     int32_t to[3];
     uint64_t away;
@@ -41,7 +42,7 @@ static void prepare_ball(const struct glint_scene *s, struct glint_placed *p)
     if (!p->is_seen || p->object->kind != GLINT_OBJECT_SPHERE)
         return;
     v3_subtract(p->at, s->view.at, to);
-    away = glint_square_root((uint64_t)v3_dot(to, to));
+    away = glint_compute_square_root((uint64_t)v3_dot(to, to));
     if (away < (uint64_t)p->radius + (uint64_t)p->radius / 16 + 16)
         return;
     up = 29 - bit_length((uint64_t)q_divide((int64_t)away, p->radius));
@@ -57,8 +58,8 @@ static void prepare_ball(const struct glint_scene *s, struct glint_placed *p)
  * be the direction to the ball's middle and C the squared cosine of the angle
  * between M and the ball's rim. Position (X, Y) of the picture, in tangents, is
  * on the ball if (M.x X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
-static void prepare_ball_spans(const struct glint_scene *s,
-                               struct glint_placed *p)
+static void prepare_row_spans_of_ball(const struct glint_scene *s,
+                                      struct glint_placed *p)
 {
     int32_t seen[3], away;
     int64_t to[3], sine_q30;
@@ -66,11 +67,12 @@ static void prepare_ball_spans(const struct glint_scene *s,
     p->span.is_there = 0;
     if (p->over_up == 0 || s->view.wide > 1)
         return;
-    glint_view_to_camera(&s->view, p->at, seen);
+    glint_view_convert_to_camera(&s->view, p->at, seen);
     for (int k = 0; k < 3; k++)
         to[k] = seen[k];
-    away = (int32_t)glint_square_root((uint64_t)v3_dot(seen, seen));
-    /* enlarged by a margin, as samples lie off the middles of rows */
+    away = (int32_t)glint_compute_square_root((uint64_t)v3_dot(seen, seen));
+    /* enlarged by a margin, as samples of a row are above and below the middles
+     * of its pixels */
     sine_q30 = glint_divide_rounded(
         ((uint64_t)p->radius + 2 * (uint64_t)p->margin) << 30, (uint64_t)away);
     if (!glint_normalise_vector(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
@@ -88,8 +90,8 @@ static void prepare_ball_spans(const struct glint_scene *s,
     p->span.is_there = 1;
 }
 
-/* Solves the quadratic (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <= 0 for
- * X, where h = M.y Y + M.z (see prepare_ball_spans()). */
+/* Solves for X the quadratic (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <=
+ * 0 with h = M.y Y + M.z; prepare_row_spans_of_ball() defines C, M, X and Y. */
 int glint_scene_find_ball_span(const struct glint_scene *s,
                                const struct glint_placed *p, int y, int32_t *x0,
                                int32_t *x1)
@@ -107,7 +109,7 @@ int glint_scene_find_ball_span(const struct glint_scene *s,
     if (rest_q56 < -(INT64_C(1) << 36))
         return 0;
     rest_q56 = rest_q56 < 0 ? 0 : rest_q56;
-    half_q28 = glint_square_root((uint64_t)rest_q56) + (1 << 16);
+    half_q28 = glint_compute_square_root((uint64_t)rest_q56) + (1 << 16);
     middle_q28 = p->span.m_q30[0] * h_q28 >> 30;
     for (int k = 0; k < 2; k++) {
         end_q28[k] =
@@ -124,8 +126,8 @@ int glint_scene_find_ball_span(const struct glint_scene *s,
 void glint_quick_prepare_ball(const struct glint_scene *scene,
                               struct glint_placed *p)
 {
-    prepare_ball(scene, p);
-    prepare_ball_spans(scene, p);
+    prepare_ball_for_fast_path(scene, p);
+    prepare_row_spans_of_ball(scene, p);
 }
 
 void glint_quick_prepare_balls(struct glint_scene *scene)
@@ -134,8 +136,9 @@ void glint_quick_prepare_balls(struct glint_scene *scene)
         glint_quick_prepare_ball(scene, &scene->placed[i]);
 }
 
-/* The ray passes the ball's middle at distance |A|, A = L x D, in radii. The
- * unit normal is A x D - sqrt(1 - A.A) D, which is not accurate near the
+/* L is the vector from the ray's start to the ball's middle, D the ray's
+ * direction. The ray passes the middle at distance |A|, A = L x D, in radii.
+ * The unit normal is A x D - sqrt(1 - A.A) D, which is not accurate near the
  * rim. */
 int glint_quick_intersect_ball(const struct glint_placed *p,
                                const struct glint_scene_ray *ray,
@@ -157,7 +160,7 @@ int glint_quick_intersect_ball(const struct glint_placed *p,
     square_q60 = (UINT64_C(1) << 60) - (uint64_t)v3_dot(across_q30, across_q30);
     if ((int64_t)square_q60 < INT64_C(1) << 44)
         return 0;
-    up = glint_quick_even_shift(square_q60);
+    up = glint_quick_compute_even_shift(square_q60);
     s_q32 = (uint32_t)(square_q60 << up >> 32);
     *cosine_q30 =
         (int32_t)((uint64_t)s_q32 * glint_quick_inverse_root_q31(s_q32) >>
@@ -165,10 +168,11 @@ int glint_quick_intersect_ball(const struct glint_placed *p,
     return 1;
 }
 
-/* The distance to the intersection is L.D - cosine, in radii. */
-int32_t glint_quick_ball_distance(const struct glint_placed *p,
-                                  const struct glint_scene_ray *ray,
-                                  int32_t cosine_q30)
+/* The distance to the intersection is L.D - cosine, in radii (L, D: see
+ * glint_quick_intersect_ball()). */
+int32_t glint_quick_get_ball_distance(const struct glint_placed *p,
+                                      const struct glint_scene_ray *ray,
+                                      int32_t cosine_q30)
 {
     return q_clamp_sat((((v3_dot(p->over, ray->toward_q30) >> 30) -
                          (cosine_q30 >> (30 - p->over_up))) *
@@ -196,15 +200,15 @@ static int find_ball_surface(const struct glint_placed *p,
         surface->place[k] =
             p->at[k] + (int32_t)q_shift((int64_t)n_q30 * p->radius, 30);
     }
-    surface->t = glint_quick_ball_distance(p, ray, half_q30);
+    surface->t = glint_quick_get_ball_distance(p, ray, half_q30);
     return 1;
 }
 
 /* ------------------------------------------------------------------ planes */
 
-/* Finds the point where RAY meets plane P. An error of 2^-24 in the ray's
- * direction moves the point by 2^-24 in the picture, whatever the plane's
- * orientation. */
+/* Finds the point where RAY hits plane P. An error of 2^-24 in the ray's
+ * direction moves the point by 2^-24 in the picture, for any orientation of the
+ * plane. */
 static int find_plane_surface(const struct glint_placed *p,
                               const struct glint_scene_ray *ray,
                               struct glint_met_surface *surface)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fast path for the surface in the middle of a pixel: computes with 26 bits,
- * which suffice for shading, and precomputes what all pixels of an object
- * share. visible.c has determined the visible object exactly before. */
+ * Fast path for shading: finds the surface at the middle of a pixel with 26
+ * bits of precision, which suffice for shading, and precomputes what all pixels
+ * of an object share. Before, visible.c has determined exactly which object is
+ * visible. */
 #ifndef GLINT_SCENE_QUICK_H
 #define GLINT_SCENE_QUICK_H
 
@@ -15,7 +16,7 @@
  * method from a table of error 2^-6.9. */
 static inline uint32_t glint_quick_inverse_root_q31(uint32_t s_q32)
 {
-    uint32_t r_q31 = glint_inverse_root_start(s_q32 >> 25) << 24;
+    uint32_t r_q31 = glint_look_up_inverse_root(s_q32 >> 25) << 24;
 
     for (int i = 0; i < 2; i++) {
         const uint32_t square_q30 = (uint32_t)((uint64_t)r_q31 * r_q31 >> 32);
@@ -29,7 +30,7 @@ static inline uint32_t glint_quick_inverse_root_q31(uint32_t s_q32)
 
 /* Returns the even number of bits by which X must be shifted up to have 63 or
  * 64 bits. X must not be 0. */
-static inline int glint_quick_even_shift(uint64_t x)
+static inline int glint_quick_compute_even_shift(uint64_t x)
 {
     return (64 - bit_length(x | 1)) & ~1;
 }
@@ -40,7 +41,7 @@ static inline void glint_quick_normalise(const int32_t v[3],
                                          int32_t unit_q30[3])
 {
     const uint64_t square = (uint64_t)v3_dot(v, v); /* below 3 * 2^60 */
-    const int up = glint_quick_even_shift(square);
+    const int up = glint_quick_compute_even_shift(square);
     const int64_t r_q31 =
         glint_quick_inverse_root_q31((uint32_t)(square << up >> 32));
     const int down = 33 - up / 2;
@@ -56,9 +57,9 @@ void glint_quick_prepare_balls(struct glint_scene *scene);
 
 /* Sets RAY to the ray through position (X, Y), with an error of 2^-24 per
  * component, and SURFACE to its intersection with object or triangle ID; a ray
- * that just misses a triangle is clamped to it. Returns 0 if the fast path does
- * not apply: near the rim of a ball, and for triangles that come near the
- * camera or have a texture. */
+ * that just misses a triangle is moved to the triangle's edge. Returns 0 if the
+ * fast path does not apply: near the rim of a ball, and for triangles that are
+ * near the camera or have a texture. */
 int glint_quick_find_surface(struct glint_scene_worker *w, uint32_t id,
                              int32_t x_q8, int32_t y_q8,
                              struct glint_scene_ray *ray,

@@ -10,9 +10,10 @@
 
 /* Sets the picture positions of the corners of triangle T; returns 0 if a
  * corner cannot be projected. */
-static int set_triangle_corners(const struct glint_scene *s, uint32_t object,
-                                const struct glint_scene_triangle *of,
-                                struct glint_quick_triangle *t)
+static int project_triangle_corners(const struct glint_scene *s,
+                                    uint32_t object,
+                                    const struct glint_scene_triangle *of,
+                                    struct glint_quick_triangle *t)
 {
     const struct glint_placed *p = &s->placed[object];
     const struct glint_corner *c[3];
@@ -53,9 +54,10 @@ static int set_triangle_corners(const struct glint_scene *s, uint32_t object,
 
 /* Sets the vertices and normals of triangle T; normals are flipped to the
  * camera's side. */
-static int set_triangle_surface(const struct glint_scene *s, uint32_t object,
-                                const struct glint_scene_triangle *of,
-                                struct glint_quick_triangle *t)
+static int
+set_triangle_vertices_and_normals(const struct glint_scene *s, uint32_t object,
+                                  const struct glint_scene_triangle *of,
+                                  struct glint_quick_triangle *t)
 {
     const struct glint_placed *p = &s->placed[object];
     const struct glint_scene_mesh *m = glint_mesh_of(s, object);
@@ -95,8 +97,8 @@ static int set_triangle_surface(const struct glint_scene *s, uint32_t object,
     return 1;
 }
 
-/* Returns the prepared triangle ID from the worker's cache, prepares it on a
- * miss. Returns NULL if it cannot be prepared. */
+/* Returns the prepared triangle ID from the worker's cache; if the cache does
+ * not have it, prepares it first. Returns NULL if it cannot be prepared. */
 static struct glint_quick_triangle *
 prepare_triangle(struct glint_scene_worker *w, uint32_t id)
 {
@@ -114,8 +116,8 @@ prepare_triangle(struct glint_scene_worker *w, uint32_t id)
                                          : of->material];
     t->is_there = t->material->texture == GLINT_SCENE_NONE &&
                   s->placed[id >> 20].skin < 0 &&
-                  set_triangle_corners(s, id >> 20, of, t) &&
-                  set_triangle_surface(s, id >> 20, of, t);
+                  project_triangle_corners(s, id >> 20, of, t) &&
+                  set_triangle_vertices_and_normals(s, id >> 20, of, t);
     return t->is_there ? t : NULL;
 }
 

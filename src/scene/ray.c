@@ -22,10 +22,11 @@ int glint_ray_point_at_distance(const struct glint_scene_ray *ray, int32_t t,
 
 /* ------------------------------------------------------------------ sphere */
 
-/* Components of L are within 2^29 and |D| is 1, so |L.D| and each component of
- * L x D are below 2^60 in _q30. The components of L x D are truncated to UP
- * fraction bits once they are known to be below the radius, 2^30, so that their
- * squares sum to less than 3 * 2^60. */
+/* L is the vector from the ray's start to the sphere's centre, D the ray's
+ * direction. Components of L are within 2^29 and |D| is 1, so |L.D| and each
+ * component of L x D are below 2^60 in _q30. The components of L x D are
+ * truncated to UP fraction bits once they are known to be below the radius,
+ * 2^30, so that their squares sum to less than 3 * 2^60. */
 int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
                                const int32_t centre[3], int32_t radius,
                                struct glint_chord *chord)
@@ -49,7 +50,7 @@ int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
         return 0;
     middle_q30 = v3_dot(to, ray->toward_q30);
     chord->up = up;
-    chord->half = (int32_t)glint_square_root((uint64_t)rest);
+    chord->half = (int32_t)glint_compute_square_root((uint64_t)rest);
     v3_cross(across, ray->toward_q30, across_q30);
     for (int k = 0; k < 3; k++)
         chord->middle[k] = (int32_t)q_shift(across_q30[k], 30);
@@ -62,10 +63,11 @@ int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
     return 1;
 }
 
-void glint_chord_find_end_surface(const struct glint_chord *chord,
-                                  const struct glint_scene_ray *ray,
-                                  const int32_t centre[3], int k,
-                                  int32_t place[3], int32_t normal_q30[3])
+void glint_chord_set_end_point_and_normal(const struct glint_chord *chord,
+                                          const struct glint_scene_ray *ray,
+                                          const int32_t centre[3], int k,
+                                          int32_t place[3],
+                                          int32_t normal_q30[3])
 {
     int64_t from[3];
 
@@ -76,7 +78,8 @@ void glint_chord_find_end_surface(const struct glint_chord *chord,
         from[i] = chord->middle[i] + (k ? along : -along);
         place[i] = q_narrow(centre[i] + q_shift(from[i], chord->up));
     }
-    /* The vector from the centre has the radius as length, so it is not 0. */
+    /* The vector from the centre to the point is as long as the radius, so it
+     * is not 0. */
     glint_normalise_vector(from, normal_q30);
 }
 
@@ -107,7 +110,8 @@ void glint_ray_shear_to_axis(const struct glint_scene_ray *ray,
                              struct glint_sheared *to)
 {
     const int32_t *d_q30 = ray->toward_q30;
-    /* starts at 1, not 0, although a direction has length 1 */
+    /* starts at 1, not 0, to rule out a division by 0, although a direction has
+     * length 1 */
     uint64_t most = 1;
     int longest = 0, is_back;
     uint32_t one_over_q30;
@@ -141,8 +145,9 @@ struct seen {
 
 /* Applies the shear to the vertices. Differences of points are within 2^29 and
  * the shear is at most 1, so x and y are below 2^30. */
-static void shear_vertices(const struct glint_sheared *ray,
-                           const int32_t *const vertex[3], struct seen *to)
+static void shear_triangle_vertices(const struct glint_sheared *ray,
+                                    const int32_t *const vertex[3],
+                                    struct seen *to)
 {
     for (int i = 0; i < 3; i++) {
         int32_t off[3];
@@ -157,7 +162,7 @@ static void shear_vertices(const struct glint_sheared *ray,
 }
 
 /* Returns whether three numbers are all positive or all negative. */
-static int have_same_sign(const int32_t x[3])
+static int have_three_numbers_same_sign(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
@@ -175,8 +180,8 @@ static void set_edge_functions(struct seen *s)
     }
 }
 
-void glint_set_vertex_weights(const int64_t edge[3], int64_t sum,
-                              int32_t part_q30[3])
+void glint_compute_vertex_weights(const int64_t edge[3], int64_t sum,
+                                  int32_t part_q30[3])
 {
     const uint64_t all = q_magnitude(sum);
     const int up = q_count_normalising_shift(all);
@@ -191,7 +196,7 @@ void glint_set_vertex_weights(const int64_t edge[3], int64_t sum,
     part_q30[1] = ONE_Q30 - part_q30[0] - part_q30[2];
 }
 
-static void set_triangle_spot(const struct glint_sheared *ray,
+static void set_spot_distance(const struct glint_sheared *ray,
                               const struct seen *s, struct glint_spot_on *spot)
 {
     spot->t = q_narrow(q_shift(
@@ -204,16 +209,16 @@ int glint_ray_intersect_triangle(const struct glint_sheared *ray,
 {
     struct seen s;
 
-    shear_vertices(ray, vertex, &s);
-    if (have_same_sign(s.x) || have_same_sign(s.y))
+    shear_triangle_vertices(ray, vertex, &s);
+    if (have_three_numbers_same_sign(s.x) || have_three_numbers_same_sign(s.y))
         return 0;
     set_edge_functions(&s);
     if (((s.edge[0] | s.edge[1] | s.edge[2]) < 0 &&
          (s.edge[0] > 0 || s.edge[1] > 0 || s.edge[2] > 0)) ||
         s.sum == 0)
         return 0;
-    glint_set_vertex_weights(s.edge, s.sum, spot->part_q30);
-    set_triangle_spot(ray, &s, spot);
+    glint_compute_vertex_weights(s.edge, s.sum, spot->part_q30);
+    set_spot_distance(ray, &s, spot);
     return spot->t > ray->least;
 }
 
@@ -224,7 +229,7 @@ int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
     struct seen s;
     int64_t sum = 0;
 
-    shear_vertices(ray, vertex, &s);
+    shear_triangle_vertices(ray, vertex, &s);
     set_edge_functions(&s);
     if (s.sum == 0)
         return 0;
@@ -236,8 +241,8 @@ int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
     if (sum == 0)
         return 0;
     s.sum = sum;
-    glint_set_vertex_weights(s.edge, s.sum, spot->part_q30);
-    set_triangle_spot(ray, &s, spot);
+    glint_compute_vertex_weights(s.edge, s.sum, spot->part_q30);
+    set_spot_distance(ray, &s, spot);
     return 1;
 }
 
@@ -268,21 +273,21 @@ void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
         to_q30[k] = (int32_t)(d_q30[k] - q_shift(along_q30 * n_q30[k], 29));
 }
 
-/* Sines of the angles between ray and normal: s in front of the surface, eta s,
- * below 16, behind it. */
+/* Sines of the angle between ray and normal: s in front of the surface, eta s
+ * behind it, below 16. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {
     const int64_t along_q30 = v3_cosine_q30(d_q30, n_q30);
     const int64_t square_q60 = (INT64_C(1) << 60) - along_q30 * along_q30;
     const int64_t sine_q30 =
-        square_q60 > 0 ? glint_square_root((uint64_t)square_q60) : 0;
+        square_q60 > 0 ? glint_compute_square_root((uint64_t)square_q60) : 0;
     const int64_t behind_q30 = q_shift(sine_q30 * eta_q28, 28);
     int64_t to[3], cosine_q30;
 
     if (behind_q30 > ONE_Q30)
         return 0;
-    cosine_q30 = glint_square_root(
+    cosine_q30 = glint_compute_square_root(
         (uint64_t)((INT64_C(1) << 60) - behind_q30 * behind_q30));
     /* eta d + (eta * cosine before - cosine behind) n */
     for (int k = 0; k < 3; k++)

@@ -40,12 +40,13 @@ int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
                                const int32_t centre[3], int32_t radius,
                                struct glint_chord *chord);
 
-/* Sets PLACE to the position, and NORMAL_Q30 to the outward normal, of the
- * sphere at end K of CHORD: 0 where the ray enters, 1 where it leaves. */
-void glint_chord_find_end_surface(const struct glint_chord *chord,
-                                  const struct glint_scene_ray *ray,
-                                  const int32_t centre[3], int k,
-                                  int32_t place[3], int32_t normal_q30[3]);
+/* Sets PLACE to the position, and NORMAL_Q30 to the sphere's outward normal, at
+ * end K of CHORD: 0 where the ray enters the sphere, 1 where it leaves. */
+void glint_chord_set_end_point_and_normal(const struct glint_chord *chord,
+                                          const struct glint_scene_ray *ray,
+                                          const int32_t centre[3], int k,
+                                          int32_t place[3],
+                                          int32_t normal_q30[3]);
 
 /* ------------------------------------------------------------------- plane */
 
@@ -68,13 +69,13 @@ struct glint_sheared {
     int axis[3];          /* indices of the axes x, y, z, the ray's longest axis
                              last */
     int32_t x_q29, y_q29; /* direction divided by its longest component */
-    int32_t along_q30;    /* 1 / the longest component; magnitude 2^30 ..
-                             2^30.8 */
-    int32_t least;        /* min distance of intersections, exclusive */
+    int32_t along_q30;    /* 1 / longest component of the direction; magnitude
+                             2^30 .. 2^30.8 */
+    int32_t least;        /* min distance of intersections, exclusive, steps */
 };
 
 struct glint_spot_on {
-    int32_t t;           /* distance along the ray */
+    int32_t t;           /* distance along the ray, steps */
     int32_t part_q30[3]; /* barycentric weights of the vertices; their sum is
                             1 */
 };
@@ -93,8 +94,8 @@ int glint_ray_intersect_triangle(const struct glint_sheared *ray,
                                  struct glint_spot_on *spot);
 
 /* Like glint_ray_intersect_triangle(), for a ray that hits the triangle or just
- * misses it: SPOT is clamped to the triangle. Returns 0 if the triangle has no
- * area. */
+ * misses it; if it misses, SPOT is the nearest point of the triangle. Returns 0
+ * if the triangle has no area. */
 int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
                                 const int32_t *const vertex[3],
                                 struct glint_spot_on *spot);
@@ -102,8 +103,8 @@ int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
 /* Sets the barycentric weights PART of three vertices from the edge functions
  * EDGE, whose sum is SUM. Each function must be 0 or have the sign of SUM, and
  * SUM must not be 0. */
-void glint_set_vertex_weights(const int64_t edge[3], int64_t sum,
-                              int32_t part_q30[3]);
+void glint_compute_vertex_weights(const int64_t edge[3], int64_t sum,
+                                  int32_t part_q30[3]);
 
 /* Sets NORMAL_Q30 to the triangle's unit normal, on the side from which the
  * vertices appear clockwise. Returns 0 if the triangle has no area. */

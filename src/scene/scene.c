@@ -66,8 +66,8 @@ static size_t count_vertices(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns whether N is one of the powers of two that are set in ALL. */
-static int is_single_bit_of(int n, int all)
+/* Returns whether N is one of the powers of two whose sum is ALL. */
+static int is_power_of_two_in_set(int n, int all)
 {
     return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
 }
@@ -77,8 +77,8 @@ static int is_config_in_range(const struct glint_scene_config *c)
     return c->width >= 1 && c->width <= GLINT_MAX_SIDE && c->height >= 1 &&
            c->height <= GLINT_MAX_SIDE && c->tile_log2 >= 3 &&
            c->tile_log2 <= 6 &&
-           is_single_bit_of(c->edge_samples, 1 | 4 | 8 | 16) &&
-           is_single_bit_of(c->shadow_points, 1 | 4 | 16) &&
+           is_power_of_two_in_set(c->edge_samples, 1 | 4 | 8 | 16) &&
+           is_power_of_two_in_set(c->shadow_points, 1 | 4 | 16) &&
            c->ward_samples >= 1 && c->ward_samples <= 32 &&
            (c->half_shading & ~1) == 0 && c->highlights >= -1 &&
            c->highlights <= 8 && c->max_refs >= 0 &&
@@ -133,8 +133,8 @@ static NEVER_INLINE void allocate_shadow_grids(struct glint_scene *s,
 
 /* Allocates the memory of one worker. WORKER must be NULL while the arena only
  * counts bytes. */
-static void allocate_worker(struct glint_scene *s, struct glint_arena *a,
-                            struct glint_scene_worker *worker)
+static void allocate_worker_memory(struct glint_scene *s, struct glint_arena *a,
+                                   struct glint_scene_worker *worker)
 {
     const size_t side = (size_t)1 << s->cfg.tile_log2;
     const size_t samples = side * side * (size_t)s->cfg.edge_samples;
@@ -214,7 +214,7 @@ static struct glint_scene *allocate_scene(struct glint_arena *a,
         needs_ward_module(model->header) ? cfg->parts.wards->carve(s, a) : NULL;
     s->stones =
         model->header->n_skins > 0 ? cfg->parts.stones->carve(s, a) : NULL;
-    s->bright = cfg->parts.highlights && glint_scene_max_highlights(s) > 0
+    s->bright = cfg->parts.highlights && glint_scene_get_max_highlights(s) > 0
                     ? cfg->parts.highlights->carve(s, a)
                     : NULL;
     s->motion = model->motion ? cfg->parts.motions->carve(s, a) : NULL;
@@ -224,7 +224,7 @@ static struct glint_scene *allocate_scene(struct glint_arena *a,
         a, (size_t)s->cover_across * (size_t)s->cover_down, sizeof *s->cover);
     s->worker = glint_arena_allocate(a, (size_t)n_workers, sizeof *s->worker);
     for (int i = 0; i < n_workers; i++)
-        allocate_worker(s, a, s->worker ? &s->worker[i] : NULL);
+        allocate_worker_memory(s, a, s->worker ? &s->worker[i] : NULL);
     return placed;
 }
 
@@ -325,10 +325,10 @@ enum glint_status glint_scene_init(struct glint_scene **scene,
     if (s->curve)
         cfg->parts.textures->prepare(s->curve);
     for (uint32_t i = 0; i < model->header->n_materials; i++)
-        glint_gloss_fill_table(&s->gloss[i], model->material[i].power_q8);
+        glint_gloss_fill_power_table(&s->gloss[i], model->material[i].power_q8);
     if (!set_initial_poses(s))
-        return GLINT_E_ARGUMENT; /* cannot happen, as the model was checked when
-                                    it was opened */
+        return GLINT_E_ARGUMENT; /* cannot happen, as opening the model has
+                                    checked its poses */
     if (s->motion && cfg->parts.motions->open(s) != GLINT_OK)
         return GLINT_E_FORMAT;
     *scene = s;

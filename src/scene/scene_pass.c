@@ -9,11 +9,12 @@
 #include "scene/parts.h"
 
 enum {
-    SUMMED = 4 /* number of samples that a pixel's sums of light and cover
-                  are scaled to */
+    SUMMED = 4 /* number of samples per pixel to which the sums of light and
+                  cover are scaled */
 };
 
-static void *start_row(const void *self, struct glint_box row, int worker)
+static void *clear_triangle_cache_for_row(const void *self,
+                                          struct glint_box row, int worker)
 {
     const struct glint_scene *scene = self;
 
@@ -24,13 +25,13 @@ static void *start_row(const void *self, struct glint_box row, int worker)
     return &scene->worker[worker];
 }
 
-static int start_tile(void *state, struct glint_box tile)
+static int find_objects_in_tile(void *state, struct glint_box tile)
 {
     return glint_scene_look(state, tile);
 }
 
-/* Returns whether object ID is shaded per sample, as its reflections and
- * transmitted objects have edges inside its outline. */
+/* Returns whether object ID is shaded at each sample, as edges of what it
+ * reflects and transmits are visible inside its outline. */
 static inline int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
 {
     return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
@@ -68,12 +69,13 @@ static NEVER_INLINE int find_exact_surface(struct glint_scene_worker *w,
         const int32_t y_q8 =
             glint_pixel_position_q8(s, y, 1) + get_sample_offset(s, at, 1);
 
-        /* find_sample_surface() has already tried the middle */
+        /* find_sample_surface() has already tried the fast path at the pixel's
+         * middle */
         if (i > 0 && glint_quick_find_surface(w, id, x_q8, y_q8, ray, surface))
             return 1;
         glint_view_set_ray(&s->view, x_q8, y_q8, ray, seen_q30);
         if (glint_scene_ray_hits_id(s, ray, seen_q30, id, &met))
-            return glint_scene_set_surface(s, ray, &met, surface);
+            return glint_scene_find_surface_at_hit(s, ray, &met, surface);
     }
     return 0;
 }
@@ -95,8 +97,8 @@ static inline int find_sample_surface(struct glint_scene_worker *w, uint32_t id,
 }
 
 /* Sets RGB_Q15 to the light of the background at pixel (X, Y). */
-static void compute_background(const struct glint_scene *s, int x, int y,
-                               int32_t rgb_q15[3])
+static void compute_background_light(const struct glint_scene *s, int x, int y,
+                                     int32_t rgb_q15[3])
 {
     struct glint_scene_ray ray = {.at = {0}};
     int32_t seen_q30[3];
@@ -108,11 +110,10 @@ static void compute_background(const struct glint_scene *s, int x, int y,
                                    glint_scene_pixel_variance_q40(s), rgb_q15);
 }
 
-/* Shades what sample K of pixel (X, Y) sees, object ID or the background;
- * returns whether it is an object. */
-static inline int shade_visible_id(struct glint_scene_worker *w, uint32_t id,
-                                   int x, int y, int k,
-                                   struct glint_met_shade *shade)
+/* Shades the object or triangle ID, or the background, that sample K of pixel
+ * (X, Y) sees. Returns whether the sample sees an object. */
+static inline int shade_sample(struct glint_scene_worker *w, uint32_t id, int x,
+                               int y, int k, struct glint_met_shade *shade)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_scene_header *h = s->model.header;
@@ -127,13 +128,13 @@ static inline int shade_visible_id(struct glint_scene_worker *w, uint32_t id,
     }
     if (h->background != GLINT_BACKGROUND_CAMERA) {
         shade->cover_q8 = GLINT_COVER_ALL;
-        compute_background(s, x, y, shade->rgb_q15);
+        compute_background_light(s, x, y, shade->rgb_q15);
     }
     return 0;
 }
 
 /* Returns whether none of the N samples of a pixel sees an object. */
-static inline int is_pixel_empty(const uint32_t *id, int n)
+static inline int does_pixel_see_no_object(const uint32_t *id, int n)
 {
     uint32_t all = id[0];
 
@@ -150,11 +151,11 @@ static inline int is_shadow_catcher(const struct glint_scene *s, uint32_t id)
            s->placed[id >> 20].is_catcher;
 }
 
-/* Returns whether the samples that see A and B may share one shaded point: they
+/* Returns whether two samples that see A and B can share one shaded point: they
  * see the same object, or two triangles of a smooth surface that share a
  * vertex. */
-static int may_share_shading(const struct glint_scene *s, uint32_t a,
-                             uint32_t b)
+static int can_objects_share_shading(const struct glint_scene *s, uint32_t a,
+                                     uint32_t b)
 {
     return a == b ||
            ((a ^ b) >> 20 == 0 && a != GLINT_NOTHING && b != GLINT_NOTHING &&
@@ -162,11 +163,12 @@ static int may_share_shading(const struct glint_scene *s, uint32_t a,
             s->cfg.parts.meshes->joins(s, a, b));
 }
 
-/* Sets TIMES to the number of samples that use the shading of each sample: 0
- * for a sample that uses the shading of another one. */
-static inline void group_equal_samples(const struct glint_scene *s,
-                                       const uint32_t *id, int n,
-                                       int times[GLINT_SCENE_SAMPLES])
+/* Groups N samples that can share one shaded point. Sets TIMES to the number of
+ * samples that each sample's shading serves: 0 for a sample that uses the
+ * shading of another sample. */
+static inline void group_samples_by_shading(const struct glint_scene *s,
+                                            const uint32_t *id, int n,
+                                            int times[GLINT_SCENE_SAMPLES])
 {
     int first = 0;
 
@@ -176,8 +178,9 @@ static inline void group_equal_samples(const struct glint_scene *s,
             first = k;
         } else if (k > 0 && id[k] != id[k - 1]) {
             first = 0;
-            while (first < k && (times[first] == 0 ||
-                                 !may_share_shading(s, id[first], id[k])))
+            while (first < k &&
+                   (times[first] == 0 ||
+                    !can_objects_share_shading(s, id[first], id[k])))
                 first++;
         }
         times[first]++;
@@ -222,15 +225,15 @@ static NEVER_INLINE void shade_pixel_samples(struct glint_scene_worker *w,
     const int down = n == 16 ? 2 : n == 8;
     int times[GLINT_SCENE_SAMPLES];
 
-    group_equal_samples(s, id, n, times);
+    group_samples_by_shading(s, id, n, times);
     for (int k = 0; k < n; k++) {
         struct glint_met_shade shade;
 
         if (times[k] == 0)
             continue;
-        if (shade_visible_id(w, id[k], x, y, k, &shade))
+        if (shade_sample(w, id[k], x, y, k, &shade))
             record_highlight(s, id[k], &shade, x, y, 128,
-                             times[k] << (4 - glint_samples_log2(n)));
+                             times[k] << (4 - glint_get_samples_log2(n)));
         add_shaded_samples(s, id[k], &shade, times[k], sum);
     }
     for (int c = 0; c < 3; c++)
@@ -240,8 +243,9 @@ static NEVER_INLINE void shade_pixel_samples(struct glint_scene_worker *w,
     sum->shadow_q10 = (sum->shadow_q10 + down) >> down;
 }
 
-/* Returns whether all N samples at ID see the object or triangle THING. */
-static inline int do_all_samples_see(const uint32_t *id, int n, uint32_t thing)
+/* Returns whether all N samples in ID see the object or triangle THING. */
+static inline int do_all_samples_see_object(const uint32_t *id, int n,
+                                            uint32_t thing)
 {
     uint32_t other = 0;
 
@@ -250,25 +254,27 @@ static inline int do_all_samples_see(const uint32_t *id, int n, uint32_t thing)
     return other == 0;
 }
 
-/* Returns whether all N samples at ID may share the shading of object or
+/* Returns whether all N samples in ID can share the shading of object or
  * triangle THING. */
-static int may_all_share_shading(const struct glint_scene *s,
-                                 const uint32_t *id, int n, uint32_t thing)
+static int can_all_samples_share_shading(const struct glint_scene *s,
+                                         const uint32_t *id, int n,
+                                         uint32_t thing)
 {
     uint32_t last = thing;
 
     for (int k = 0; k < n; k++) {
-        if (id[k] != last && !may_share_shading(s, id[k], thing))
+        if (id[k] != last && !can_objects_share_shading(s, id[k], thing))
             return 0;
         last = id[k];
     }
     return 1;
 }
 
-/* Returns whether the aligned block of 2 x 2 pixels that contains (X, Y) sees
- * one object, or adjacent triangles of one smooth surface. */
-static int is_shared_by_quad(const struct glint_scene_worker *w, int n, int x,
-                             int y)
+/* Returns whether all samples of the aligned block of 2 x 2 pixels that
+ * contains (X, Y) see one object, or adjacent triangles of one smooth surface,
+ * so that one shaded point serves all four pixels. */
+static int can_pixel_quad_share_shading(const struct glint_scene_worker *w,
+                                        int n, int x, int y)
 {
     const struct glint_box b = w->touched;
     const int x0 = x & ~1, y0 = y & ~1;
@@ -276,13 +282,13 @@ static int is_shared_by_quad(const struct glint_scene_worker *w, int n, int x,
 
     if (x0 < b.x0 || y0 < b.y0 || x0 + 1 >= b.x1 || y0 + 1 >= b.y1)
         return 0;
-    id = &w->id[glint_sample_index(w, x0, y0, 0)];
+    id = &w->id[glint_get_sample_index(w, x0, y0, 0)];
     if (id[0] == GLINT_NOTHING)
         return 0;
-    return may_all_share_shading(w->scene, id, 2 * n, id[0]) &&
-           may_all_share_shading(w->scene,
-                                 &w->id[glint_sample_index(w, x0, y0 + 1, 0)],
-                                 2 * n, id[0]);
+    return can_all_samples_share_shading(w->scene, id, 2 * n, id[0]) &&
+           can_all_samples_share_shading(
+               w->scene, &w->id[glint_get_sample_index(w, x0, y0 + 1, 0)],
+               2 * n, id[0]);
 }
 
 /* Shades pixel (X, Y), whose N samples see the objects ID[N], and sets SUM. */
@@ -290,7 +296,7 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
                                int n, int x, int y, struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
-    const int quad = w->quad && is_shared_by_quad(w, n, x, y);
+    const int quad = w->quad && can_pixel_quad_share_shading(w, n, x, y);
     struct glint_scene_sum *kept =
         quad ? &w->quad[(x - w->tile.x0) >> 1] : NULL;
     struct glint_met_shade shade;
@@ -301,8 +307,9 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
     }
     *sum = (struct glint_scene_sum){{0, 0, 0}, 0, 0};
     if (quad || n == 1 ||
-        (do_all_samples_see(id, n, id[0]) && !is_shaded_per_sample(s, id[0]))) {
-        if (shade_visible_id(w, id[0], x, y, quad ? QUAD : 0, &shade))
+        (do_all_samples_see_object(id, n, id[0]) &&
+         !is_shaded_per_sample(s, id[0]))) {
+        if (shade_sample(w, id[0], x, y, quad ? QUAD : 0, &shade))
             record_highlight(s, id[0], &shade, x, y, quad ? 256 : 128,
                              quad ? 64 : 16);
         add_shaded_samples(s, id[0], &shade, SUMMED, sum);
@@ -313,10 +320,10 @@ static inline void shade_pixel(struct glint_scene_worker *w, const uint32_t *id,
         *kept = *sum;
 }
 
-static inline void write_pixel_sum(const struct glint_scene_worker *w,
-                                   const struct glint_pass_rows *rows, int i,
-                                   int row, const int64_t sum_q17[3],
-                                   int cover_q10)
+static inline void write_pixel_light(const struct glint_scene_worker *w,
+                                     const struct glint_pass_rows *rows, int i,
+                                     int row, const int64_t sum_q17[3],
+                                     int cover_q10)
 {
     rows->cover->cover_q8[row][i] = (uint16_t)((cover_q10 + 2) >> 2);
     for (int c = 0; c < 3; c++)
@@ -327,7 +334,7 @@ static inline void write_pixel_sum(const struct glint_scene_worker *w,
                 (uint16_t)q_clamp_sat((sum_q17[c] + 1) >> 1, 0, 65535);
 }
 
-/* Sets N pixels of row ROW, from X to the right, to the same light and
+/* Sets N pixels of row ROW, from column X to the right, to the same light and
  * cover. */
 static void write_pixel_run(const struct glint_scene_worker *w,
                             const struct glint_pass_rows *rows, int row, int x,
@@ -357,7 +364,8 @@ static void write_pixel_run(const struct glint_scene_worker *w,
 }
 
 /* Adds full cover to the stored cover of pixels X0 .. X1 - 1 of row Y. */
-static void add_full_cover(const struct glint_scene *s, int y, int x0, int x1)
+static void add_full_cover_of_pixels(const struct glint_scene *s, int y, int x0,
+                                     int x1)
 {
     enum { SIDE = 1 << GLINT_COVER_LOG2 };
     uint16_t *cover = &s->cover[(y >> GLINT_COVER_LOG2) * s->cover_across];
@@ -370,9 +378,9 @@ static void add_full_cover(const struct glint_scene *s, int y, int x0, int x1)
 }
 
 /* Sets pixels X0 .. X1 - 1 of row ROW to the background's light. */
-static void write_background(const struct glint_scene_worker *w,
-                             const struct glint_pass_rows *rows, int row,
-                             int x0, int x1)
+static void write_background_pixels(const struct glint_scene_worker *w,
+                                    const struct glint_pass_rows *rows, int row,
+                                    int x0, int x1)
 {
     static const int32_t none_q15[3];
     const struct glint_scene_header *h = w->scene->model.header;
@@ -381,7 +389,7 @@ static void write_background(const struct glint_scene_worker *w,
         write_pixel_run(w, rows, row, x0, x1 - x0, none_q15, 0);
         return;
     }
-    add_full_cover(w->scene, rows->y + row, x0, x1);
+    add_full_cover_of_pixels(w->scene, rows->y + row, x0, x1);
     if (h->background != GLINT_BACKGROUND_ENVIRONMENT) {
         write_pixel_run(w, rows, row, x0, x1 - x0, h->background_q15,
                         GLINT_COVER_ALL);
@@ -390,7 +398,7 @@ static void write_background(const struct glint_scene_worker *w,
     for (int x = x0; x < x1; x++) {
         int32_t rgb_q15[3];
 
-        compute_background(w->scene, x, rows->y + row, rgb_q15);
+        compute_background_light(w->scene, x, rows->y + row, rgb_q15);
         write_pixel_run(w, rows, row, x, 1, rgb_q15, GLINT_COVER_ALL);
     }
 }
@@ -410,7 +418,7 @@ static inline int draw_row_pixel(struct glint_scene_worker *w,
     shade_pixel(w, id, n, x, y, &sum);
     if (w->n_over)
         s->cfg.parts.motions->over(w, x, y, &sum);
-    write_pixel_sum(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
+    write_pixel_light(w, rows, x - w->tile.x0, row, sum.rgb_q17, sum.cover_q10);
     *cover = (uint16_t)(*cover + ((sum.cover_q10 - sum.shadow_q10 + 2) >> 2));
     return sum.cover_q10 || sum.rgb_q17[0] || sum.rgb_q17[1] || sum.rgb_q17[2];
 }
@@ -425,30 +433,31 @@ static inline int draw_pixel_row(struct glint_scene_worker *w,
     const int y = rows->y + row;
     const int is_in = !glint_box_is_empty(b) && y >= b.y0 && y < b.y1;
     const int x0 = is_in ? b.x0 : w->tile.x1, x1 = is_in ? b.x1 : w->tile.x1;
-    const uint32_t *id = &w->id[glint_sample_index(w, x0, y, 0)];
+    const uint32_t *id = &w->id[glint_get_sample_index(w, x0, y, 0)];
     int any = s->model.header->background != GLINT_BACKGROUND_CAMERA;
-    int same = x0; /* end of the run of pixels that have the same overlays */
+    int same = x0; /* end of the run of pixels that the same overlays cover */
 
     w->n_spans = w->n_over = 0;
     if (s->motion && is_in)
         s->cfg.parts.motions->list(w, y);
-    write_background(w, rows, row, w->tile.x0, x0);
+    write_background_pixels(w, rows, row, w->tile.x0, x0);
     for (int x = x0, end; x < x1; x = end) {
         if (x == same)
             same = w->n_spans ? q_smaller(s->cfg.parts.motions->next(w, x), x1)
                               : x1;
-        for (end = x; end < same && !w->n_over && is_pixel_empty(id, n);
+        for (end = x;
+             end < same && !w->n_over && does_pixel_see_no_object(id, n);
              id += n)
             end++;
         if (end > x) {
-            write_background(w, rows, row, x, end);
+            write_background_pixels(w, rows, row, x, end);
             continue;
         }
         any |= draw_row_pixel(w, rows, row, x, id, n);
         id += n;
         end = x + 1;
     }
-    write_background(w, rows, row, x1, w->tile.x1);
+    write_background_pixels(w, rows, row, x1, w->tile.x1);
     return any;
 }
 
@@ -472,7 +481,8 @@ static enum glint_given draw_pixel_rows(void *state,
 /* Returns the engine pass that draws the scene. */
 static struct glint_pass get_scene_pass(const struct glint_scene *scene)
 {
-    return (struct glint_pass){scene, start_row, start_tile, draw_pixel_rows};
+    return (struct glint_pass){scene, clear_triangle_cache_for_row,
+                               find_objects_in_tile, draw_pixel_rows};
 }
 
 /* ----------------------------------------------------------------- drawing */
@@ -483,7 +493,7 @@ struct draw {
     struct glint_pass pass;
 };
 
-static void draw_tile_row_job(void *ctx, int job, int worker)
+static void draw_row_of_tiles(void *ctx, int job, int worker)
 {
     struct draw *d = ctx;
 
@@ -512,5 +522,5 @@ void glint_scene_draw(struct glint_scene *scene,
     for (int i = 0; i < glint_workers_count(scene->cfg.workers); i++)
         scene->worker[i].is_linear = image->format == GLINT_LINEAR_Q20;
     glint_workers_run(scene->cfg.workers, glint_tiles_count_rows(&d.tiles),
-                      draw_tile_row_job, &d);
+                      draw_row_of_tiles, &d);
 }

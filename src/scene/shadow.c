@@ -24,18 +24,19 @@ enum {
     SORTED = 64 /* longest list of objects that is sorted by height */
 };
 
-/* Returns the max offset across the grid of the sun's slanted rays over HEIGHT
- * steps, which must be below 2^32. */
-static inline int64_t compute_slant_offset(const struct glint_shadow *shadow,
-                                           int64_t height)
+/* Returns the max offset, across the grid, of the rays to any point of the
+ * sun's disc over a height of HEIGHT steps. HEIGHT must be below 2^32. */
+static inline int64_t compute_max_ray_offset(const struct glint_shadow *shadow,
+                                             int64_t height)
 {
     return q_shift(height * shadow->lean_q30, 30);
 }
 
 /* Returns grid coordinate X along AXIS in 1/256 of a cell, within +-2^15. X
  * must be within +-2^33. A cell is at least SLACK steps wide. */
-static inline int32_t convert_to_cells_q8(const struct glint_shadow *shadow,
-                                          int64_t x, int axis)
+static inline int32_t
+convert_steps_to_cells_q8(const struct glint_shadow *shadow, int64_t x,
+                          int axis)
 {
     return q_clamp_sat((x - shadow->lo[axis]) * shadow->cells_q32[axis] >> 24,
                        INT16_MIN, INT16_MAX);
@@ -43,15 +44,15 @@ static inline int32_t convert_to_cells_q8(const struct glint_shadow *shadow,
 
 /* --------------------------------------------------------------------- grid */
 
-static int casts_shadow(const struct glint_placed *p)
+static int does_object_cast_shadow(const struct glint_placed *p)
 {
     return p->is_shown && p->object->kind != GLINT_OBJECT_PLANE;
 }
 
 /* ------------------------------------------------------------------ extents */
 
-static void extend_bounding_box(struct glint_shadow *shadow,
-                                const int32_t at[3], int32_t reach)
+static void extend_grid_bounds_to_sphere(struct glint_shadow *shadow,
+                                         const int32_t at[3], int32_t reach)
 {
     for (int k = 0; k < 3; k++) {
         shadow->lo[k] = q_smaller(shadow->lo[k], at[k] - reach);
@@ -59,7 +60,7 @@ static void extend_bounding_box(struct glint_shadow *shadow,
     }
 }
 
-/* Sets the grid's bounding box to the box of all objects that cast shadows;
+/* Sets the grid's bounding box to the box around all objects that cast shadows;
  * returns 0 if there are none. */
 static int find_caster_bounds(const struct glint_scene *s,
                               struct glint_shadow *shadow)
@@ -72,16 +73,16 @@ static int find_caster_bounds(const struct glint_scene *s,
         const struct glint_placed *p = &s->placed[i];
         int32_t at[3];
 
-        if (!casts_shadow(p))
+        if (!does_object_cast_shadow(p))
             continue;
         v3_rotate(&shadow->turn, p->centre, at);
-        extend_bounding_box(shadow, at, p->reach + SLACK);
+        extend_grid_bounds_to_sphere(shadow, at, p->reach + SLACK);
     }
     return shadow->lo[0] <= shadow->hi[0];
 }
 
-/* Enlarges the grid so that it is valid for slanted rays: to points as far
- * below the objects as their bounding box is wide. */
+/* Enlarges the grid so that it is valid for slanted rays that start at points
+ * as far below the objects as the width of the objects' bounding box. */
 static void enlarge_grid_for_slant(struct glint_shadow *shadow)
 {
     const int32_t side =
@@ -92,9 +93,9 @@ static void enlarge_grid_for_slant(struct glint_shadow *shadow)
     if (shadow->lean_q30 == 0)
         return;
     shadow->lowest = q_larger(shadow->lo[2] - side, -GLINT_FAR);
-    lean =
-        compute_slant_offset(shadow, (int64_t)shadow->hi[2] - shadow->lowest) +
-        SLACK;
+    lean = compute_max_ray_offset(shadow,
+                                  (int64_t)shadow->hi[2] - shadow->lowest) +
+           SLACK;
     for (int k = 0; k < 2; k++) {
         shadow->lo[k] =
             q_clamp_sat(shadow->lo[k] - lean, -GLINT_FAR, GLINT_FAR);
@@ -105,7 +106,7 @@ static void enlarge_grid_for_slant(struct glint_shadow *shadow)
 
 /* ------------------------------------------------------------------- lists */
 
-/* Returns the range of grid cells that the footprint T covers. */
+/* Returns the range of grid cells that footprint T covers. */
 static struct glint_box find_footprint_cells(const struct glint_shadow_thing *t)
 {
     return glint_box_intersect((struct glint_box){0, 0, CELLS, CELLS},
@@ -114,8 +115,8 @@ static struct glint_box find_footprint_cells(const struct glint_shadow_thing *t)
                                                   (t->hi[1] >> 8) + 1});
 }
 
-/* Sets T to the footprint of an object with bounds LO .. HI: the region that
- * the object can shadow. */
+/* Sets T to the footprint of an object with bounds LO .. HI: the region of the
+ * grid in which the object can cast shadows. */
 static void set_caster_footprint(const struct glint_shadow *shadow,
                                  const int32_t lo[3], const int32_t hi[3],
                                  uint32_t id, struct glint_shadow_thing *t)
@@ -123,14 +124,14 @@ static void set_caster_footprint(const struct glint_shadow *shadow,
     const int64_t lean =
         SLACK +
         (shadow->lean_q30
-             ? compute_slant_offset(shadow, (int64_t)hi[2] - shadow->lowest)
+             ? compute_max_ray_offset(shadow, (int64_t)hi[2] - shadow->lowest)
              : 0);
 
     t->id = id;
     t->top = hi[2];
     for (int k = 0; k < 2; k++) {
-        t->lo[k] = (int16_t)convert_to_cells_q8(shadow, lo[k] - lean, k);
-        t->hi[k] = (int16_t)convert_to_cells_q8(shadow, hi[k] + lean, k);
+        t->lo[k] = (int16_t)convert_steps_to_cells_q8(shadow, lo[k] - lean, k);
+        t->hi[k] = (int16_t)convert_steps_to_cells_q8(shadow, hi[k] + lean, k);
     }
 }
 
@@ -160,8 +161,8 @@ static int list_triangle_casters(const struct glint_scene *s,
     return (int)mesh->n_triangles;
 }
 
-/* Lists all objects that cast shadows; returns the total number of entries that
- * they need in the lists of all cells. */
+/* Lists all objects that cast shadows; returns the number of entries that they
+ * need in all cells' lists together. */
 static int64_t list_shadow_casters(const struct glint_scene *s,
                                    struct glint_shadow *shadow)
 {
@@ -173,7 +174,7 @@ static int64_t list_shadow_casters(const struct glint_scene *s,
         struct glint_shadow_thing *t = &shadow->thing[shadow->n_things];
         int32_t at[3], lo[3], hi[3];
 
-        if (!casts_shadow(p))
+        if (!does_object_cast_shadow(p))
             continue;
         if (p->object->kind == GLINT_OBJECT_MESH) {
             shadow->n_things += list_triangle_casters(s, shadow, i, t);
@@ -235,11 +236,13 @@ static void sort_lists_by_height(struct glint_shadow *shadow)
     }
 }
 
-/* Returns whether CELL lists an object, other than OWN, that reaches above
- * height LOWEST and can shadow points within LO .. HI. */
-static int can_cell_shadow_box(const struct glint_shadow *shadow, int cell,
-                               uint32_t own, int32_t lowest,
-                               const int32_t lo_q8[2], const int32_t hi_q8[2])
+/* Returns whether CELL lists an object that reaches above height LOWEST and can
+ * shadow points within LO .. HI. Object OWN is ignored. */
+static int can_objects_in_cell_shadow_box(const struct glint_shadow *shadow,
+                                          int cell, uint32_t own,
+                                          int32_t lowest,
+                                          const int32_t lo_q8[2],
+                                          const int32_t hi_q8[2])
 {
     for (int i = shadow->bins.start[cell]; i < shadow->bins.start[cell + 1];
          i++) {
@@ -265,16 +268,16 @@ static int is_ball_unshadowed(const struct glint_scene *s,
 
     v3_rotate(&shadow->turn, p->at, at);
     for (int k = 0; k < 2; k++) {
-        lo_q8[k] = convert_to_cells_q8(shadow, (int64_t)at[k] - reach, k);
-        hi_q8[k] = convert_to_cells_q8(shadow, (int64_t)at[k] + reach, k);
+        lo_q8[k] = convert_steps_to_cells_q8(shadow, (int64_t)at[k] - reach, k);
+        hi_q8[k] = convert_steps_to_cells_q8(shadow, (int64_t)at[k] + reach, k);
         if (lo_q8[k] < 0 || hi_q8[k] >= CELLS << 8)
             return 0;
     }
     for (int y = lo_q8[1] >> 8; y <= hi_q8[1] >> 8; y++)
         for (int x = lo_q8[0] >> 8; x <= hi_q8[0] >> 8; x++)
-            if (can_cell_shadow_box(shadow, y * CELLS + x,
-                                    glint_make_triangle_id(i, 0), at[2] - reach,
-                                    lo_q8, hi_q8))
+            if (can_objects_in_cell_shadow_box(shadow, y * CELLS + x,
+                                               glint_make_triangle_id(i, 0),
+                                               at[2] - reach, lo_q8, hi_q8))
                 return 0;
     return 1;
 }
@@ -303,7 +306,7 @@ static void rotate_vertices_to_sun(const struct glint_scene *s,
         const struct glint_scene_mesh *mesh;
         const int32_t *vertex;
 
-        if (!casts_shadow(p) || p->object->kind != GLINT_OBJECT_MESH)
+        if (!does_object_cast_shadow(p) || p->object->kind != GLINT_OBJECT_MESH)
             continue;
         mesh = glint_mesh_of(s, i);
         vertex = glint_mesh_get_table(s, mesh->vertex_at);
@@ -321,9 +324,9 @@ static void rotate_vertices_to_sun(const struct glint_scene *s,
 
 /* Sets the directions of the sun's sample points, and the slopes of rays from
  * these to the grid's axis. */
-static void set_disc_points(const struct glint_scene *s,
-                            const struct glint_lit *lit,
-                            struct glint_shadow *shadow)
+static void set_sample_points_of_sun(const struct glint_scene *s,
+                                     const struct glint_lit *lit,
+                                     struct glint_shadow *shadow)
 {
     shadow->n_points = lit->light->radius ? s->cfg.shadow_points : 1;
     for (int i = 0; i < shadow->n_points; i++) {
@@ -359,8 +362,8 @@ void glint_shadow_build_grid(const struct glint_scene *s,
     shadow->lean_q30 = 0;
     for (int k = 0; k < 3; k++)
         row_q30[2][k] = lit->toward_q30[k];
-    glint_scene_set_perpendiculars(row_q30[2], row_q30[0], row_q30[1]);
-    set_disc_points(s, lit, shadow);
+    glint_scene_find_perpendicular_vectors(row_q30[2], row_q30[0], row_q30[1]);
+    set_sample_points_of_sun(s, lit, shadow);
     shadow->is_empty = !find_caster_bounds(s, shadow);
     shadow->is_ready = 1;
     if (shadow->is_empty)
@@ -421,26 +424,27 @@ struct glint_box glint_shadow_find_plane_box(const struct glint_scene *s,
                                  k & 1 ? shadow->lo[0] : shadow->hi[0],
                                  k & 2 ? shadow->lo[1] : shadow->hi[1], place))
             return (struct glint_box){0, 0, s->view.width, s->view.height};
-        glint_view_to_camera(&s->view, place, seen[k]);
+        glint_view_convert_to_camera(&s->view, place, seen[k]);
     }
-    return glint_view_find_box(&s->view, (const int32_t(*)[3])seen, 4);
+    return glint_view_find_box_of_points(&s->view, (const int32_t(*)[3])seen,
+                                         4);
 }
 
-/* Special cell indices. NONE: no object is above. BEYOND: the grid is not valid
- * at the point. */
+/* Special cell indices. NONE: no object is above the point. BEYOND: the grid is
+ * not valid at the point. */
 enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
 
 /* Returns whether three numbers are all positive or all negative. */
-static int have_same_sign(const int32_t x[3])
+static int have_three_numbers_same_sign(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
 
 /* Returns whether a ray from point AT, of slope LEAN, hits a triangle above the
- * point; tested by edge functions. A triangle is at most 2^28 long and AT,
- * which is in one of its cells, is as near; with the ray's offset all
+ * point. Tests the signs of edge functions. The triangle is at most 2^28 long,
+ * and AT lies in one of its cells, so it is as near; with the ray's offset all
  * coordinates are below 2^30. */
 static int ray_hits_triangle(const int32_t *const vertex[3],
                              const int32_t at[3], const int32_t lean_q30[2])
@@ -457,7 +461,7 @@ static int ray_hits_triangle(const int32_t *const vertex[3],
             y[i] -= (int32_t)q_shift((int64_t)up[i] * lean_q30[1], 30);
         }
     }
-    if (have_same_sign(x) || have_same_sign(y))
+    if (have_three_numbers_same_sign(x) || have_three_numbers_same_sign(y))
         return 0;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -471,7 +475,7 @@ static int ray_hits_triangle(const int32_t *const vertex[3],
         return 0;
     if (up[0] > 0 && up[1] > 0 && up[2] > 0)
         return 1;
-    glint_set_vertex_weights(edge, sum, part_q30);
+    glint_compute_vertex_weights(edge, sum, part_q30);
     return q_shift(v3_dot(part_q30, up), 30) > 0;
 }
 
@@ -509,8 +513,9 @@ struct below {
     int32_t across_q8[2];
 };
 
-/* Returns whether the ray hits any object in the list of BELOW's cell, other
- * than SURFACE itself. */
+/* Returns whether the ray from BELOW to a point of the sun's disc hits any
+ * object in the list of BELOW's cell, other than the object of SURFACE
+ * itself. */
 static int is_ray_blocked_in_cell(const struct glint_scene *s,
                                   const struct glint_shadow *shadow,
                                   const struct below *below,
@@ -558,9 +563,9 @@ static int is_ray_blocked_in_cell(const struct glint_scene *s,
 }
 
 /* Sets BELOW to the grid coordinates and the cell of point PLACE. */
-static WHOLLY_INLINE void project_to_grid(const struct glint_shadow *shadow,
-                                          const int32_t place[3],
-                                          struct below *below)
+static WHOLLY_INLINE void
+project_point_to_grid(const struct glint_shadow *shadow, const int32_t place[3],
+                      struct below *below)
 {
     int32_t *at = below->at;
     int64_t lean = 0;
@@ -570,7 +575,7 @@ static WHOLLY_INLINE void project_to_grid(const struct glint_shadow *shadow,
         return;
     v3_rotate(&shadow->turn, place, at);
     if (at[2] < shadow->lowest)
-        lean = compute_slant_offset(shadow, (int64_t)shadow->lowest - at[2]) +
+        lean = compute_max_ray_offset(shadow, (int64_t)shadow->lowest - at[2]) +
                SLACK;
     if (at[2] > shadow->hi[2] || at[0] < shadow->lo[0] - lean ||
         at[0] > shadow->hi[0] + lean || at[1] < shadow->lo[1] - lean ||
@@ -580,7 +585,7 @@ static WHOLLY_INLINE void project_to_grid(const struct glint_shadow *shadow,
     if (lean)
         return;
     for (int k = 0; k < 2; k++)
-        below->across_q8[k] = convert_to_cells_q8(shadow, at[k], k);
+        below->across_q8[k] = convert_steps_to_cells_q8(shadow, at[k], k);
     below->cell =
         (below->across_q8[1] >> 8) * CELLS + (below->across_q8[0] >> 8);
     if (shadow->bins.start[below->cell] == shadow->bins.start[below->cell + 1])
@@ -588,8 +593,8 @@ static WHOLLY_INLINE void project_to_grid(const struct glint_shadow *shadow,
 }
 
 /* Returns whether the light of a sun with a single sample point reaches
- * SURFACE. No plane may cast shadows on it, and the cell of BELOW must have a
- * list. */
+ * SURFACE. The caller must have checked that no plane can shadow SURFACE and
+ * that the cell of BELOW has a list. */
 static int is_lit_by_point_sun(const struct glint_scene *s,
                                const struct glint_shadow *shadow,
                                const struct below *below,
@@ -602,10 +607,10 @@ static int is_lit_by_point_sun(const struct glint_scene *s,
            !is_ray_blocked_in_cell(s, shadow, below, p, place, surface);
 }
 
-/* Returns REACHED / the number of the sun's sample points (1, 4 or 16),
- * _q15. */
-static int32_t compute_point_fraction(const struct glint_shadow *shadow,
-                                      int reached)
+/* Returns REACHED / (number of the sun's sample points), _q15. A sun has 1, 4
+ * or 16 sample points. */
+static int32_t compute_fraction_of_sun_points(const struct glint_shadow *shadow,
+                                              int reached)
 {
     return reached << (shadow->n_points == 1   ? 15
                        : shadow->n_points == 4 ? 13
@@ -622,7 +627,7 @@ compute_fraction_above_surface(const struct glint_shadow *shadow,
 
     for (int i = 0; i < shadow->n_points; i++)
         above += v3_dot(shadow->point[i].toward_q30, surface->face_q30) > 0;
-    return compute_point_fraction(shadow, above);
+    return compute_fraction_of_sun_points(shadow, above);
 }
 
 /* Returns the fraction, _q15, of the disc's sample points whose light reaches
@@ -632,7 +637,8 @@ static NEVER_INLINE int32_t compute_lit_fraction(
     const struct glint_met_surface *surface, const struct below *below,
     const int32_t place[3])
 {
-    const int asks_planes = glint_scene_has_other_planes(s, surface->object);
+    const int asks_planes =
+        glint_scene_has_other_shadow_planes(s, surface->object);
     struct glint_scene_ray ray;
     int reached = 0;
 
@@ -656,7 +662,7 @@ static NEVER_INLINE int32_t compute_lit_fraction(
             (below->cell == NONE ||
              !is_ray_blocked_in_cell(s, shadow, below, p, place, surface));
     }
-    return compute_point_fraction(shadow, reached);
+    return compute_fraction_of_sun_points(shadow, reached);
 }
 
 int32_t glint_shadow_compute_lit_fraction(
@@ -668,9 +674,9 @@ int32_t glint_shadow_compute_lit_fraction(
     if (s->placed[surface->object].open_to >> shadow->light & 1)
         below.cell = NONE;
     else
-        project_to_grid(shadow, place, &below);
+        project_point_to_grid(shadow, place, &below);
     if (below.cell == BEYOND ||
-        glint_scene_has_other_planes(s, surface->object))
+        glint_scene_has_other_shadow_planes(s, surface->object))
         return compute_lit_fraction(s, shadow, surface, &below, place);
     if (below.cell == NONE)
         return compute_fraction_above_surface(shadow, surface);

@@ -21,12 +21,12 @@ enum {
     GLINT_SCENE_ONE_Q15 = 1 << 15,
     GLINT_SCENE_MOST_LIGHT = 1 << 30, /* max light, q15; more is clamped to
                                          it */
-    /* distance by which the start of secondary rays is moved off a mesh,
-     * steps */
+    /* distance, steps, by which the start of secondary rays is moved off a
+     * mesh's surface */
     GLINT_SCENE_LIFT = 4,
     GLINT_SCENE_SAMPLES = 16, /* max samples per pixel */
     GLINT_SCENE_PASSES = 8,   /* max number of surfaces that transmit a ray */
-    GLINT_COVER_LOG2 = 3 /* log2 of the side, in pixels, of the squares in which
+    GLINT_COVER_LOG2 = 3 /* log2 of the side, pixels, of the squares over which
                             cover is summed */
 };
 
@@ -36,15 +36,16 @@ enum {
 struct glint_placed {
     const struct glint_scene_object *object;
     int32_t at[3], radius;
-    /* Rotation of the object: its point p is at position at + turn p. */
+    /* Rotation of the object: its point p lies at position AT + TURN p. */
     struct glint_scene_turn turn;
-    /* Bounding sphere, steps. For a plane: its normal, _q30, and 0. */
+    /* Centre and radius of the bounding sphere, steps. For a plane: its normal,
+     * _q30, and 0. */
     int32_t centre[3], reach;
-    uint32_t material; /* index of the material of surfaces that have none of
-                          their own */
+    uint32_t material; /* index of the material of surfaces that have no
+                          material of their own */
     int is_shown;
-    /* is_split: the object is shaded per sample; is_catcher: it only receives
-     * shadows. */
+    /* is_split: the object is shaded at each sample. is_catcher: it only
+     * receives shadows. */
     int is_split, is_catcher;
     int skin;             /* index of the object's map if it is translucent,
                              else -1 */
@@ -55,7 +56,8 @@ struct glint_placed {
     /* Sphere: size of a pixel's diagonal at the sphere's far side, steps, at
      * least 1. */
     int32_t margin;
-    struct glint_depth depth; /* plane: its 1 / z as a function of the pixel */
+    struct glint_depth depth; /* plane: 1 / z as a function of the position in
+                                 the picture */
     int32_t z[2];             /* min and max z in camera coordinates, steps; not
                                  set for planes */
     /* Sphere: depths, 2^30 nearest / z. flat_depth: the depth of all samples of
@@ -86,9 +88,9 @@ struct glint_quick_triangle {
     uint32_t id;
     int is_there, is_inside, is_smooth;
     const struct glint_scene_material *material;
-    /* The area function of each corner k is twice the area of the triangle
-     * between position (x, y) and the edge opposite k, q16: at + across x +
-     * down y, with x and y relative to the first corner. The sum of all three,
+    /* The area function of a corner is twice the area of the triangle formed by
+     * position (x, y) and the edge opposite the corner, q16: AT + ACROSS x +
+     * DOWN y, with x and y relative to the first corner. The sum of all three,
      * times 2^up, is 2^63 / one_over. */
     int32_t x_q8, y_q8, across[3], down[3];
     int64_t at[3];
@@ -104,8 +106,8 @@ struct glint_quick_triangle {
 
 enum { GLINT_SHADOW_CELLS_LOG2 = 6, GLINT_SHADOW_POINTS = 16 };
 
-/* A sample point of a sun's disc: its direction, and the slope of its rays, as
- * tangents of the angle to the ray from the disc's middle. */
+/* A sample point of a sun's disc: its direction, and the slope of its rays
+ * relative to the ray from the disc's middle, as two tangents. */
 struct glint_shadow_point {
     int32_t toward_q30[3], lean_q30[2];
 };
@@ -131,9 +133,10 @@ struct glint_shadow {
     int32_t lo[3], hi[3];         /* bounds of the objects in the grid, in
                                      coordinates u, v, h */
     int32_t lowest;       /* min h of points for which the grid is valid */
-    int32_t cells_q32[2]; /* cells per step along u and v, up to 2^30 */
+    int32_t cells_q32[2]; /* number of cells per step along u and v, up to
+                             2^30 */
     int n_points;
-    int32_t lean_q30; /* max slope of the rays of all sample points */
+    int32_t lean_q30; /* max slope of the rays from any sample point */
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];
     int32_t (*vertex)[3];   /* vertices of all meshes, rotated by turn to u, v,
                                h */
@@ -142,19 +145,19 @@ struct glint_shadow {
     struct glint_shadow_thing *thing; /* [n_things]: objects that cast
                                          shadows */
     int n_things;
-    int max_refs; /* max number of entries in all cells; at least the number of
-                     objects */
+    int max_refs; /* max number of entries in the lists of all cells; at least
+                     the number of objects */
 };
 
 /* A light source with its position in this frame. */
 struct glint_lit {
     struct glint_shadow *shadow; /* shadow grid of a sun; NULL: shadow rays are
-                                    traced through the scene */
+                                    traced through all objects */
     const struct glint_scene_light *light;
     int32_t at[3];         /* lamp: position, steps */
     int32_t toward_q30[3]; /* sun: unit vector to it */
-    int32_t rgb_q15[3];    /* sun: its light on a white surface that faces it, 0
-                              .. 2^30 */
+    int32_t rgb_q15[3];    /* sun: light on a white surface that faces the sun,
+                              0 .. 2^30 */
 };
 
 /* The intersection of a ray with an object. */
@@ -184,8 +187,8 @@ struct glint_met_surface {
 struct glint_brushed {
     int32_t frame_q30[3][3]; /* rows: tangent, bitangent, normal; unit
                                 vectors */
-    /* Term that the variation of the normal within a pixel adds to the squared
-     * alphas: twice its variance; -1: not computed yet. */
+    /* Twice the variance of the normal within a pixel, which is added to the
+     * squared alphas of the lobe; -1: not computed yet. */
     int32_t spread_q30;
 };
 
@@ -201,8 +204,8 @@ enum {
     GLINT_GLOSS_STEPS = 1 << GLINT_GLOSS_STEPS_LOG2
 };
 
-/* Table of the specular power (1 - y)^k of a material for y = 0 .. end,
- * interpolated linearly; larger y give 0. Max error 2^-11.5. */
+/* Table of a material's specular power (1 - y)^k for y = 0 .. end, interpolated
+ * linearly; 0 for larger y. Max error 2^-11.5. */
 struct glint_gloss {
     int32_t end_q30;
     int64_t scale_q30; /* 1 / end, 1 .. 2^13 */
@@ -210,8 +213,8 @@ struct glint_gloss {
 };
 
 struct glint_scene_worker {
-    /* [samples of a tile]: depth, 2^30 nearest / z, and id of the visible
-     * object, object << 20 | triangle, or GLINT_NOTHING. */
+    /* [samples of a tile]: depth of the visible object, 2^30 nearest / z; and
+     * its id, object << 20 | triangle, or GLINT_NOTHING. */
     int32_t *depth;
     uint32_t *id;
     struct glint_box tile;
@@ -219,8 +222,9 @@ struct glint_scene_worker {
                                  these have samples */
     const struct glint_scene *scene;
     struct glint_tile_scratch scratch;
-    /* [half a tile]: light and cover of 2 x 2 pixels that see one object: they
-     * are shaded once, with the upper row. NULL: every pixel is shaded. */
+    /* [half a tile]: light and cover of blocks of 2 x 2 pixels that see one
+     * object. They are shaded once, with the block's upper row. NULL: every
+     * pixel is shaded. */
     struct glint_scene_sum *quad;
     struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES]: cache of
                                            prepared triangles */
@@ -250,10 +254,10 @@ struct glint_scene {
                                triangle */
     int32_t nearest;        /* min z of all visible objects, steps, at least
                                1 */
-    int has_triangles;      /* 1: bins lists the triangles of this frame */
+    int has_triangles;      /* 1: bins has the triangles of this frame */
     int n_planes;           /* number of planes that cast shadows */
     uint32_t plane;         /* index of the last plane that casts shadows */
-    /* 1: there are objects with is_split; with is_catcher. */
+    /* 1: some objects have is_split set; is_catcher set. */
     int has_split, has_catchers;
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
@@ -272,7 +276,7 @@ struct glint_scene {
     struct glint_ward_state *wards;
     /* state of translucent media; NULL: the scene has none */
     struct glint_stone_state *stones;
-    uint32_t moved; /* counter, incremented by changes of objects and lights */
+    uint32_t moved; /* counter, incremented when an object or light changes */
     int is_spread;  /* 1: the maps of translucent objects are computed for the
                        current frame */
     /* NULL: highlights are not requested */
@@ -306,13 +310,13 @@ static inline uint32_t glint_make_triangle_id(uint32_t object,
  * be 1, 4, 8 or 16. */
 const int8_t (*glint_scene_samples(int n))[2];
 
-/* Sets flat_depth of the balls for which one depth suffices. Called after the
- * positions of all objects are set. */
-void glint_scene_set_flat_depths(struct glint_scene *scene);
+/* Sets flat_depth of the balls that can be ordered by one depth. Called after
+ * the positions of all objects are set. */
+void glint_scene_set_single_depths_of_balls(struct glint_scene *scene);
 
-/* Restricts the box of each catcher to pixels that may have shadows. Called
- * after the shadow grids are built. */
-void glint_scene_confine_catchers(struct glint_scene *scene);
+/* Reduces the box of each catcher to pixels that may have shadows. Called after
+ * the shadow grids are built. */
+void glint_scene_shrink_catcher_boxes(struct glint_scene *scene);
 
 /* Narrows the range X0 .. X1 - 1 to the pixels of row Y that ball P may cover;
  * returns 0 if there are none. */
@@ -325,8 +329,8 @@ int glint_scene_find_ball_span(const struct glint_scene *scene,
 int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile);
 
 /* Sets MET to the nearest intersection of RAY with an object; returns 0 if
- * there is none. Skips catchers, and OBJECT, on which the ray starts: of a mesh
- * only its triangle TRIANGLE. */
+ * there is none. Skips catchers, and the OBJECT on which the ray starts, or
+ * only its triangle TRIANGLE if it is a mesh. */
 int glint_scene_find_nearest_hit(const struct glint_scene *scene,
                                  const struct glint_scene_ray *ray,
                                  uint32_t object, uint32_t triangle,
@@ -345,15 +349,17 @@ int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
                                         uint32_t object);
 
 /* Returns whether any plane other than OBJECT casts shadows. */
-static inline int glint_scene_has_other_planes(const struct glint_scene *s,
-                                               uint32_t object)
+static inline int
+glint_scene_has_other_shadow_planes(const struct glint_scene *s,
+                                    uint32_t object)
 {
     return s->n_planes > (s->n_planes > 0 && s->plane == object);
 }
 
 /* Sets MET to the intersection of the primary ray RAY with object or triangle
- * ID; a ray that just misses a triangle is clamped to it. Returns 0 if they do
- * not meet. SEEN_Q30 is the ray's direction in camera coordinates. */
+ * ID; a ray that just misses a triangle is moved to the triangle's edge.
+ * Returns 0 if the ray misses ID. SEEN_Q30 is the ray's direction in camera
+ * coordinates. */
 int glint_scene_ray_hits_id(const struct glint_scene *scene,
                             const struct glint_scene_ray *ray,
                             const int32_t seen_q30[3], uint32_t id,
@@ -361,10 +367,10 @@ int glint_scene_ray_hits_id(const struct glint_scene *scene,
 
 /* Sets SURFACE to position, normals and material at the intersection MET of
  * RAY. Returns 0 if the point is out of range or the triangle has no area. */
-int glint_scene_set_surface(const struct glint_scene *scene,
-                            const struct glint_scene_ray *ray,
-                            const struct glint_met *met,
-                            struct glint_met_surface *surface);
+int glint_scene_find_surface_at_hit(const struct glint_scene *scene,
+                                    const struct glint_scene_ray *ray,
+                                    const struct glint_met *met,
+                                    struct glint_met_surface *surface);
 
 /* ------------------------------------------------------------------- shade */
 
@@ -400,20 +406,20 @@ void glint_shadow_build_grid(const struct glint_scene *scene,
                              const struct glint_lit *lit,
                              struct glint_shadow *shadow);
 
-/* Returns the box of pixels in which shadows of the sun of SHADOW may fall on
- * plane P. */
+/* Returns the box of pixels in which the sun whose grid is SHADOW may cast
+ * shadows on plane P. */
 struct glint_box glint_shadow_find_plane_box(const struct glint_scene *scene,
                                              const struct glint_shadow *shadow,
                                              const struct glint_placed *p);
 
-/* Returns the fraction, 0 .. 32768, of the light of the sun of SHADOW that
- * reaches SURFACE; PLACE is the start of shadow rays from SURFACE. */
+/* Returns the fraction, 0 .. 32768, of a sun's light that reaches SURFACE;
+ * SHADOW is the sun's grid. PLACE is the start of shadow rays from SURFACE. */
 int32_t glint_shadow_compute_lit_fraction(
     const struct glint_scene *scene, const struct glint_shadow *shadow,
     const struct glint_met_surface *surface, const int32_t place[3]);
 
-/* Sets AT to the start of secondary rays from SURFACE: its position, moved off
- * a mesh by GLINT_SCENE_LIFT along the face's normal. */
+/* Sets AT to the start of secondary rays from SURFACE: its position, for a mesh
+ * moved by GLINT_SCENE_LIFT along the face's normal. */
 static inline void
 glint_scene_set_ray_start(const struct glint_scene *scene,
                           const struct glint_met_surface *surface,
@@ -443,12 +449,13 @@ glint_scene_lit_fraction(const struct glint_scene *scene,
 }
 
 /* Sets U and V to unit vectors perpendicular to D and to each other. */
-void glint_scene_set_perpendiculars(const int32_t d_q30[3], int32_t u_q30[3],
-                                    int32_t v_q30[3]);
+void glint_scene_find_perpendicular_vectors(const int32_t d_q30[3],
+                                            int32_t u_q30[3], int32_t v_q30[3]);
 
 /* Sets TOWARD_Q30 to the direction from PLACE to LIT, and LEVEL_Q15 to the
- * light of a white surface at PLACE that faces LIT. Returns the distance of
- * LIT, steps, GLINT_FAR for a sun, or 0 if PLACE is the position of LIT. */
+ * light that LIT casts on a white surface at PLACE that faces LIT. Returns the
+ * distance of LIT in steps; GLINT_FAR for a sun; 0 if PLACE is the position of
+ * LIT. */
 int32_t glint_scene_compute_light_at(const struct glint_scene *scene,
                                      const struct glint_lit *lit,
                                      const int32_t place[3],
@@ -456,7 +463,7 @@ int32_t glint_scene_compute_light_at(const struct glint_scene *scene,
                                      int32_t level_q15[3]);
 
 /* Fills the table GLOSS with powers of exponent POWER_Q8. */
-void glint_gloss_fill_table(struct glint_gloss *gloss, int32_t power_q8);
+void glint_gloss_fill_power_table(struct glint_gloss *gloss, int32_t power_q8);
 
 /* Returns X^K, _q15, with an error below 1/512. X_Q30 must be 0 .. 2^30,
  * K_Q8 at least 1. */
@@ -476,7 +483,7 @@ void glint_scene_look_up_background(const struct glint_scene *scene,
                                     int64_t spread_q40, int32_t rgb_q15[3]);
 
 /* Returns the max number of highlights to find. */
-static inline int glint_scene_max_highlights(const struct glint_scene *s)
+static inline int glint_scene_get_max_highlights(const struct glint_scene *s)
 {
     const struct glint_scene_header *h = s->model.header;
 
@@ -505,7 +512,7 @@ void glint_compute_ball_uv(const struct glint_placed *p,
  * these copies. */
 void glint_scene_copy_materials(struct glint_scene *scene);
 
-/* Marks shadow grids and maps of translucent objects as outdated, after a
+/* Marks shadow grids and light maps of translucent objects as outdated after a
  * change; the next frame rebuilds them. */
 void glint_scene_invalidate_shadows(struct glint_scene *scene);
 

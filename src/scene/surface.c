@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Intersects rays with objects. Each ray is tested with all objects in turn, as
- * scenes have few of them; meshes have grids of their triangles. */
+ * Intersects rays with objects. A ray is tested with each object, as scenes
+ * have few objects; the triangles of a mesh are sorted into a grid. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
@@ -45,11 +45,11 @@ static int intersect_object(const struct glint_scene *s, uint32_t i,
     return does && met->t < limit;
 }
 
-/* Returns whether rays that start on OBJECT may hit object I: I must be shown
- * and not a catcher. OBJECT itself can be hit only if it is a mesh, as spheres
- * and planes are convex. */
-static int can_ray_meet(const struct glint_scene *s, uint32_t i,
-                        uint32_t object)
+/* Returns whether rays that start on OBJECT may hit object I. Object I must be
+ * visible and not a catcher. OBJECT itself can be hit only if it is a mesh, as
+ * spheres and planes are convex. */
+static int can_ray_hit_object(const struct glint_scene *s, uint32_t i,
+                              uint32_t object)
 {
     const struct glint_scene_object *o = s->placed[i].object;
 
@@ -69,7 +69,7 @@ int glint_scene_find_nearest_hit(const struct glint_scene *scene,
     for (uint32_t i = 0; i < scene->model.header->n_objects; i++) {
         struct glint_met next = {.t = met->t};
 
-        if (can_ray_meet(scene, i, object) &&
+        if (can_ray_hit_object(scene, i, object) &&
             intersect_object(scene, i, ray,
                              i == object ? triangle : GLINT_NOTHING, 0,
                              &next)) {
@@ -90,7 +90,7 @@ int glint_scene_is_ray_blocked(const struct glint_scene *scene,
     for (uint32_t i = 0; i < n; i++) {
         struct glint_met met = {.t = limit};
 
-        if (can_ray_meet(scene, i, object) &&
+        if (can_ray_hit_object(scene, i, object) &&
             intersect_object(scene, i, ray,
                              i == object ? triangle : GLINT_NOTHING, 1, &met)) {
             glint_scene_count_ray_tests(scene, i + 1);
@@ -109,7 +109,7 @@ int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
         struct glint_met met;
 
         if (scene->placed[i].object->kind == GLINT_OBJECT_PLANE &&
-            can_ray_meet(scene, i, object) &&
+            can_ray_hit_object(scene, i, object) &&
             intersect_plane(&scene->placed[i], ray, &met))
             return 1;
     }
@@ -168,17 +168,17 @@ static int set_sphere_surface(const struct glint_scene_ray *ray,
                               const struct glint_met *met,
                               struct glint_met_surface *surface)
 {
-    glint_chord_find_end_surface(&met->chord, ray, p->at, met->end,
-                                 surface->place, surface->normal_q30);
+    glint_chord_set_end_point_and_normal(&met->chord, ray, p->at, met->end,
+                                         surface->place, surface->normal_q30);
     for (int k = 0; k < 3; k++)
         surface->face_q30[k] = surface->normal_q30[k];
     return 1;
 }
 
-int glint_scene_set_surface(const struct glint_scene *scene,
-                            const struct glint_scene_ray *ray,
-                            const struct glint_met *met,
-                            struct glint_met_surface *surface)
+int glint_scene_find_surface_at_hit(const struct glint_scene *scene,
+                                    const struct glint_scene_ray *ray,
+                                    const struct glint_met *met,
+                                    struct glint_met_surface *surface)
 {
     const struct glint_placed *p = &scene->placed[met->object];
     int is;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Samples textures: bilinear in linear light, blended between two mip levels.
- * Texels of these are about as large as the longer side of a pixel on the
+ * Samples textures: bilinear in linear light, blended between the two mip
+ * levels whose texels are about as large as the longer side of a pixel on the
  * surface. */
 #include "base/log2.h"
 #include "base/real.h"
@@ -12,18 +12,19 @@ enum { LEAST_COSINE_Q30 = 1 << 22 };
 
 /* ------------------------------------------------------------------ u and v */
 
-static void set_ball_uv(const struct glint_placed *p,
-                        struct glint_met_surface *s)
+static void set_texture_coordinates_of_ball(const struct glint_placed *p,
+                                            struct glint_met_surface *s)
 {
     glint_compute_ball_uv(p, s, s->uv_q16);
-    /* area in uv space / area on the ball in steps^2: 1 / (4 pi radius^2) */
+    /* (area in uv space) / (area on the ball in steps^2): 1 / (4 pi
+     * radius^2) */
     s->uv_log2_q16 =
         -Q_CONST(3.6514961, 16) - 2 * q_log2_q16((uint64_t)p->radius);
 }
 
-static void set_plane_uv(const struct glint_scene *scene,
-                         const struct glint_placed *p,
-                         struct glint_met_surface *s)
+static void set_texture_coordinates_of_plane(const struct glint_scene *scene,
+                                             const struct glint_placed *p,
+                                             struct glint_met_surface *s)
 {
     const int unit_log2 = scene->model.header->unit_log2;
     int32_t off[3], at[3];
@@ -42,8 +43,8 @@ static void set_plane_uv(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- texels */
 
-/* Returns the mip level, _q16, from the length of a pixel's longer side on the
- * surface, in texels. */
+/* Returns the mip level, _q16, log2 of the longer side of a pixel on the
+ * surface, measured in texels. */
 static int32_t compute_mip_level(const struct glint_scene *scene,
                                  const struct glint_scene_ray *ray,
                                  const struct glint_met_surface *s,
@@ -62,8 +63,8 @@ static int32_t compute_mip_level(const struct glint_scene *scene,
     return q_clamp_sat(side_q16 + area_q16 / 2, 0, most << 16);
 }
 
-/* Sets I to the indices of the two texels between which the coordinate lies;
- * returns the weight of the second. */
+/* Sets I to the indices of the two texels on both sides of coordinate UV;
+ * returns the weight of the second texel. */
 static uint32_t find_texel_pair(int32_t uv_q16, uint32_t log2, uint32_t i[2])
 {
     const int64_t at_q16 = (int64_t)uv_q16 * (1 << log2) - (1 << 15);
@@ -106,10 +107,10 @@ static void sample_mip_level(const struct glint_scene *scene,
     }
 }
 
-static void multiply_by_texture(const struct glint_scene *scene,
-                                const struct glint_scene_ray *ray,
-                                const struct glint_met_surface *surface,
-                                int32_t rgb_q15[3])
+static void multiply_light_by_texture(const struct glint_scene *scene,
+                                      const struct glint_scene_ray *ray,
+                                      const struct glint_met_surface *surface,
+                                      int32_t rgb_q15[3])
 {
     const struct glint_scene_texture *t =
         &scene->model.texture[surface->material->texture];
@@ -118,9 +119,9 @@ static void multiply_by_texture(const struct glint_scene *scene,
     int32_t level_q16, fine_q20[3], coarse_q20[3];
 
     if (p->object->kind == GLINT_OBJECT_SPHERE)
-        set_ball_uv(p, &s);
+        set_texture_coordinates_of_ball(p, &s);
     else if (p->object->kind == GLINT_OBJECT_PLANE)
-        set_plane_uv(scene, p, &s);
+        set_texture_coordinates_of_plane(scene, p, &s);
     level_q16 = compute_mip_level(scene, ray, &s, t);
     sample_mip_level(scene, t, s.uv_q16, level_q16 >> 16, fine_q20);
     if (level_q16 & 0xffff)
@@ -139,4 +140,4 @@ static void prepare_decoding_curve(struct glint_curve *curve)
 }
 
 const struct glint_scene_textures glint_scene_textures = {
-    multiply_by_texture, prepare_decoding_curve};
+    multiply_light_by_texture, prepare_decoding_curve};

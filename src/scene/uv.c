@@ -42,7 +42,7 @@ void glint_compute_ball_uv(const struct glint_placed *p,
     v3_rotate_back(&p->turn, s->face_q30, n_q30);
     for (int k = 0; k < 3 && s->is_inside; k++)
         n_q30[k] = -n_q30[k];
-    across = (int32_t)glint_square_root((
+    across = (int32_t)glint_compute_square_root((
         uint64_t)((int64_t)n_q30[0] * n_q30[0] + (int64_t)n_q30[2] * n_q30[2]));
     uv_q16[0] = (int32_t)q_shift(
         (1 << 29) + compute_angle_in_turns(-n_q30[2], n_q30[0]), 14);

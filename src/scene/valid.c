@@ -24,7 +24,7 @@ int glint_scene_is_vector_within(const int32_t *v, int n, int32_t limit)
     int fits = 1;
 
     for (int k = 0; k < n; k++)
-        fits &= glint_scene_is_between(v[k], -(int64_t)limit, limit);
+        fits &= glint_scene_is_number_in_range(v[k], -(int64_t)limit, limit);
     return fits;
 }
 
@@ -36,19 +36,19 @@ int glint_scene_is_unit_vector(const int32_t *v_q30, int n)
         return 0;
     for (int k = 0; k < n; k++) /* each square is below 2^57, four in all */
         square_q56 += q_shift((int64_t)v_q30[k] * v_q30[k], 4);
-    return glint_scene_is_between(square_q56 - (INT64_C(1) << 56),
-                                  -(INT64_C(1) << 37), INT64_C(1) << 37);
+    return glint_scene_is_number_in_range(
+        square_q56 - (INT64_C(1) << 56), -(INT64_C(1) << 37), INT64_C(1) << 37);
 }
 
 int glint_scene_is_valid_intensity(const struct glint_real *x)
 {
     return x->mantissa == 0 ||
            (x->mantissa >= ONE_Q30 &&
-            glint_scene_is_between(x->exponent, -MAX_REAL_EXPONENT,
-                                   MAX_REAL_EXPONENT));
+            glint_scene_is_number_in_range(x->exponent, -MAX_REAL_EXPONENT,
+                                           MAX_REAL_EXPONENT));
 }
 
-int64_t glint_scene_vector_length(const int32_t v[3])
+int64_t glint_scene_compute_vector_length(const int32_t v[3])
 {
     uint64_t square = 0;
 
@@ -66,9 +66,10 @@ int glint_scene_is_object_in_range(const struct glint_scene_model *model,
 
     if (object->kind == GLINT_OBJECT_MESH) {
         mesh = &model->mesh[object->mesh];
-        /* The margin of 4 steps: two for rounding of the ball's vertices, and
-         * two for rounding of rotations. */
-        reach = glint_scene_vector_length(mesh->centre) + mesh->radius + 4;
+        /* The margin is 4 steps: two for rounding of vertices relative to the
+         * bounding sphere, and two for rounding of rotations. */
+        reach =
+            glint_scene_compute_vector_length(mesh->centre) + mesh->radius + 4;
     }
     return reach < GLINT_SCENE_SPAN &&
            glint_scene_is_vector_within(
@@ -82,8 +83,8 @@ static int are_axes_perpendicular(const int32_t a_q30[3],
 
     for (int k = 0; k < 3; k++)
         dot_q56 += q_shift((int64_t)a_q30[k] * b_q30[k], 4);
-    return glint_scene_is_between(dot_q56, -(INT64_C(1) << 37),
-                                  INT64_C(1) << 37);
+    return glint_scene_is_number_in_range(dot_q56, -(INT64_C(1) << 37),
+                                          INT64_C(1) << 37);
 }
 
 const char *glint_scene_check_camera(const struct glint_scene_camera *c)
@@ -99,8 +100,9 @@ const char *glint_scene_check_camera(const struct glint_scene_camera *c)
         if (!glint_scene_is_unit_vector(c->axis_q30[k], 3) ||
             !are_axes_perpendicular(c->axis_q30[k], c->axis_q30[(k + 1) % 3]))
             return "the camera's axes are not orthogonal unit vectors";
-    if (!glint_scene_is_between(c->tan_x_q24, has_x << 12, has_x << 30) ||
-        !glint_scene_is_between(c->tan_y_q24, has_y << 12, has_y << 30))
+    if (!glint_scene_is_number_in_range(c->tan_x_q24, has_x << 12,
+                                        has_x << 30) ||
+        !glint_scene_is_number_in_range(c->tan_y_q24, has_y << 12, has_y << 30))
         return "the camera's field of view is out of range";
     return NULL;
 }
@@ -108,10 +110,12 @@ const char *glint_scene_check_camera(const struct glint_scene_camera *c)
 const char *glint_scene_check_metal(const struct glint_scene_ward *w)
 {
     for (int k = 0; k < 3; k++)
-        if (!glint_scene_is_between(w->specular_q15[k], 0, ONE_Q15))
+        if (!glint_scene_is_number_in_range(w->specular_q15[k], 0, ONE_Q15))
             return "a material's weight or colour is not 0 .. 1";
-    if (!glint_scene_is_between(w->alpha_q24[0], LEAST_ALPHA_Q24, 1 << 24) ||
-        !glint_scene_is_between(w->alpha_q24[1], LEAST_ALPHA_Q24, 1 << 24) ||
+    if (!glint_scene_is_number_in_range(w->alpha_q24[0], LEAST_ALPHA_Q24,
+                                        1 << 24) ||
+        !glint_scene_is_number_in_range(w->alpha_q24[1], LEAST_ALPHA_Q24,
+                                        1 << 24) ||
         w->norm > 1)
         return "a brushed metal's roughness or norm is out of range";
     return NULL;

@@ -19,7 +19,8 @@ const char *glint_scene_check_metal(const struct glint_scene_ward *ward);
 int glint_scene_is_valid_name(const char *name);
 
 /* Returns whether X is in LO .. HI. */
-static inline int glint_scene_is_between(int64_t x, int64_t lo, int64_t hi)
+static inline int glint_scene_is_number_in_range(int64_t x, int64_t lo,
+                                                 int64_t hi)
 {
     return x >= lo && x <= hi;
 }
@@ -34,7 +35,7 @@ int glint_scene_is_valid_intensity(const struct glint_real *x);
 int glint_scene_is_unit_vector(const int32_t *v_q30, int n);
 
 /* Returns the length of V, rounded up. Components must be within +-2^30. */
-int64_t glint_scene_vector_length(const int32_t v[3]);
+int64_t glint_scene_compute_vector_length(const int32_t v[3]);
 
 /* Returns whether OBJECT, at position AT, stays within the range of scene
  * coordinates in any rotation. */

@@ -21,12 +21,12 @@ const uint8_t glint_root_start_q7[96] = {
 static uint32_t compute_inverse_root_q31(uint64_t s_q64)
 {
     const uint32_t hi = (uint32_t)(s_q64 >> 32), lo = (uint32_t)s_q64;
-    uint64_t r_q31 = (uint64_t)glint_inverse_root_start((uint32_t)(s_q64 >> 57))
-                     << 24;
+    uint64_t r_q31 =
+        (uint64_t)glint_look_up_inverse_root((uint32_t)(s_q64 >> 57)) << 24;
 
     for (int i = 0; i < 3; i++) {
-        /* sqrt(S) = S r from the current r, _q32, at most 1.01; then a Newton
-         * step, r (3 - S r^2) / 2. */
+        /* sqrt(S) = S r with the current approximation r, _q32, at most 1.01;
+         * then one Newton step, r (3 - S r^2) / 2. */
         const uint64_t root_q32 = (hi * r_q31 + (lo * r_q31 >> 32)) >> 31;
         const int64_t rest_q62 =
             (INT64_C(1) << 62) - (int64_t)(root_q32 * r_q31 >> 1);
@@ -39,7 +39,7 @@ static uint32_t compute_inverse_root_q31(uint64_t s_q64)
     return (uint32_t)r_q31;
 }
 
-uint32_t glint_square_root(uint64_t x)
+uint32_t glint_compute_square_root(uint64_t x)
 {
     const int down = (64 - bit_length(x | 1)) / 2;
     const uint64_t s_q64 = x << 2 * down;
@@ -75,7 +75,7 @@ int glint_normalise_vector(const int64_t v[3], int32_t unit_q30[3])
         w[k] = q_shift(v[k], -up);
     for (int k = 0; k < 3; k++)
         square += (uint64_t)(w[k] * w[k]); /* below 3 * 2^62 */
-    is_short = square < UINT64_C(1) << 62; /* from 2^60 on */
+    is_short = square < UINT64_C(1) << 62; /* the square is at least 2^60 */
     r_q31 = compute_inverse_root_q31(square << 2 * is_short);
     for (int k = 0; k < 3; k++)
         unit_q30[k] = (int32_t)q_clamp_sat(

@@ -71,20 +71,20 @@ static inline void v3_rotate_back(const struct glint_scene_turn *m,
 
 enum { GLINT_ROOT_FIRST = 32 };
 
-/* Table of 2^7 / sqrt(S) in the middle of each interval of length 1/128 of S =
- * 1/4 .. 1. */
+/* Table of 2^7 / sqrt(S) at the middle of each interval of S of length 1/128,
+ * for S = 1/4 .. 1. */
 extern const uint8_t glint_root_start_q7[128 - GLINT_ROOT_FIRST];
 
-/* Returns the table's 1 / sqrt for interval I, 32 .. 127; relative error at
- * most 2^-6.9. */
-static inline uint32_t glint_inverse_root_start(uint32_t i)
+/* Returns the table's value of 1 / sqrt(S) for interval I of S, 32 .. 127;
+ * relative error at most 2^-6.9. */
+static inline uint32_t glint_look_up_inverse_root(uint32_t i)
 {
     return glint_root_start_q7[i - GLINT_ROOT_FIRST];
 }
 
 /* Returns the square root of X, rounded down, without a loop over the bits of
  * X. */
-uint32_t glint_square_root(uint64_t x);
+uint32_t glint_compute_square_root(uint64_t x);
 
 /* Sets UNIT_Q30 to V / |V|. The error per component is at most 1 unit of _q30;
  * 1.1 units if a component of V is 2^30 or more. Components of V must be within

@@ -6,8 +6,8 @@
 enum { NEAR_BITS = 22, FAR_BITS = 16 };
 
 /* Returns the tangent of the angle of 1/256 pixel, _q56, if TAN is the tangent
- * of the angle of SIDE / 2 pixels. TAN is at most 2^6, so 128 SIDE times the
- * result is at most 2^62. */
+ * of the angle of SIDE / 2 pixels. TAN is at most 2^6, so the result times 128
+ * SIDE is at most 2^62. */
 static int64_t compute_pixel_tangent(int32_t tan_q24, int side)
 {
     return q_divide((int64_t)tan_q24 << 25, side > 1 ? side : 1);
@@ -70,8 +70,8 @@ void glint_view_set_ray(const struct glint_scene_view *view, int32_t x_q8,
         ray->at[k] = view->at[k];
 }
 
-void glint_view_to_camera(const struct glint_scene_view *view,
-                          const int32_t place[3], int32_t to[3])
+void glint_view_convert_to_camera(const struct glint_scene_view *view,
+                                  const int32_t place[3], int32_t to[3])
 {
     int32_t off[3];
 
@@ -83,7 +83,7 @@ void glint_view_to_camera(const struct glint_scene_view *view,
 
 /* Returns X / 2^DOWN, rounded; a negative DOWN multiplies. The result must fit
  * into 32 bits. */
-static int32_t shift_rounded(int64_t x, int down)
+static int32_t shift_right_rounded(int64_t x, int down)
 {
     if (down > 62)
         return 0;
@@ -91,14 +91,15 @@ static int32_t shift_rounded(int64_t x, int down)
                                : x * (INT64_C(1) << (down < -62 ? 0 : -down)));
 }
 
-/* Returns X times the focal length / Z, where ONE_OVER must be 2^63 / (Z 2^UP);
- * sets *FITS to 0 if the result is too large. X is scaled up to 2^30 first, so
- * that small quotients have 30 bits, too. */
+/* Returns X * focal length / Z; ONE_OVER must be 2^63 / (Z 2^UP). Sets *FITS to
+ * 0 if the result is too large. X is scaled up to 2^30 first, so that small
+ * quotients have 30 bits, too. */
 static int32_t project_to_picture_q8(int32_t x, struct glint_real focal_q8,
                                      uint32_t one_over, int up, int *fits)
 {
     const int more = 30 - bit_length(q_magnitude(x));
-    const int64_t over_z = (int64_t)shift_rounded(x, -more) * one_over >> 31;
+    const int64_t over_z =
+        (int64_t)shift_right_rounded(x, -more) * one_over >> 31;
     const int64_t product = over_z * focal_q8.mantissa; /* below 2^62 */
     const int down = 32 - up + more - focal_q8.exponent;
 
@@ -123,9 +124,9 @@ compute_direction(const struct glint_scene_view *view, const int32_t v[3])
     const int n_z = v[2] ? bit_length(q_magnitude(v[2])) : -999;
     const int most = q_larger(n_z, q_larger(n_x, n_y)) - FAR_BITS;
 
-    return (struct glint_corner){shift_rounded(x, most - f[0].exponent),
-                                 shift_rounded(y, most - f[1].exponent),
-                                 shift_rounded(v[2], most)};
+    return (struct glint_corner){shift_right_rounded(x, most - f[0].exponent),
+                                 shift_right_rounded(y, most - f[1].exponent),
+                                 shift_right_rounded(v[2], most)};
 }
 
 struct glint_corner
@@ -147,8 +148,9 @@ glint_view_project_vertex(const struct glint_scene_view *view,
     return fits ? c : compute_direction(view, v);
 }
 
-struct glint_box glint_view_find_box(const struct glint_scene_view *view,
-                                     const int32_t (*v)[3], int n)
+struct glint_box
+glint_view_find_box_of_points(const struct glint_scene_view *view,
+                              const int32_t (*v)[3], int n)
 {
     const struct glint_box all = {0, 0, view->width, view->height};
     int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
@@ -172,9 +174,9 @@ struct glint_box glint_view_find_box(const struct glint_scene_view *view,
 
 /* ------------------------------------------------------------------ depths */
 
-/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1), normal n and
- * point v of the plane. Coefficients have as many fraction bits as possible
- * with each term below 2^60. */
+/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1), the normal n
+ * and a point v of the plane. The coefficients have as many fraction bits as
+ * keep each term below 2^60. */
 int glint_view_set_plane_depth(const struct glint_scene_view *view,
                                const int32_t v[3], const int32_t normal_q30[3],
                                int32_t nearest, struct glint_depth *depth)

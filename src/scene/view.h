@@ -21,7 +21,8 @@ struct glint_scene_view {
     /* tangents of the angles of 1/256 pixel, horizontally and vertically */
     int64_t step_q56[2];
     int64_t per_tan_q8; /* 1/256 pixels per unit of tangent, horizontally */
-    int wide;           /* number of bits by which tangents exceed 2, or 0 */
+    int wide;           /* number of bits by which the tangent at the picture's
+                           edge exceeds 2, or 0 */
     struct glint_real focal_q8[2];
 };
 
@@ -54,8 +55,8 @@ void glint_view_set_ray(const struct glint_scene_view *view, int32_t x_q8,
                         int32_t seen_q30[3]);
 
 /* Sets TO to the camera coordinates of point PLACE, steps, within +-2^30. */
-void glint_view_to_camera(const struct glint_scene_view *view,
-                          const int32_t place[3], int32_t to[3]);
+void glint_view_convert_to_camera(const struct glint_scene_view *view,
+                                  const int32_t place[3], int32_t to[3]);
 
 /* Returns point V, in camera coordinates, projected to the picture. */
 struct glint_corner
@@ -64,8 +65,9 @@ glint_view_project_vertex(const struct glint_scene_view *view,
 
 /* Returns the pixels of the bounding box of N points V, in camera coordinates;
  * the whole picture if a point is behind the camera or too near. */
-struct glint_box glint_view_find_box(const struct glint_scene_view *view,
-                                     const int32_t (*v)[3], int n);
+struct glint_box
+glint_view_find_box_of_points(const struct glint_scene_view *view,
+                              const int32_t (*v)[3], int n);
 
 /* Sets DEPTH to the depth function of the plane with normal NORMAL_Q30 through
  * V, both in camera coordinates. Returns 0 if the camera is in the plane.

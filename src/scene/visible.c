@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds the visible object at each sample of a tile: spheres by the ray of each
- * sample, planes by 1 / z, triangles by the module for meshes.
+ * Finds the visible object at each sample of a tile: spheres by a ray through
+ * each sample, planes by 1 / z, triangles by the module for meshes.
  *
- * If a sphere's rim is farther from a pixel's middle than the samples are, all
- * samples get the depth in the middle. Spheres are drawn last: a sphere that no
- * other ball can partly hide needs no exact depth where all objects drawn so
- * far are behind its far side. */
+ * If a sphere's rim is farther from a pixel's middle than the pixel's samples
+ * are, all samples get the sphere's depth at the middle. Spheres are drawn
+ * last, so a sphere that no other ball can partly hide needs no exact depth at
+ * samples where all objects drawn before are behind the sphere's far side. */
 #include "scene/visible.h"
 #include "scene/parts.h"
 
@@ -42,25 +42,26 @@ struct look {
 
 /* Sets LOOK to the ray through (X, Y) and its chord in the ball PLACED; returns
  * whether the ray hits the ball. */
-static int trace_chord(const struct glint_scene *s,
-                       const struct glint_placed *placed, int32_t x_q8,
-                       int32_t y_q8, struct look *look)
+static int find_chord_of_pixel_ray(const struct glint_scene *s,
+                                   const struct glint_placed *placed,
+                                   int32_t x_q8, int32_t y_q8,
+                                   struct look *look)
 {
     glint_view_set_ray(&s->view, x_q8, y_q8, &look->ray, look->seen_q30);
     return glint_ray_intersect_sphere(&look->ray, placed->at, placed->radius,
                                       &look->chord);
 }
 
-static void put_nearer_sample(struct glint_scene_worker *w,
-                              const struct look *look, uint32_t id, int x,
-                              int y, int k)
+static void write_sample_if_nearer(struct glint_scene_worker *w,
+                                   const struct look *look, uint32_t id, int x,
+                                   int y, int k)
 {
     const int32_t t = look->chord.t[look->chord.t[0] <= 0];
     const int32_t z = q_larger(1, q_mul(t, look->seen_q30[2], 30));
 
     if (t <= 0)
         return;
-    glint_put_nearer_sample(
+    glint_write_sample_if_nearer(
         w, x, y, k,
         q_larger(1, glint_divide_rounded((uint64_t)w->scene->nearest << 30,
                                          (uint64_t)z)),
@@ -91,8 +92,8 @@ static void set_ball_samples(struct glint_scene_worker *w,
     }
 }
 
-/* Returns whether the rays through all samples of a pixel hit PLACED, where
- * LOOK is the ray through the pixel's middle, which hits it. */
+/* Returns whether the rays through all samples of a pixel hit the ball PLACED.
+ * LOOK is the ray through the pixel's middle, which must hit the ball. */
 static int is_pixel_inside_ball(const struct glint_placed *placed,
                                 const struct look *look)
 {
@@ -114,9 +115,9 @@ static int draw_ball_pixel(struct glint_scene_worker *w,
                   y_q8 = glint_pixel_position_q8(s, y, 1);
     const int n = s->cfg.edge_samples;
     struct look look;
-    const int meets = trace_chord(s, placed, x_q8, y_q8, &look);
+    const int meets = find_chord_of_pixel_ray(s, placed, x_q8, y_q8, &look);
     const int is_inside = meets && is_pixel_inside_ball(placed, &look);
-    const int first = glint_sample_index(w, x, y, 0);
+    const int first = glint_get_sample_index(w, x, y, 0);
 
     if (is_inside && are_samples_behind_ball(w, placed, first, first + n)) {
         set_ball_samples(w, placed, id, first, first + n);
@@ -124,7 +125,7 @@ static int draw_ball_pixel(struct glint_scene_worker *w,
     }
     if (is_inside || (meets && n == 1)) {
         for (int k = 0; k < n; k++)
-            put_nearer_sample(w, &look, id, x, y, k);
+            write_sample_if_nearer(w, &look, id, x, y, k);
         return is_inside;
     }
     if (n == 1 || (!meets && !glint_ray_intersect_sphere(
@@ -132,15 +133,16 @@ static int draw_ball_pixel(struct glint_scene_worker *w,
                                  placed->radius + placed->margin, &look.chord)))
         return 0;
     for (int k = 0; k < n; k++)
-        if (trace_chord(s, placed, x_q8 + glint_sample_offset_q8(s, k, 0),
-                        y_q8 + glint_sample_offset_q8(s, k, 1), &look))
-            put_nearer_sample(w, &look, id, x, y, k);
+        if (find_chord_of_pixel_ray(
+                s, placed, x_q8 + glint_sample_offset_q8(s, k, 0),
+                y_q8 + glint_sample_offset_q8(s, k, 1), &look))
+            write_sample_if_nearer(w, &look, id, x, y, k);
     return 0;
 }
 
 /* Draws a ball in row Y. Pixels between two pixels inside the ball are inside,
- * too: if one depth suffices for the ball, rays are traced there only where the
- * ball may be hidden. */
+ * too; there, if one depth suffices for the ball, rays are traced only where
+ * other objects may hide the ball. */
 static void draw_ball_row(struct glint_scene_worker *w,
                           const struct glint_placed *placed, uint32_t id,
                           struct glint_box b, int y)
@@ -153,7 +155,7 @@ static void draw_ball_row(struct glint_scene_worker *w,
     while (is_in && x < end && !draw_ball_pixel(w, placed, id, end - 1, y))
         end--;
     for (; x < end - is_in; x++) {
-        const int first = glint_sample_index(w, x, y, 0);
+        const int first = glint_get_sample_index(w, x, y, 0);
 
         if (are_samples_behind_ball(w, placed, first, first + n))
             set_ball_samples(w, placed, id, first, first + n);
@@ -175,7 +177,7 @@ static inline void draw_plane_row(struct glint_scene_worker *w,
                                   int n, int x0, int x1, int y)
 {
     const struct glint_scene *s = w->scene;
-    const int first = glint_sample_index(w, x0, y, 0);
+    const int first = glint_get_sample_index(w, x0, y, 0);
     int32_t *at = w->depth + first;
     uint32_t *ids = w->id + first;
     int64_t middle = depth->across * glint_pixel_position_q8(s, x0, 0) +
@@ -221,8 +223,8 @@ enum {
                           compared */
 };
 
-/* Returns whether ball B overlaps A in the picture and in depth, so that one
- * depth per ball may not order them. */
+/* Returns whether ball B overlaps ball A both in the picture and in depth, so
+ * that comparing one depth per ball may order them wrongly. */
 static int can_partly_occlude(const struct glint_placed *a,
                               const struct glint_placed *b)
 {
@@ -231,7 +233,7 @@ static int can_partly_occlude(const struct glint_placed *a,
            !glint_box_is_empty(glint_box_intersect(a->box, b->box));
 }
 
-void glint_scene_set_flat_depths(struct glint_scene *s)
+void glint_scene_set_single_depths_of_balls(struct glint_scene *s)
 {
     const uint32_t n = s->model.header->n_objects;
 
@@ -252,11 +254,11 @@ void glint_scene_set_flat_depths(struct glint_scene *s)
     }
 }
 
-/* Returns whether all of object P is in front of PLANE, on the camera's
- * side. */
-static int is_in_front_of_plane(const struct glint_scene *s,
-                                const struct glint_placed *p,
-                                const struct glint_placed *plane)
+/* Returns whether all of object P lies on the side of PLANE where the camera
+ * is. */
+static int is_object_in_front_of_plane(const struct glint_scene *s,
+                                       const struct glint_placed *p,
+                                       const struct glint_placed *plane)
 {
     int32_t off[3], camera[3];
     int64_t away, side;
@@ -269,10 +271,10 @@ static int is_in_front_of_plane(const struct glint_scene *s,
            q_magnitude(away) > (uint64_t)p->reach + 2;
 }
 
-/* Restricts the box of a catcher to the pixels that may have shadows, or
- * objects that the catcher may hide. */
-static void confine_catcher(const struct glint_scene *s,
-                            struct glint_placed *plane)
+/* Reduces the box of a catcher to the pixels that may have shadows, or objects
+ * that the catcher may hide. */
+static void shrink_box_of_catcher(const struct glint_scene *s,
+                                  struct glint_placed *plane)
 {
     struct glint_box box = {0, 0, 0, 0};
 
@@ -291,27 +293,27 @@ static void confine_catcher(const struct glint_scene *s,
             continue;
         if (p->object->kind == GLINT_OBJECT_PLANE)
             return;
-        if (!is_in_front_of_plane(s, p, plane))
+        if (!is_object_in_front_of_plane(s, p, plane))
             box = glint_box_unite(box, p->box);
     }
     plane->box = box;
     plane->is_seen = !glint_box_is_empty(box);
 }
 
-void glint_scene_confine_catchers(struct glint_scene *s)
+void glint_scene_shrink_catcher_boxes(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen && s->placed[i].object->catcher_q15)
-            confine_catcher(s, &s->placed[i]);
+            shrink_box_of_catcher(s, &s->placed[i]);
 }
 
 /* -------------------------------------------------------------------- tile */
 
 /* Returns the box of pixels of TILE that may see an object. Meshes are included
  * if the tile's list has triangles. */
-static struct glint_box find_touched_pixels(const struct glint_scene *s,
-                                            struct glint_box tile,
-                                            int has_triangles)
+static struct glint_box
+find_pixels_that_may_see_objects(const struct glint_scene *s,
+                                 struct glint_box tile, int has_triangles)
 {
     struct glint_box all = {0, 0, 0, 0};
 
@@ -331,7 +333,7 @@ static void clear_tile_samples(struct glint_scene_worker *w)
     const int n = w->scene->cfg.edge_samples * (b.x1 - b.x0);
 
     for (int y = b.y0; y < b.y1; y++) {
-        const int first = glint_sample_index(w, b.x0, y, 0);
+        const int first = glint_get_sample_index(w, b.x0, y, 0);
 
         for (int i = first; i < first + n; i++) {
             w->depth[i] = 0;
@@ -349,7 +351,7 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
         s->has_triangles && s->bins.start[at] < s->bins.start[at + 1];
 
     w->tile = tile;
-    w->touched = find_touched_pixels(s, tile, has_triangles);
+    w->touched = find_pixels_that_may_see_objects(s, tile, has_triangles);
     if (s->motion)
         w->touched =
             glint_box_unite(w->touched, s->cfg.parts.motions->touch(s, tile));

@@ -25,13 +25,13 @@ static inline int32_t glint_sample_offset_q8(const struct glint_scene *s, int k,
 }
 
 /* Returns log2 of the number N of samples of a pixel: 0, 2, 3 or 4. */
-static inline int glint_samples_log2(int n)
+static inline int glint_get_samples_log2(int n)
 {
     return n == 1 ? 0 : n == 4 ? 2 : n == 8 ? 3 : 4;
 }
 
-static inline int glint_sample_index(const struct glint_scene_worker *w, int x,
-                                     int y, int k)
+static inline int glint_get_sample_index(const struct glint_scene_worker *w,
+                                         int x, int y, int k)
 {
     const struct glint_scene_config *cfg = &w->scene->cfg;
 
@@ -40,11 +40,11 @@ static inline int glint_sample_index(const struct glint_scene_worker *w, int x,
            k;
 }
 
-static inline void glint_put_nearer_sample(struct glint_scene_worker *w, int x,
-                                           int y, int k, int32_t depth,
-                                           uint32_t id)
+static inline void glint_write_sample_if_nearer(struct glint_scene_worker *w,
+                                                int x, int y, int k,
+                                                int32_t depth, uint32_t id)
 {
-    const int i = glint_sample_index(w, x, y, k);
+    const int i = glint_get_sample_index(w, x, y, k);
 
     if (depth > w->depth[i] || (depth == w->depth[i] && id < w->id[i])) {
         w->depth[i] = depth;
@@ -58,14 +58,14 @@ static inline void glint_put_nearer_sample(struct glint_scene_worker *w, int x,
 void glint_quick_prepare_ball(const struct glint_scene *scene,
                               struct glint_placed *p);
 
-/* Sets RAY to the ray through position (X, Y), and SEEN_Q30 to its direction in
- * camera coordinates; components have an error of 2^-24. */
+/* Sets RAY to the ray through position (X, Y), and SEEN_Q30 to the ray's
+ * direction in camera coordinates. Components have an error of 2^-24. */
 void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
                              int32_t y_q8, struct glint_scene_ray *ray,
                              int32_t seen_q30[3]);
 
 /* Sets COSINE_Q30 to the cosine between RAY and the normal of ball P, and
- * ACROSS_Q30 to the shortest vector between the ball's middle and the ray, in
+ * ACROSS_Q30 to the shortest vector from the ball's middle to the ray, in
  * radii, rotated by a right angle. P->over_up must not be 0. Returns 0 if the
  * ray misses P or passes near its rim. */
 int glint_quick_intersect_ball(const struct glint_placed *p,
@@ -74,9 +74,9 @@ int glint_quick_intersect_ball(const struct glint_placed *p,
 
 /* Returns the distance along RAY of the intersection that
  * glint_quick_intersect_ball() found, steps, with an error of 2^-13 radii. */
-int32_t glint_quick_ball_distance(const struct glint_placed *p,
-                                  const struct glint_scene_ray *ray,
-                                  int32_t cosine_q30);
+int32_t glint_quick_get_ball_distance(const struct glint_placed *p,
+                                      const struct glint_scene_ray *ray,
+                                      int32_t cosine_q30);
 
 /* ------------------------------------------------------------------ layers */
 
@@ -89,8 +89,8 @@ struct glint_layer_span {
 };
 
 struct glint_scene_motions {
-    /* carve allocates the state of motions from ARENA, and returns NULL if
-     * ARENA only counts bytes; carve_worker allocates the arrays of one
+    /* carve allocates the state of a recorded motion from ARENA, and returns
+     * NULL if ARENA only counts bytes. carve_worker allocates the arrays of one
      * WORKER. */
     struct glint_motion_state *(*carve)(const struct glint_scene *scene,
                                         struct glint_arena *arena);
@@ -109,8 +109,9 @@ struct glint_scene_motions {
     /* Lists in W the overlays that may cover row Y of its tile, from back to
      * front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* Sets W->over to the listed overlays that cover pixel X. Returns the end
-     * of the run of pixels that the same overlays cover. */
+    /* Sets W->over to those overlays of the row's list that cover pixel X.
+     * Returns the end of the run of pixels, from X on, that the same overlays
+     * cover. */
     int (*next)(struct glint_scene_worker *w, int x);
     /* Composites the overlays W->over over pixel (X, Y), whose light so far is
      * SUM. */

@@ -121,14 +121,15 @@ static void attenuate_picture_row(const struct glint_tiles *tiles,
             from_q8 = wide->cover_q8[0];
         }
         if (tiles->image->format != GLINT_LINEAR_Q20)
-            glint_hide_run_background(tiles->resolve, tiles->image, x, top, n_x,
-                                      n_y, wide, NULL, &scratch->codes->rows);
+            glint_hide_background_of_run(tiles->resolve, tiles->image, x, top,
+                                         n_x, n_y, wide, NULL,
+                                         &scratch->codes->rows);
         for (int k = 0; k < n_y && tiles->image->format == GLINT_LINEAR_Q20;
              k++)
-            glint_hide_linear_background(tiles->image, x, top + k, n_x,
-                                         from_q8);
+            glint_hide_background_of_linear_run(tiles->image, x, top + k, n_x,
+                                                from_q8);
     }
 }
 
-const struct glint_blend glint_blend = {blend_pass, glint_hide_run_background,
-                                        attenuate_picture_row};
+const struct glint_blend glint_blend = {
+    blend_pass, glint_hide_background_of_run, attenuate_picture_row};

@@ -50,13 +50,13 @@ static void add_pixel_rows_to_cell_sums(const struct look *l,
     for (int at = 0; at < width; at += GLINT_CODES_WIDTH) {
         const int n = q_smaller(GLINT_CODES_WIDTH, width - at);
 
-        glint_light_sum_read(&sum, codes, at, y, n, n_y);
+        glint_light_sum_read_pixels(&sum, codes, at, y, n, n_y);
         for (int x = at, to; x < at + n; x = to) {
             const int cell = v->across.cell[x];
 
             to = q_smaller(at + n, v->across.start[cell + 1]);
             for (int k = 0; k < n_y; k++)
-                glint_light_sum_add(&sum, codes, k, x, to, sum_q20[cell]);
+                glint_light_sum_add_row(&sum, codes, k, x, to, sum_q20[cell]);
         }
     }
 }

@@ -239,7 +239,8 @@ static void open_model(const char *path)
     uint8_t *data;
     size_t bytes;
 
-    if (glint_input_slurp(&data, &bytes, path, 1 << 28, &error) != GLINT_OK ||
+    if (glint_input_read_whole_file(&data, &bytes, path, 1 << 28, &error) !=
+            GLINT_OK ||
         glint_lens_open(&lens[n_models], data, bytes, &reason) != GLINT_OK) {
         fprintf(stderr, "scenes: %s: %s%s\n", path, error.text, reason);
         exit(3);

@@ -157,7 +157,8 @@ static void open_scene(const char *path)
     uint8_t *data;
     size_t bytes;
 
-    if (glint_input_slurp(&data, &bytes, path, 1 << 28, &error) != GLINT_OK ||
+    if (glint_input_read_whole_file(&data, &bytes, path, 1 << 28, &error) !=
+            GLINT_OK ||
         glint_scene_open(&model[n_models], data, bytes, &reason) != GLINT_OK) {
         fprintf(stderr, "things: %s: %s%s\n", path, error.text, reason);
         exit(3);

@@ -35,7 +35,8 @@ void stone_cost_frame(const struct glint_spread *spread,
 {
     for (int c = 0; c < CHANNELS; c++)
         for (int x = 0; x < spread->width; x += GLINT_STRIP)
-            glint_spread_strip(spread, c, x, 0, spread->height, scratch);
+            glint_spread_light_in_strip(spread, c, x, 0, spread->height,
+                                        scratch);
 }
 
 void stone_cost_idle(const struct glint_spread *spread)
@@ -103,7 +104,7 @@ static void time_light_map(struct glint_spread *s,
 
             if (!is_set_selected(k, only))
                 continue;
-            s->convolve = glint_convolve_of(set_of[k].bits);
+            s->convolve = glint_choose_convolve_kernel(set_of[k].bits);
             idle(s);
             start = cpu_seconds();
             frame(s, scratch);

@@ -264,7 +264,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
                                  "needs one coating or one lens");
     if (code >= 0)
         return code;
-    if (o->output && !glint_ends_in(o->output, ".svg"))
+    if (o->output && !glint_has_extension(o->output, ".svg"))
         return tool_usage(tool, "the plot must be a .svg, not '%s'", o->output);
     if (o->output && o->surface >= 0)
         apart_add_input(&files, NULL, argv[optind]);

@@ -238,7 +238,7 @@ static int import_lens_file(struct tool *tool, struct import *o,
     char *text;
     int code;
 
-    status = glint_input_slurp(&data, &bytes, path, 1 << 22, &error);
+    status = glint_input_read_whole_file(&data, &bytes, path, 1 << 22, &error);
     if (status != GLINT_OK) {
         free(data);
         return tool_fail(tool, status, error.text);

@@ -440,7 +440,8 @@ static int lint_lens_file(const struct tool *tool, const char *name)
 
     if (!file)
         return EXIT_LENS;
-    status = glint_input_slurp(&text, &bytes, file, LENS_TEXT, &error);
+    status =
+        glint_input_read_whole_file(&text, &bytes, file, LENS_TEXT, &error);
     if (status != GLINT_OK) {
         free(text);
         return tool_fail(tool, status, error.text);

@@ -228,7 +228,8 @@ static int open_item_set(const struct tool *tool, const struct synth_set *set,
         return code;
     if (access(path, F_OK) != 0)
         return EXIT_OK;
-    status = glint_input_slurp(&kept, &bytes, path, MOST_BYTES, &error);
+    status =
+        glint_input_read_whole_file(&kept, &bytes, path, MOST_BYTES, &error);
     is_same = status == GLINT_OK && bytes == strlen(settings) &&
               memcmp(kept, settings, bytes) == 0;
     free(kept);

@@ -158,8 +158,8 @@ int main(int argc, char **argv)
 {
     struct words words = {argc, argv};
 
-    glint_process_hold_streams();
+    glint_process_open_closed_streams();
     tool_watch_closed_pipe();
-    return tool_close_stdout(glint_process_run_on_stack(
+    return tool_close_stdout(glint_process_run_with_stack(
         GLINT_WORKER_STACK_BYTES, run_command_words, &words));
 }

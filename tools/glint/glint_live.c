@@ -8,7 +8,7 @@
 
 int main(int argc, char **argv)
 {
-    glint_process_hold_streams();
+    glint_process_open_closed_streams();
     tool_set_command_line(argv);
     tool_watch_closed_pipe();
     return tool_close_stdout(cmd_live(argc, argv));

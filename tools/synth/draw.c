@@ -147,7 +147,7 @@ enum glint_status synth_hash_background(char key[20], const char *path,
     uint8_t *data = NULL;
     size_t bytes;
     const enum glint_status status =
-        glint_input_slurp(&data, &bytes, path, MOST_BYTES, error);
+        glint_input_read_whole_file(&data, &bytes, path, MOST_BYTES, error);
 
     if (status == GLINT_OK) {
         tool_hash_into_key(&number, data, bytes);

@@ -17,8 +17,8 @@ struct paraxial_ray {
     double y_mm, nu;
 };
 
-/* Returns the curvature of element E in PLANE (enum glint_bend), 1 / mm,
- * ignoring tilts and shifts. */
+/* Returns the curvature of element E in PLANE (enum glint_bend), 1
+ * / mm, ignoring tilts and shifts. */
 static double compute_curvature_in_plane(const struct glint_prescription *lens,
                                          int e, int plane)
 {

@@ -61,7 +61,7 @@ enum glint_status glint_stone_light(const struct glint_translucent *stone,
 
         for (int c = 0; c < CHANNELS; c++)
             for (int x = 0; x < side; x += GLINT_STRIP)
-                glint_spread_strip(&s, c, x, 0, side, &scratch);
+                glint_spread_light_in_strip(&s, c, x, 0, side, &scratch);
         for (size_t i = 0; i < n; i++)
             for (size_t c = 0; c < CHANNELS; c++)
                 radiosity[CHANNELS * i + c] = s.map[c][i] / one;

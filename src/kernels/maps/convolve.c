@@ -2,7 +2,7 @@
 #include "kernels/choose.h"
 #include "kernels/maps/maps.h"
 
-glint_convolve_fn *glint_convolve_of(unsigned sets)
+glint_convolve_fn *glint_choose_convolve_kernel(unsigned sets)
 {
     return BEST_OF(sets, glint_convolve_);
 }

@@ -3,7 +3,7 @@
 
 #include <arm_neon.h>
 
-/* Keeps sixteen sums in registers over all taps. */
+/* Keeps sixteen sums in registers while it processes all taps. */
 void glint_convolve_neon(int32_t *sum, const int32_t *value, ptrdiff_t stride,
                          const int32_t *tap, int n_taps, int n)
 {

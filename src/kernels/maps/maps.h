@@ -10,7 +10,7 @@
 #include <stdint.h>
 
 /* Packs two int16 into an int32, FIRST in the lower half. */
-static inline int32_t glint_pack_pair(int32_t first, int32_t second)
+static inline int32_t glint_pack_int16_pair(int32_t first, int32_t second)
 {
     return (int32_t)((uint32_t)(uint16_t)first | (uint32_t)second << 16);
 }
@@ -27,7 +27,7 @@ typedef void glint_convolve_fn(int32_t *sum, const int32_t *value,
 
 /* Returns the best kernel that the GLINT_SET_ bits SETS allow; the kernel in C
  * if no bit is set. */
-glint_convolve_fn *glint_convolve_of(unsigned sets);
+glint_convolve_fn *glint_choose_convolve_kernel(unsigned sets);
 
 glint_convolve_fn glint_convolve_c, glint_convolve_sse41, glint_convolve_avx2,
     glint_convolve_neon;

@@ -3,7 +3,7 @@
 
 #include <arm_neon.h>
 
-/* 64-bit products of four lanes with one factor. */
+/* 64-bit products of each of four lanes with the same factor. */
 struct products {
     int64x2_t low, high;
 };
@@ -27,8 +27,8 @@ static inline struct products subtract_products(struct products a,
                              vsubq_s64(a.high, b.high)};
 }
 
-/* The shift to the left that scales products, and the limit of the magnitude of
- * results, exclusive. */
+/* How products are scaled: the shift to the left, and the exclusive limit of
+ * the magnitude of results. */
 struct scale_products {
     int64x2_t up;
     int32x4_t limit;

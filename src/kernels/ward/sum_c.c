@@ -33,9 +33,9 @@ static uint32_t compute_root_q15(uint32_t x_q14)
     return (y_q14 * part_q14 >> 14 << 2) >> (up / 2);
 }
 
-/* A sample of the lobe: the direction i to the light in the surface's frame,
- * h.o (half vector . direction to the eye), and whether the sample has weight:
- * h.o and n.i are positive. */
+/* A sample of the lobe: the direction i from the surface to the light, in the
+ * surface's frame; h.o, the half vector times the direction to the eye; and
+ * whether the sample counts: h.o and n.i are positive (n: normal). */
 struct sample {
     int32_t in_q14[3], ho_q14;
     int counts;
@@ -69,15 +69,15 @@ static int32_t compute_bounded_weight_q12(int32_t ho_q14, int32_t hn_q14,
         q_smaller(q_larger(ho_q14 * hn_q14 >> 12, 1), ONE_Q16 - 1);
     const int up = 16 - bit_length((uint32_t)d_q16);
     const uint32_t r_q15 = approximate_reciprocal((uint32_t)d_q16 << up);
-    /* (n.o) 2^up is below 2^15 where n.i is positive */
+    /* where n.i is positive, (n.o) 2^up is below 2^15 */
     const uint32_t q_q12 = ((uint32_t)no_q14 << up) * r_q15 >> 17;
 
     return q_larger((2 << 12) - (int32_t)q_q12, 0);
 }
 
-static int32_t compute_norm_weight_q12(const struct glint_ward_lobe *lobe,
-                                       int k, const struct sample *s,
-                                       const struct glint_ward_place *place)
+static int32_t compute_weight_of_1992_q12(const struct glint_ward_lobe *lobe,
+                                          int k, const struct sample *s,
+                                          const struct glint_ward_place *place)
 {
     uint32_t root, part_q15;
 
@@ -94,9 +94,9 @@ static int32_t compute_norm_weight_q12(const struct glint_ward_lobe *lobe,
 
 /* Projects the light's direction of sample S to the square of the octahedral
  * environment map. */
-static void project_to_square(const struct sample *s,
-                              const struct glint_ward_place *place,
-                              int32_t *u_q17, int32_t *v_q17)
+static void project_direction_to_map(const struct sample *s,
+                                     const struct glint_ward_place *place,
+                                     int32_t *u_q17, int32_t *v_q17)
 {
     int32_t toward_q14[3], p_q16, q_q16;
     uint32_t away_q14[3], r_q15;
@@ -124,7 +124,7 @@ static void project_to_square(const struct sample *s,
 
 /* Returns the blurriest mip level that is not blurrier than sample K. Sets
  * *SHARE_Q8 to the weight of the next level, which has four times the variance,
- * such that the blend of both levels has the variance of the sample. */
+ * such that the blend of both levels has the sample's variance. */
 static int32_t choose_mip_level(const struct glint_ward_lobe *lobe, int k,
                                 int32_t ho_q14, int32_t last,
                                 uint32_t *share_q8)
@@ -159,15 +159,16 @@ void glint_ward_sum_c(const struct glint_ward_lobe *lobe,
 
         if (!s.counts)
             continue;
-        project_to_square(&s, place, &u_q17, &v_q17);
+        project_direction_to_map(&s, place, &u_q17, &v_q17);
         level = choose_mip_level(lobe, k, s.ho_q14, texels->last, &share_q8);
-        glint_set_texel_reads(&texels->level[level], u_q17, v_q17,
-                              256 - share_q8, reads.at, reads.weight_q22);
-        glint_set_texel_reads(&texels->level[level + 1], u_q17, v_q17, share_q8,
-                              reads.at + 4, reads.weight_q22 + 4);
+        glint_choose_texels_to_read(&texels->level[level], u_q17, v_q17,
+                                    256 - share_q8, reads.at, reads.weight_q22);
+        glint_choose_texels_to_read(&texels->level[level + 1], u_q17, v_q17,
+                                    share_q8, reads.at + 4,
+                                    reads.weight_q22 + 4);
         glint_sum_texel_light(texels->code, &reads, 8, &found);
-        glint_add_weighted_light(
-            &found, (uint32_t)compute_norm_weight_q12(lobe, k, &s, place),
+        glint_add_light_times_weight(
+            &found, (uint32_t)compute_weight_of_1992_q12(lobe, k, &s, place),
             sum_q12);
     }
 }

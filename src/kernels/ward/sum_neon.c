@@ -44,7 +44,7 @@ static inline int w_is_any_set(W mask)
     return vget_lane_u64(vreinterpret_u64_u32(half), 0) != 0;
 }
 
-/* Loads lane I of TO from element (lane I of AT) of FROM. */
+/* Loads lane I of TO from the element of FROM whose index is lane I of AT. */
 #define LOAD_LANE(to, from, at, i) \
     to = vld1q_lane_u32((from) + vgetq_lane_u32(at, i), to, i)
 
@@ -59,8 +59,8 @@ static inline W w_gather(const uint32_t *code, W at)
     return S(c);
 }
 
-/* Loads level K and the next level for each lane. A level has two words, so
- * one load of four words reads both. */
+/* Loads, for each lane, mip level K and the level after it. A level has two
+ * words, so one load of four words reads both levels. */
 static inline void w_gather_levels(const struct glint_texels_level *level, W k,
                                    W side_log2[2], W first[2])
 {

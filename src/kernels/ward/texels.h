@@ -7,8 +7,8 @@
 #include "base/q.h"
 #include "glint/scene/lobe.h"
 
-/* The texels that one lookup reads, four or, in two levels, eight: indices of
- * their codes, and weights, which sum to 2^22. */
+/* The texels that one lookup reads, four in one level or eight in two levels:
+ * indices of their codes, and their weights, which sum to 2^22. */
 struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };
@@ -24,13 +24,13 @@ struct glint_found {
  * V), 0 .. 1 across and down the square, with total weight SHARE_Q8. A texel
  * beyond an edge is replaced by its mirror image about the middle of that edge,
  * as the octahedron folds. */
-static inline void glint_set_texel_reads(const struct glint_texels_level *level,
-                                         int32_t u_q17, int32_t v_q17,
-                                         uint32_t share_q8, uint32_t at[4],
-                                         uint32_t weight_q22[4])
+static inline void
+glint_choose_texels_to_read(const struct glint_texels_level *level,
+                            int32_t u_q17, int32_t v_q17, uint32_t share_q8,
+                            uint32_t at[4], uint32_t weight_q22[4])
 {
     const int32_t last = (1 << level->side_log2) - 1;
-    /* distance from the middle of the first texel, -128 .. 2^18 */
+    /* distance from the middle of the first texel, 1/256 texel, -128 .. 2^18 */
     const int32_t x_q8 = (u_q17 << level->side_log2 >> 9) - 128;
     const int32_t y_q8 = (v_q17 << level->side_log2 >> 9) - 128;
     const int32_t x = x_q8 >> 8, y = y_q8 >> 8;
@@ -74,9 +74,9 @@ static inline void glint_sum_texel_light(const uint32_t *code,
 }
 
 /* Adds light FOUND times WEIGHT_Q12, 0 .. 2^15, to SUM. */
-static inline void glint_add_weighted_light(const struct glint_found *found,
-                                            uint32_t weight_q12,
-                                            uint64_t sum_q12[3])
+static inline void glint_add_light_times_weight(const struct glint_found *found,
+                                                uint32_t weight_q12,
+                                                uint64_t sum_q12[3])
 {
     for (int j = 0; j < 3; j++)
         sum_q12[j] +=

@@ -15,10 +15,10 @@ enum {
                        levels */
     MAP_TEXELS = 4, /* texels read per lookup in the map of a translucent
                        medium */
-    POINTS = 16,    /* sample points of a light's disc that shadow rays are
-                       traced to */
-    /* Costs in tests of a ray with an object: LIT_TESTS for the light of one
-     * source at a point, BALL_TESTS for a pixel of a ball's box. */
+    POINTS = 16,    /* number of sample points on a light's disc; one shadow ray
+                       is traced to each */
+    /* Costs, as numbers of ray-object tests: LIT_TESTS: light of one source at
+     * one point; BALL_TESTS: visibility of a ball in one pixel of its box. */
     LIT_TESTS = 4,
     BALL_TESTS = 3
 };
@@ -66,9 +66,10 @@ static int is_translucent(const struct glint_scene *s,
 /* Counts the work of lighting a point of SURFACE: all lights, and the
  * environment if it is metal. A translucent medium without a coat only reads
  * its map. */
-static void count_lit_point(const struct glint_scene *s,
-                            const struct glint_met_surface *surface,
-                            struct glint_scene_part *part)
+static void
+count_lighting_work_of_point(const struct glint_scene *s,
+                             const struct glint_met_surface *surface,
+                             struct glint_scene_part *part)
 {
     const int is_metal = surface->material->ward != GLINT_SCENE_NONE;
 
@@ -84,12 +85,12 @@ static void count_lit_point(const struct glint_scene *s,
         part->count[GLINT_SCENE_LOOKUPS] += s->cfg.ward_samples;
 }
 
-/* Traces RAY from SURFACE to the next surface, and counts the work of shading
- * that. Returns 0 if the ray meets no surface. */
-static int trace_next_surface(const struct glint_scene *s,
-                              struct glint_scene_ray *ray,
-                              struct glint_met_surface *surface,
-                              struct glint_scene_part *part)
+/* Traces RAY from SURFACE to the next surface that it hits, and counts the work
+ * of shading this next surface. Returns 0 if the ray hits no surface. */
+static int trace_ray_to_next_surface(const struct glint_scene *s,
+                                     struct glint_scene_ray *ray,
+                                     struct glint_met_surface *surface,
+                                     struct glint_scene_part *part)
 {
     const struct glint_met_surface from = *surface;
     struct glint_met met;
@@ -98,18 +99,18 @@ static int trace_next_surface(const struct glint_scene *s,
     glint_scene_set_ray_start(s, &from, ray->at);
     if (!glint_scene_find_nearest_hit(s, ray, from.object, from.triangle,
                                       &met) ||
-        !glint_scene_set_surface(s, ray, &met, surface))
+        !glint_scene_find_surface_at_hit(s, ray, &met, surface))
         return 0;
     part->count[GLINT_SCENE_SHADED]++;
-    count_lit_point(s, surface, part);
+    count_lighting_work_of_point(s, surface, part);
     return 1;
 }
 
 /* Counts the reflected and transmitted rays that continue RAY at SURFACE. */
-static void count_bounces(const struct glint_scene *s,
-                          const struct glint_scene_ray *ray,
-                          const struct glint_met_surface *surface,
-                          struct glint_scene_part *part)
+static void count_secondary_rays(const struct glint_scene *s,
+                                 const struct glint_scene_ray *ray,
+                                 const struct glint_met_surface *surface,
+                                 struct glint_scene_part *part)
 {
     struct glint_met_surface at = *surface;
     struct glint_scene_ray on = *ray;
@@ -117,19 +118,19 @@ static void count_bounces(const struct glint_scene *s,
     if (surface->material->reflect_q15) {
         glint_reflect_direction(ray->toward_q30, surface->normal_q30,
                                 on.toward_q30);
-        trace_next_surface(s, &on, &at, part);
+        trace_ray_to_next_surface(s, &on, &at, part);
         at = *surface;
         on = *ray;
     }
     for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++)
-        if (!trace_next_surface(s, &on, &at, part))
+        if (!trace_ray_to_next_surface(s, &on, &at, part))
             return;
 }
 
 /* Counts the work of shading object or triangle ID at position (X, Y), pixels
  * q8 from the picture's middle. */
-static void count_shaded_point(const struct account *a, uint32_t id,
-                               int32_t x_q8, int32_t y_q8)
+static void count_shading_work_of_point(const struct account *a, uint32_t id,
+                                        int32_t x_q8, int32_t y_q8)
 {
     const struct glint_scene *s = a->scene;
     struct glint_scene_part *part = &a->objects[id >> 20];
@@ -143,15 +144,15 @@ static void count_shaded_point(const struct account *a, uint32_t id,
     part->count[GLINT_SCENE_SHADED]++;
     glint_view_set_ray(&s->view, x_q8, y_q8, &ray, seen_q30);
     if (!glint_scene_ray_hits_id(s, &ray, seen_q30, id, &met) ||
-        !glint_scene_set_surface(s, &ray, &met, &surface))
+        !glint_scene_find_surface_at_hit(s, &ray, &met, &surface))
         return;
-    count_lit_point(s, &surface, part);
+    count_lighting_work_of_point(s, &surface, part);
     if (s->placed[id >> 20].object->catcher_q15)
         return;
     if (m->texture != GLINT_SCENE_NONE)
         part->count[GLINT_SCENE_TEXELS] += TEXELS;
     if (m->reflect_q15 || m->pass_q15)
-        count_bounces(s, &ray, &surface, part);
+        count_secondary_rays(s, &ray, &surface, part);
 }
 
 /* Returns whether object or triangle ID is shaded at each sample, not once per
@@ -165,15 +166,16 @@ static int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
 }
 
 /* Returns whether A and B belong to the same object. */
-static int is_same_object(uint32_t a, uint32_t b)
+static int do_ids_name_same_object(uint32_t a, uint32_t b)
 {
     return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
 }
 
-/* Returns whether the aligned block of 2 x 2 pixels that contains (X, Y) sees
- * one object and is shaded by one point. */
-static int is_shared_by_quad(const struct glint_scene_worker *w, int x, int y,
-                             uint32_t id)
+/* Returns whether all samples of the aligned block of 2 x 2 pixels that
+ * contains (X, Y) see one object, so that one shaded point serves all four
+ * pixels. */
+static int can_pixel_quad_share_shading(const struct glint_scene_worker *w,
+                                        int x, int y, uint32_t id)
 {
     const struct glint_box b = w->touched;
     const int x0 = x & ~1, y0 = y & ~1, n = w->scene->cfg.edge_samples;
@@ -183,22 +185,23 @@ static int is_shared_by_quad(const struct glint_scene_worker *w, int x, int y,
         return 0;
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < n; i++)
-            if (!is_same_object(id, w->id[glint_sample_index(
-                                        w, x0 + (k & 1), y0 + (k >> 1), i)]))
+            if (!do_ids_name_same_object(
+                    id, w->id[glint_get_sample_index(w, x0 + (k & 1),
+                                                     y0 + (k >> 1), i)]))
                 return 0;
     return 1;
 }
 
 /* Counts the work for the objects that the samples of pixel (X, Y) see. */
-static void count_pixel_objects(const struct account *a,
+static void count_work_of_pixel(const struct account *a,
                                 const struct glint_scene_worker *w, int x,
                                 int y)
 {
     const struct glint_scene *s = a->scene;
-    const uint32_t *id = &w->id[glint_sample_index(w, x, y, 0)];
+    const uint32_t *id = &w->id[glint_get_sample_index(w, x, y, 0)];
     const int32_t x_q8 = glint_pixel_position_q8(s, x, 0),
                   y_q8 = glint_pixel_position_q8(s, y, 1);
-    const int quad = is_shared_by_quad(w, x, y, id[0]);
+    const int quad = can_pixel_quad_share_shading(w, x, y, id[0]);
     int any = 0;
 
     if (a->seen && id[0] != GLINT_NOTHING)
@@ -210,7 +213,7 @@ static void count_pixel_objects(const struct account *a,
             continue;
         any = 1;
         a->objects[id[k] >> 20].count[GLINT_SCENE_SAMPLED]++;
-        while (!is_same_object(id[i], id[k]))
+        while (!do_ids_name_same_object(id[i], id[k]))
             i++;
         if (i == k)
             a->objects[id[k] >> 20].count[GLINT_SCENE_COVERING]++;
@@ -218,15 +221,16 @@ static void count_pixel_objects(const struct account *a,
                  : i != k && !is_shaded_per_sample(s, id[k]))
             continue;
         if (is_shaded_per_sample(s, id[k]) && !quad)
-            count_shaded_point(a, id[k], x_q8 + glint_sample_offset_q8(s, k, 0),
-                               y_q8 + glint_sample_offset_q8(s, k, 1));
+            count_shading_work_of_point(a, id[k],
+                                        x_q8 + glint_sample_offset_q8(s, k, 0),
+                                        y_q8 + glint_sample_offset_q8(s, k, 1));
         else
-            count_shaded_point(a, id[k], x_q8, y_q8);
+            count_shading_work_of_point(a, id[k], x_q8, y_q8);
     }
     a->all->count[GLINT_SCENE_COVERING] += any;
 }
 
-static void count_tile_objects(const struct account *a,
+static void count_work_of_tile(const struct account *a,
                                struct glint_scene_worker *w,
                                struct glint_box tile)
 {
@@ -234,12 +238,13 @@ static void count_tile_objects(const struct account *a,
         return;
     for (int y = w->touched.y0; y < w->touched.y1; y++)
         for (int x = w->touched.x0; x < w->touched.x1; x++)
-            count_pixel_objects(a, w, x, y);
+            count_work_of_pixel(a, w, x, y);
 }
 
 /* ------------------------------------------------------------------- fates */
 
-static enum glint_scene_fate find_unseen_fate(const struct glint_placed *p)
+static enum glint_scene_fate
+get_fate_of_unseen_object(const struct glint_placed *p)
 {
     if (!p->is_shown)
         return GLINT_SCENE_OFF;
@@ -264,8 +269,9 @@ static int ray_hits_object(const struct glint_scene *s, uint32_t i, int x,
                                    glint_make_triangle_id(i, 0), &met);
 }
 
-/* Finds the object that hides most pixels of object I, which is in the picture
- * but visible at no sample: a majority vote over its pixels [Boyer91]. */
+/* Finds the object that hides most pixels of object I, by a majority vote over
+ * the pixels of I [Boyer91]. Object I must lie in the picture and be hidden at
+ * all samples. */
 static void find_occluder(const struct account *a, uint32_t i)
 {
     const struct glint_scene *s = a->scene;
@@ -292,7 +298,7 @@ static void set_object_fate(const struct account *a, uint32_t i)
     struct glint_scene_part *part = &a->objects[i];
 
     if (!a->scene->placed[i].is_seen)
-        part->fate = find_unseen_fate(&a->scene->placed[i]);
+        part->fate = get_fate_of_unseen_object(&a->scene->placed[i]);
     else if (part->count[GLINT_SCENE_SAMPLED] > 0)
         part->fate = GLINT_SCENE_DRAWN;
     else
@@ -323,7 +329,7 @@ void glint_scene_account(struct glint_scene *scene,
 
     clear_object_counts(&a);
     for (int tile = 0; tile < n_tiles; tile++)
-        count_tile_objects(&a, &scene->worker[0],
+        count_work_of_tile(&a, &scene->worker[0],
                            glint_bins_compute_tile_box(bins, tile));
     for (int32_t i = 0; scene->has_triangles && i < bins->start[n_tiles]; i++)
         objects[(uint32_t)bins->ref[i] >> 20].count[GLINT_SCENE_TRIANGLES]++;
@@ -350,18 +356,19 @@ static int find_pixel_surface(const struct glint_scene *s, int x, int y,
                        glint_pixel_position_q8(s, y, 1), ray, seen_q30);
     if (glint_scene_find_nearest_hit(s, ray, GLINT_NOTHING, GLINT_NOTHING,
                                      &met))
-        return glint_scene_set_surface(s, ray, &met, surface);
+        return glint_scene_find_surface_at_hit(s, ray, &met, surface);
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_shown && s->placed[i].is_catcher &&
             glint_scene_ray_hits_id(s, ray, seen_q30,
                                     glint_make_triangle_id(i, 0), &met))
-            return glint_scene_set_surface(s, ray, &met, surface);
+            return glint_scene_find_surface_at_hit(s, ray, &met, surface);
     return 0;
 }
 
-/* Adds the number of ray tests for pixel (X, Y) to TESTS; returns whether the
- * pixel sees a surface. */
-static int add_pixel_tests(struct glint_scene *s, int x, int y, int64_t *tests)
+/* Adds the number of ray tests that pixel (X, Y) needs to TESTS. Returns
+ * whether the pixel sees a surface. */
+static int add_ray_tests_of_pixel(struct glint_scene *s, int x, int y,
+                                  int64_t *tests)
 {
     const int64_t before = *tests;
     struct glint_met_surface surface;
@@ -371,9 +378,9 @@ static int add_pixel_tests(struct glint_scene *s, int x, int y, int64_t *tests)
     if (!find_pixel_surface(s, x, y, &ray, &surface))
         return 0;
     s->tests = tests;
-    count_lit_point(s, &surface, &part);
+    count_lighting_work_of_point(s, &surface, &part);
     if (!s->placed[surface.object].is_catcher)
-        count_bounces(s, &ray, &surface, &part);
+        count_secondary_rays(s, &ray, &surface, &part);
     s->tests = NULL;
     /* Samples of mirrors and glass are shaded one by one. */
     if (s->placed[surface.object].is_split)
@@ -383,7 +390,7 @@ static int add_pixel_tests(struct glint_scene *s, int x, int y, int64_t *tests)
 
 /* Returns an upper bound of the number of texels in all maps of translucent
  * objects. A ball's map is twice as wide as high. */
-static int64_t bound_map_texels(const struct glint_scene_model *m)
+static int64_t compute_max_map_texels(const struct glint_scene_model *m)
 {
     int64_t n = 0;
 
@@ -392,9 +399,9 @@ static int64_t bound_map_texels(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns the cost of finding the visible balls, in tests of a ray with an
- * object. */
-static int64_t count_ball_tests(const struct glint_scene *s)
+/* Returns the cost of finding the visible balls, as a number of ray-object
+ * tests. */
+static int64_t estimate_ball_visibility_cost(const struct glint_scene *s)
 {
     int64_t px = 0;
 
@@ -411,20 +418,20 @@ int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most)
 {
     const int width = scene->cfg.width, height = scene->cfg.height;
     const int step =
-        q_larger(4, (int32_t)glint_square_root((uint64_t)width *
-                                               (uint64_t)height / 2048));
-    const int64_t balls = count_ball_tests(scene);
+        q_larger(4, (int32_t)glint_compute_square_root(
+                        (uint64_t)width * (uint64_t)height / 2048));
+    const int64_t balls = estimate_ball_visibility_cost(scene);
     int64_t tests = 0, n = 0;
 
     for (int y = step / 2; y < height; y += step)
         for (int x = step / 2; x < width; x += step) {
-            n += add_pixel_tests(scene, x, y, &tests);
+            n += add_ray_tests_of_pixel(scene, x, y, &tests);
             if (tests > (most - balls) / (step * step))
                 return most + 1;
         }
     if (n > 0 && tests > 0)
-        tests =
-            tests * step * step + tests / n * bound_map_texels(&scene->model);
+        tests = tests * step * step +
+                tests / n * compute_max_map_texels(&scene->model);
     return tests + balls;
 }
 

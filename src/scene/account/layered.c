@@ -2,10 +2,11 @@
 #include "glint/scene/account.h"
 #include "scene/visible.h"
 
-/* Counts, per kind of layer, the pixels in row Y of W's tile that layers of
- * this kind cover. */
-static void count_layered_row(struct glint_scene_worker *w, int y,
-                              struct glint_scene_layered of[GLINT_KINDS])
+/* Counts, for each kind of overlay, the pixels in row Y of W's tile that
+ * overlays of this kind cover. */
+static void
+count_overlay_pixels_in_row(struct glint_scene_worker *w, int y,
+                            struct glint_scene_layered of[GLINT_KINDS])
 {
     w->scene->cfg.parts.motions->list(w, y);
     for (int i = 0; i < w->n_spans; i++)
@@ -28,6 +29,6 @@ void glint_scene_account_layers(struct glint_scene *scene,
     for (int tile = 0; tile < n_tiles; tile++) {
         w->tile = glint_bins_compute_tile_box(&scene->bins, tile);
         for (int y = w->tile.y0; y < w->tile.y1; y++)
-            count_layered_row(w, y, of);
+            count_overlay_pixels_in_row(w, y, of);
     }
 }

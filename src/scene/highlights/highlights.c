@@ -14,20 +14,23 @@ enum {
     ONE_Q15 = GLINT_SCENE_ONE_Q15,
     SIDE_LOG2 = 3,
     SIDE_Q8 = 256 << SIDE_LOG2,
-    LEAST_Q19 = 8,   /* min luminance of a spot, 1 in _q16 */
-    KEPT = 64,       /* max number of highlights, before those near each other
+    LEAST_Q19 = 8,   /* min luminance of a highlight that is reported; 1 in
+                        _q16 */
+    KEPT = 64,       /* max number of highlights in the list, before near ones
                         are merged */
-    WEIGHT_LOG2 = 26 /* log2 of a bound on sums of weights */
+    WEIGHT_LOG2 = 26 /* log2 of the upper bound of the sum of all cell
+                        weights */
 };
 
-/* The sums over one square's pixels. A pixel has weight 16, divided among its
- * samples. Light is below 2^30, so sums over 64 pixels are below 2^40, and
+/* The sums over the pixels of one square. A pixel has weight 16, divided among
+ * its samples. Light is below 2^30, so sums over 64 pixels are below 2^40, and
  * moments below 2^62. */
 struct glint_highlight_cell {
     int64_t flux_q19;  /* sum of luminance above white */
     int64_t at_q27[2]; /* luminance times position in the square, summed over
                           pixels */
-    /* Half of luminance times squared distance from the square's corner. */
+    /* Half of (luminance times squared distance from the square's corner),
+     * summed over pixels. */
     int64_t square_q35;
     int64_t red_q19, blue_q19;
     /* Light of the brightest pixel, and the object that this pixel sees. */
@@ -47,10 +50,11 @@ struct gathered {
 struct glint_highlight_state {
     int across, down;
     struct glint_highlight_cell *cell; /* [down][across] */
-    /* Per square, while squares are gathered to highlights: index of the next
-     * square of the same highlight, END for the last, or UNSEEN. */
+    /* For each square: index of the next square of the same highlight, END for
+     * the highlight's last square, or UNSEEN if the square belongs to no
+     * highlight yet. */
     int32_t *next;
-    struct gathered *kept; /* [KEPT] */
+    struct gathered *kept; /* [KEPT], brightest first */
 };
 
 enum { UNSEEN = -2, END = -1 };
@@ -143,8 +147,8 @@ static int append_lit_neighbours(struct glint_highlight_state *b, int i,
 }
 
 /* Sets AT to the middle of square I, pixels q8 from the picture's corner. */
-static void find_cell_middle(const struct glint_highlight_state *b, int i,
-                             int32_t at[2])
+static void compute_cell_middle(const struct glint_highlight_state *b, int i,
+                                int32_t at[2])
 {
     const struct glint_highlight_cell *c = &b->cell[i];
     const int corner[2] = {i % b->across * SIDE_Q8, i / b->across * SIDE_Q8};
@@ -175,7 +179,7 @@ static void set_highlight_middle(const struct glint_highlight_state *b,
         const uint64_t w = compute_cell_weight(&b->cell[i], g->flux_q19);
         int32_t middle[2];
 
-        find_cell_middle(b, i, middle);
+        compute_cell_middle(b, i, middle);
         weight += w;
         for (int k = 0; k < 2; k++)
             at[k] += w * (uint64_t)middle[k];
@@ -186,7 +190,8 @@ static void set_highlight_middle(const struct glint_highlight_state *b,
 
 /* Returns the highlight that contains square I, which must belong to no
  * highlight yet. */
-static struct gathered gather_highlight(struct glint_highlight_state *b, int i)
+static struct gathered gather_connected_cells(struct glint_highlight_state *b,
+                                              int i)
 {
     struct gathered g = {.first = i};
     int last = i;
@@ -205,8 +210,8 @@ static struct gathered gather_highlight(struct glint_highlight_state *b, int i)
 /* Inserts G into the list KEPT of the brightest highlights, which has N
  * elements and holds at most KEPT; returns the new number. Equally bright
  * highlights stay in the order in which they were found. */
-static int insert_brightest(struct gathered *kept, int n,
-                            const struct gathered *g)
+static int insert_highlight_by_brightness(struct gathered *kept, int n,
+                                          const struct gathered *g)
 {
     int i = n < KEPT ? n : KEPT - 1;
 
@@ -218,8 +223,8 @@ static int insert_brightest(struct gathered *kept, int n,
     return n < KEPT ? n + 1 : n;
 }
 
-static int are_highlights_near(const struct gathered *a,
-                               const struct gathered *b)
+static int are_highlights_near_each_other(const struct gathered *a,
+                                          const struct gathered *b)
 {
     const int64_t x = a->at_q8[0] - b->at_q8[0], y = a->at_q8[1] - b->at_q8[1];
     const int64_t most = 256 * GLINT_SCENE_HIGHLIGHT_APART;
@@ -257,17 +262,17 @@ static int remove_highlight(struct gathered *kept, int n, int i)
 /* Merges the first pair of the *N highlights whose spots are near each other,
  * and sorts the list by brightness again. Returns 0 if there is no such
  * pair. */
-static int merge_first_near_pair(struct glint_highlight_state *b,
-                                 struct gathered *kept, int *n)
+static int merge_first_pair_of_near_highlights(struct glint_highlight_state *b,
+                                               struct gathered *kept, int *n)
 {
     for (int i = 0; i < *n; i++)
         for (int k = i + 1; k < *n; k++)
-            if (are_highlights_near(&kept[i], &kept[k])) {
+            if (are_highlights_near_each_other(&kept[i], &kept[k])) {
                 struct gathered both = kept[i];
 
                 merge_highlights(b, &both, &kept[k]);
                 *n = remove_highlight(kept, remove_highlight(kept, *n, k), i);
-                *n = insert_brightest(kept, *n, &both);
+                *n = insert_highlight_by_brightness(kept, *n, &both);
                 return 1;
             }
     return 0;
@@ -280,7 +285,7 @@ struct spread {
     int64_t x_q8, y_q8, xy_q8;
 };
 
-/* Returns the variance and covariance of the light of highlight G: of the
+/* Returns the variance and covariance of highlight G's light: those of the
  * middles of its squares, plus the mean variance within a square, assumed
  * isotropic. */
 static struct spread
@@ -296,7 +301,7 @@ compute_highlight_variance(const struct glint_highlight_state *b,
         int32_t middle[2];
         int64_t off[2], own;
 
-        find_cell_middle(b, i, middle);
+        compute_cell_middle(b, i, middle);
         for (int k = 0; k < 2; k++) /* below 2^17, q4 */
             off[k] = (middle[k] - g->at_q8[k]) / 16;
         own = glint_divide_rounded((uint64_t)c->square_q35,
@@ -319,12 +324,11 @@ compute_highlight_variance(const struct glint_highlight_state *b,
                                                    q_magnitude(xy), weight)};
 }
 
-/* Returns the standard deviation of VARIANCE, pixels q8, at least half a
- * pixel. */
-static int32_t sqrt_variance_q8(int64_t variance_q8)
+/* Returns the square root of VARIANCE, pixels q8, at least half a pixel. */
+static int32_t compute_standard_deviation_q8(int64_t variance_q8)
 {
     return q_larger(128,
-                    (int32_t)glint_square_root(
+                    (int32_t)glint_compute_square_root(
                         (uint64_t)q_clamp_sat(variance_q8, 0, 1 << 30) << 8));
 }
 
@@ -332,13 +336,13 @@ static void set_spot_extent(const struct spread *s, struct glint_spot *spot)
 {
     const int64_t half = (s->x_q8 - s->y_q8) / 2;
     const int64_t middle = (s->x_q8 + s->y_q8) / 2;
-    const int64_t apart = glint_square_root((uint64_t)(half * half) +
-                                            (uint64_t)(s->xy_q8 * s->xy_q8));
+    const int64_t apart = glint_compute_square_root(
+        (uint64_t)(half * half) + (uint64_t)(s->xy_q8 * s->xy_q8));
     int64_t cos2_q15 = ONE_Q15;
 
-    spot->axis_q8[0] = sqrt_variance_q8(middle + apart);
-    spot->axis_q8[1] = sqrt_variance_q8(middle - apart);
-    spot->size_q8 = (int32_t)glint_square_root(
+    spot->axis_q8[0] = compute_standard_deviation_q8(middle + apart);
+    spot->axis_q8[1] = compute_standard_deviation_q8(middle - apart);
+    spot->size_q8 = (int32_t)glint_compute_square_root(
         (uint64_t)((int64_t)spot->axis_q8[0] * spot->axis_q8[0] +
                    (int64_t)spot->axis_q8[1] * spot->axis_q8[1]));
     if (apart > 0)
@@ -346,10 +350,10 @@ static void set_spot_extent(const struct spread *s, struct glint_spot *spot)
             (half < 0 ? -1 : 1) *
             q_smaller(ONE_Q15, glint_divide_rounded(q_magnitude(half) << 15,
                                                     (uint64_t)apart));
-    spot->cos_q15 =
-        (int32_t)glint_square_root((uint64_t)(ONE_Q15 + cos2_q15) << 14);
-    spot->sin_q15 =
-        (int32_t)glint_square_root((uint64_t)(ONE_Q15 - cos2_q15) << 14);
+    spot->cos_q15 = (int32_t)glint_compute_square_root(
+        (uint64_t)(ONE_Q15 + cos2_q15) << 14);
+    spot->sin_q15 = (int32_t)glint_compute_square_root(
+        (uint64_t)(ONE_Q15 - cos2_q15) << 14);
     if (s->xy_q8 < 0)
         spot->sin_q15 = -spot->sin_q15;
 }
@@ -359,7 +363,7 @@ static void set_spot_extent(const struct spread *s, struct glint_spot *spot)
 static void set_spot_colour(const struct gathered *g, struct glint_spot *spot)
 {
     const uint64_t flux = (uint64_t)g->flux_q19;
-    /* Blue is at most 2^4 times the flux. */
+    /* The blue channel is at most 2^4 times the flux. */
     const int up =
         (int)q_clamp_sat(q_count_normalising_shift(flux) + 26, 0, 15);
     int64_t rest;
@@ -405,14 +409,14 @@ static int find_highlights(const struct glint_scene *scene,
         b->next[i] = UNSEEN;
     for (int i = 0; i < b->across * b->down; i++)
         if (b->cell[i].flux_q19 > 0 && b->next[i] == UNSEEN) {
-            const struct gathered g = gather_highlight(b, i);
+            const struct gathered g = gather_connected_cells(b, i);
 
-            n = insert_brightest(kept, n, &g);
+            n = insert_highlight_by_brightness(kept, n, &g);
         }
     do
-        joined = merge_first_near_pair(b, kept, &n);
+        joined = merge_first_pair_of_near_highlights(b, kept, &n);
     while (joined);
-    n = q_smaller(n, glint_scene_max_highlights(scene));
+    n = q_smaller(n, glint_scene_get_max_highlights(scene));
     while (n > 0 && kept[n - 1].flux_q19 < LEAST_Q19)
         n--;
     for (int i = 0; i < n; i++)

@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the overlays of a recorded motion: shells around visible foods, lines
- * from foods to the sensors that see them, and the box of all frames. Projects
- * them to the picture, and composites them over the pixels of a tile.
+ * Draws the overlays of a recorded motion. The recording has a body with
+ * sensors, and food items that the sensors may see. Overlays are shells around
+ * visible food items, lines from food items to the sensors that see them, and
+ * the box that encloses the motion of all frames. They are projected to the
+ * picture and composited over the pixels of a tile.
  *
- * A line has a width in space. Its cover of a pixel is the overlap of the pixel
- * with that width, at the distance of the pixel's middle, in 1/256. Widths are
- * at least 3/4 of a pixel. The cover of shells has an error of 2^-11 inside
- * them; exact rays find their rims. */
+ * A line has a width in space. Its cover of a pixel, in 1/256, is the overlap
+ * of the pixel with that width, at the distance of the line's point that the
+ * pixel's middle sees. Widths are at least 3/4 of a pixel. The cover of shells
+ * has an error of 2^-11 inside their rims, which are found by exact rays. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/motion/play.h"
@@ -28,19 +30,19 @@ struct side {
     int64_t by[3];
 };
 
-static int64_t compute_distance_inside(const struct side *side,
-                                       const int32_t v[3])
+static int64_t compute_distance_to_clip_plane(const struct side *side,
+                                              const int32_t v[3])
 {
     return side->by[0] * v[0] + side->by[1] * v[1] + side->by[2] * v[2];
 }
 
-/* Clips the line from A to B to the inner side of plane SIDE; returns 0 if
- * nothing is left. */
+/* Clips the line from A to B to the inner side of plane SIDE; returns 0 if the
+ * whole line is outside. */
 static int clip_line_to_plane(const struct side *side, int32_t a[3],
                               int32_t b[3])
 {
-    const int64_t in[2] = {compute_distance_inside(side, a),
-                           compute_distance_inside(side, b)};
+    const int64_t in[2] = {compute_distance_to_clip_plane(side, a),
+                           compute_distance_to_clip_plane(side, b)};
     int32_t part_q30;
 
     if (in[0] >= 0 && in[1] >= 0)
@@ -61,8 +63,8 @@ static int clip_line_to_plane(const struct side *side, int32_t a[3],
 
 /* Sets SIDE[2] to the clipping planes at both edges of the picture along axis
  * K, moved outwards by the max half width of a line plus two pixels.
- * Coefficients are below 2^72, so they are truncated to 30 bits; coordinates
- * are below 2^30. */
+ * Coefficients are below 2^72 and are truncated to 30 bits, as coordinates are
+ * below 2^30. */
 static void set_clip_planes(const struct glint_scene_view *v, int k,
                             struct side side[2])
 {
@@ -71,7 +73,8 @@ static void set_clip_planes(const struct glint_scene_view *v, int k,
     const int64_t step_q56 = v->step_q56[k];
     const int down = q_larger(0, bit_length(q_magnitude(step_q56)) +
                                      bit_length(q_magnitude(far_q8)) - 62);
-    const int64_t tan = (step_q56 >> down) * far_q8; /* 56 - down bits */
+    const int64_t tan = (step_q56 >> down) * far_q8; /* has 56 - DOWN fraction
+                                                        bits */
     const int more = q_larger(26 - down, bit_length(q_magnitude(tan)) - 30);
 
     for (int i = 0; i < 2; i++) {
@@ -109,13 +112,13 @@ static int clip_line_to_view(const struct glint_scene_view *v, int32_t near,
     return a[2] > 0 && b[2] > 0;
 }
 
-static struct glint_motion_layer *append_layer(struct glint_motion_state *m)
+static struct glint_motion_layer *append_overlay(struct glint_motion_state *m)
 {
     return m->n_layers < m->max_layers ? &m->layer[m->n_layers] : NULL;
 }
 
-/* Sets the box of line L to the pixels within FAR_Q8 of its ends and of the
- * line between. */
+/* Sets the box of line L to the pixels within FAR_Q8 of the line between its
+ * ends. */
 static void set_line_box(const struct glint_scene *s,
                          struct glint_motion_layer *l,
                          const struct glint_corner end[2], int32_t far_q8)
@@ -133,19 +136,19 @@ static void set_line_box(const struct glint_scene *s,
 }
 
 /* Adds a line of kind KIND, WIDTH steps wide, from point A to point B. */
-static void append_line(struct glint_scene *s, const int32_t a[3],
-                        const int32_t b[3], int32_t width,
-                        enum glint_scene_kind kind)
+static void append_line_overlay(struct glint_scene *s, const int32_t a[3],
+                                const int32_t b[3], int32_t width,
+                                enum glint_scene_kind kind)
 {
-    struct glint_motion_layer *l = append_layer(s->motion);
+    struct glint_motion_layer *l = append_overlay(s->motion);
     const int32_t near = s->nearest / 2 + 1; /* depths are below 2^31 */
     int32_t v[2][3];
     struct glint_corner end[2];
     int64_t along[3];
     int32_t unit_q30[3], most = 0;
 
-    glint_view_to_camera(&s->view, a, v[0]);
-    glint_view_to_camera(&s->view, b, v[1]);
+    glint_view_convert_to_camera(&s->view, a, v[0]);
+    glint_view_convert_to_camera(&s->view, b, v[1]);
     if (!l || width < 1 || !clip_line_to_view(&s->view, near, v[0], v[1]))
         return;
     for (int k = 0; k < 2; k++) {
@@ -172,7 +175,7 @@ static void append_line(struct glint_scene *s, const int32_t a[3],
                                          : s->motion->how->line_material;
     l->x_q8 = end[0].x;
     l->y_q8 = end[0].y;
-    l->length_q8 = (int32_t)glint_square_root(
+    l->length_q8 = (int32_t)glint_compute_square_root(
         (uint64_t)(along[0] * along[0] + along[1] * along[1]));
     for (int k = 0; k < 2; k++)
         l->along_q14[k] = (int32_t)q_shift(unit_q30[k], 16);
@@ -181,7 +184,8 @@ static void append_line(struct glint_scene *s, const int32_t a[3],
     s->motion->n_layers += !glint_box_is_empty(l->box) && l->length_q8 > 0;
 }
 
-/* Moves point A by STEPS towards B; returns 0 if B is nearer than STEPS. */
+/* Moves point A by STEPS towards B; returns 0 if the distance from A to B is
+ * less than STEPS. */
 static int move_point_towards(int32_t a[3], const int32_t b[3], int32_t steps)
 {
     int64_t off[3];
@@ -206,9 +210,9 @@ static int32_t get_ball_radius(const struct glint_scene *s, uint32_t first,
     return first == GLINT_SCENE_NONE ? 0 : s->placed[first + i].radius;
 }
 
-/* Adds lines from the surface of food F to the surface of each sensor that sees
- * it. */
-static void append_sight_lines(struct glint_scene *s, uint32_t f)
+/* Adds lines from the surface of food item F to the surface of each sensor that
+ * sees it. */
+static void append_lines_from_food_to_sensors(struct glint_scene *s, uint32_t f)
 {
     const struct glint_motion_state *m = s->motion;
 
@@ -223,13 +227,13 @@ static void append_sight_lines(struct glint_scene *s, uint32_t f)
         }
         if (move_point_towards(a, b, get_ball_radius(s, m->how->food, f)) &&
             move_point_towards(b, a, get_ball_radius(s, m->how->sensor, i)))
-            append_line(s, a, b, m->line, GLINT_KIND_LINES);
+            append_line_overlay(s, a, b, m->line, GLINT_KIND_LINES);
     }
 }
 
-/* Returns the min cosine between ball P's normal and a ray at which all samples
- * of a pixel hit P. */
-static int32_t compute_inner_cosine_q30(const struct glint_placed *p)
+/* Returns the min cosine between ball P's normal and the ray of a pixel's
+ * middle at which all samples of the pixel hit P. */
+static int32_t compute_min_cosine_inside_rim_q30(const struct glint_placed *p)
 {
     const int64_t within = (int64_t)p->radius - p->margin;
     int64_t sine_q30;
@@ -237,15 +241,15 @@ static int32_t compute_inner_cosine_q30(const struct glint_placed *p)
     if (within <= 0)
         return INT32_MAX;
     sine_q30 = q_divide_to_fraction_q30((uint64_t)within, (uint64_t)p->radius);
-    return (int32_t)glint_square_root((UINT64_C(1) << 60) -
-                                      (uint64_t)(sine_q30 * sine_q30)) +
+    return (int32_t)glint_compute_square_root((UINT64_C(1) << 60) -
+                                              (uint64_t)(sine_q30 * sine_q30)) +
            1;
 }
 
-static void append_shell(struct glint_scene *s, uint32_t f)
+static void append_shell_overlay(struct glint_scene *s, uint32_t f)
 {
     struct glint_motion_state *m = s->motion;
-    struct glint_motion_layer *l = append_layer(m);
+    struct glint_motion_layer *l = append_overlay(m);
     struct glint_placed *p = &m->ball[f];
 
     if (!l || m->shell < 1 || m->how->food == GLINT_SCENE_NONE)
@@ -265,7 +269,7 @@ static void append_shell(struct glint_scene *s, uint32_t f)
     l->depth[0] =
         q_larger(1, glint_divide_rounded((uint64_t)s->nearest << 30,
                                          (uint64_t)q_larger(p->z[1], 1)));
-    l->inner_q30 = compute_inner_cosine_q30(p);
+    l->inner_q30 = compute_min_cosine_inside_rim_q30(p);
     l->material = m->how->shell_material;
     l->z = p->z[0] / 2 + p->z[1] / 2;
     l->box = p->box;
@@ -286,12 +290,12 @@ static void append_box_edges(struct glint_scene *s)
             a[j] = b[j] = end[k >> 1][j];
             a[axis] = m->low[axis];
             b[axis] = m->high[axis];
-            append_line(s, a, b, m->edge, GLINT_KIND_BOX);
+            append_line_overlay(s, a, b, m->edge, GLINT_KIND_BOX);
         }
 }
 
 /* Sorts layers from back to front; a stable sort. */
-static void sort_layers(struct glint_motion_state *m)
+static void sort_overlays_back_to_front(struct glint_motion_state *m)
 {
     for (int i = 1; i < m->n_layers; i++) {
         const struct glint_motion_layer l = m->layer[i];
@@ -303,7 +307,7 @@ static void sort_layers(struct glint_motion_state *m)
     }
 }
 
-static void project_layers(struct glint_scene *s)
+static void project_overlays(struct glint_scene *s)
 {
     struct glint_motion_state *m = s->motion;
 
@@ -314,15 +318,15 @@ static void project_layers(struct glint_scene *s)
         if (!m->seen_by[f])
             continue;
         if (glint_motion_is_kind_shown(m, GLINT_KIND_SHELLS))
-            append_shell(s, f);
+            append_shell_overlay(s, f);
         if (glint_motion_is_kind_shown(m, GLINT_KIND_LINES))
-            append_sight_lines(s, f);
+            append_lines_from_food_to_sensors(s, f);
     }
-    sort_layers(m);
+    sort_overlays_back_to_front(m);
 }
 
-static int count_kind_layers(const struct glint_scene *s,
-                             enum glint_scene_kind kind)
+static int count_overlays_of_kind(const struct glint_scene *s,
+                                  enum glint_scene_kind kind)
 {
     int n = 0;
 
@@ -334,8 +338,8 @@ static int count_kind_layers(const struct glint_scene *s,
 /* --------------------------------------------------------------------- tiles
  */
 
-static struct glint_box find_layer_box(const struct glint_scene *s,
-                                       struct glint_box tile)
+static struct glint_box find_overlay_box(const struct glint_scene *s,
+                                         struct glint_box tile)
 {
     struct glint_box all = {0, 0, 0, 0};
 
@@ -345,11 +349,11 @@ static struct glint_box find_layer_box(const struct glint_scene *s,
     return all;
 }
 
-/* Narrows the range X0 .. X1 - 1 to the pixels of row Y that line L may
+/* Narrows the pixel range X0 .. X1 - 1 to the pixels of row Y that line L may
  * cover. */
-static void narrow_columns_to_line(const struct glint_scene *s,
-                                   const struct glint_motion_layer *l, int y,
-                                   int *x0, int *x1)
+static void narrow_column_range_to_line(const struct glint_scene *s,
+                                        const struct glint_motion_layer *l,
+                                        int y, int *x0, int *x1)
 {
     const int32_t down = glint_pixel_position_q8(s, y, 1) - l->y_q8;
     const int32_t *u = l->along_q14;
@@ -375,7 +379,7 @@ static void narrow_columns_to_line(const struct glint_scene *s,
     *x1 = q_smaller(*x1, q_clamp_sat((at[1] >> 8) + 2, 0, INT32_MAX));
 }
 
-static void list_row_spans(struct glint_scene_worker *w, int y)
+static void list_overlays_in_row(struct glint_scene_worker *w, int y)
 {
     const struct glint_motion_state *m = w->scene->motion;
 
@@ -388,8 +392,8 @@ static void list_row_spans(struct glint_scene_worker *w, int y)
         if (y < b.y0 || y >= b.y1)
             continue;
         if (!m->layer[i].ball)
-            narrow_columns_to_line(w->scene, &m->layer[i], y, &span.x0,
-                                   &span.x1);
+            narrow_column_range_to_line(w->scene, &m->layer[i], y, &span.x0,
+                                        &span.x1);
         else if (!glint_scene_find_ball_span(w->scene, m->layer[i].ball, y,
                                              &span.x0, &span.x1))
             continue;
@@ -400,16 +404,16 @@ static void list_row_spans(struct glint_scene_worker *w, int y)
 
 /* Returns the fraction of the samples of pixel (X, Y) at which no object is
  * nearer than DEPTH, q8. */
-static int compute_unoccluded_q8(const struct glint_scene_worker *w, int x,
-                                 int y, int32_t depth)
+static int compute_unoccluded_fraction_q8(const struct glint_scene_worker *w,
+                                          int x, int y, int32_t depth)
 {
     const int n = w->scene->cfg.edge_samples;
-    const int first = glint_sample_index(w, x, y, 0);
+    const int first = glint_get_sample_index(w, x, y, 0);
     int seen = 0;
 
     for (int k = 0; k < n; k++)
         seen += w->depth[first + k] <= depth;
-    return seen * ALL_Q8 >> glint_samples_log2(n);
+    return seen * ALL_Q8 >> glint_get_samples_log2(n);
 }
 
 /* Returns the fraction of pixel (X, Y) that line L covers, q8. */
@@ -440,7 +444,7 @@ static int compute_line_cover_q8(const struct glint_scene_worker *w,
     if (cover <= 0)
         return 0;
     return (cover * end >> 8) *
-               compute_unoccluded_q8(
+               compute_unoccluded_fraction_q8(
                    w, x, y,
                    l->depth[0] +
                        q_mul(l->depth[1] - l->depth[0], part_q30, 30)) >>
@@ -488,11 +492,11 @@ static int64_t compute_shell_cover_q31(const struct glint_scene *s,
     return (int64_t)share_q15 * (2 * GLINT_SCENE_ONE_Q15 - cosine_q15);
 }
 
-/* Returns the opacity times cover of a shell in pixel (X, Y), q8, for pixels
- * near the shell's rim, or if the camera is inside the shell. */
-static NEVER_INLINE int compute_rim_cover_q8(const struct glint_scene_worker *w,
-                                             const struct glint_motion_layer *l,
-                                             int x, int y)
+/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. For
+ * pixels near the shell's rim, or if the camera is inside the shell. */
+static NEVER_INLINE int
+compute_shell_rim_cover_q8(const struct glint_scene_worker *w,
+                           const struct glint_motion_layer *l, int x, int y)
 {
     const struct glint_scene *s = w->scene;
     const struct glint_placed *ball = l->ball;
@@ -531,8 +535,8 @@ static NEVER_INLINE int compute_rim_cover_q8(const struct glint_scene_worker *w,
     if (hits == 0)
         return 0;
     return (int)q_shift((compute_shell_cover_q31(s, l, cosine_q15) * hits >>
-                         glint_samples_log2(n)) *
-                            compute_unoccluded_q8(w, x, y, depth),
+                         glint_get_samples_log2(n)) *
+                            compute_unoccluded_fraction_q8(w, x, y, depth),
                         31);
 }
 
@@ -541,7 +545,7 @@ static NEVER_INLINE int compute_rim_cover_q8(const struct glint_scene_worker *w,
 static int is_pixel_unoccluded(const struct glint_scene_worker *w, int x, int y,
                                int32_t depth)
 {
-    const int32_t *at = &w->depth[glint_sample_index(w, x, y, 0)];
+    const int32_t *at = &w->depth[glint_get_sample_index(w, x, y, 0)];
     int nearer = 0;
 
     for (int k = 0; k < w->scene->cfg.edge_samples; k++)
@@ -549,7 +553,7 @@ static int is_pixel_unoccluded(const struct glint_scene_worker *w, int x, int y,
     return !nearer;
 }
 
-/* Returns the opacity times cover of a shell in pixel (X, Y), q8. */
+/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. */
 static int compute_shell_cover_q8(const struct glint_scene_worker *w,
                                   const struct glint_motion_layer *l, int x,
                                   int y)
@@ -560,24 +564,24 @@ static int compute_shell_cover_q8(const struct glint_scene_worker *w,
     int all_q8 = ALL_Q8;
 
     if (!l->ball->over_up)
-        return compute_rim_cover_q8(w, l, x, y);
+        return compute_shell_rim_cover_q8(w, l, x, y);
     glint_quick_compute_ray(&s->view, glint_pixel_position_q8(s, x, 0),
                             glint_pixel_position_q8(s, y, 1), &ray, seen_q30);
     if (!glint_quick_intersect_ball(l->ball, &ray, across_q30, &cosine_q30) ||
         cosine_q30 < l->inner_q30)
-        return compute_rim_cover_q8(w, l, x, y);
-    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) { /* compared with the depth
+        return compute_shell_rim_cover_q8(w, l, x, y);
+    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) { /* depth[0] is the depth
                                                          of the shell's far
                                                          side */
-        t = glint_quick_ball_distance(l->ball, &ray, cosine_q30);
-        all_q8 = compute_unoccluded_q8(
+        t = glint_quick_get_ball_distance(l->ball, &ray, cosine_q30);
+        all_q8 = compute_unoccluded_fraction_q8(
             w, x, y, compute_depth_at_distance(s, t, seen_q30));
     }
     return (int)q_shift(
         compute_shell_cover_q31(s, l, cosine_q30 >> 15) * all_q8, 31);
 }
 
-static int find_next_layer_change(struct glint_scene_worker *w, int x)
+static int list_overlays_at_pixel(struct glint_scene_worker *w, int x)
 {
     int end = w->tile.x1;
 
@@ -595,8 +599,9 @@ static int find_next_layer_change(struct glint_scene_worker *w, int x)
     return end;
 }
 
-static void composite_pixel_layers(const struct glint_scene_worker *w, int x,
-                                   int y, struct glint_scene_sum *sum)
+static void composite_overlays_over_pixel(const struct glint_scene_worker *w,
+                                          int x, int y,
+                                          struct glint_scene_sum *sum)
 {
     const struct glint_scene *s = w->scene;
 
@@ -618,17 +623,21 @@ static void composite_pixel_layers(const struct glint_scene_worker *w, int x,
     }
 }
 
-static void allocate_worker_layers(const struct glint_scene *s,
-                                   struct glint_arena *arena,
-                                   struct glint_scene_worker *worker)
+static void allocate_overlay_arrays_of_worker(const struct glint_scene *s,
+                                              struct glint_arena *arena,
+                                              struct glint_scene_worker *worker)
 {
     worker->span = glint_arena_allocate(
-        arena, glint_motion_max_layers(s->model.motion), sizeof *worker->span);
+        arena, glint_motion_count_max_overlays(s->model.motion),
+        sizeof *worker->span);
     worker->over = glint_arena_allocate(
-        arena, glint_motion_max_layers(s->model.motion), sizeof *worker->over);
+        arena, glint_motion_count_max_overlays(s->model.motion),
+        sizeof *worker->over);
 }
 
 const struct glint_scene_motions glint_scene_motions = {
-    glint_motion_allocate, allocate_worker_layers, glint_motion_start_playback,
-    project_layers,        count_kind_layers,      find_layer_box,
-    list_row_spans,        find_next_layer_change, composite_pixel_layers};
+    glint_motion_allocate,        allocate_overlay_arrays_of_worker,
+    glint_motion_start_playback,  project_overlays,
+    count_overlays_of_kind,       find_overlay_box,
+    list_overlays_in_row,         list_overlays_at_pixel,
+    composite_overlays_over_pixel};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reads a recorded motion block by block. A file in memory is checked
- * completely when it is opened; the records of other files are checked each
+ * completely when it is opened. Of other files the records are checked each
  * time that they are read. */
 #include "glint/scene/motion.h"
 
@@ -37,10 +37,10 @@ uint32_t glint_motion_sum(const uint8_t *at, uint32_t block)
                                     GLINT_MOTION_BLOCK - 4 - skipped);
 }
 
-/* Sets AT to the address of block BLOCK, which is read from the file if
- * necessary. */
-static enum glint_status fetch_block(struct glint_motion *m, uint32_t block,
-                                     const uint8_t **at)
+/* Sets AT to the address of block BLOCK. Reads the block from the file unless
+ * it is in memory already. */
+static enum glint_status get_file_block(struct glint_motion *m, uint32_t block,
+                                        const uint8_t **at)
 {
     const uint32_t *end;
 
@@ -70,7 +70,7 @@ static enum glint_status read_table_record(struct glint_motion *m,
 {
     const uint32_t each = glint_motion_per_block(bytes);
     const uint8_t *at = NULL;
-    const enum glint_status status = fetch_block(m, block + i / each, &at);
+    const enum glint_status status = get_file_block(m, block + i / each, &at);
 
     *record = at + (size_t)(i % each) * bytes;
     return status;
@@ -145,8 +145,8 @@ static const char *check_motion_header(const struct glint_motion_header *h,
 
 /* Returns whether position AT lies in the box that the header states for all
  * positions. */
-static int is_in_motion_box(const struct glint_motion_header *h,
-                            const int32_t at[3])
+static int is_position_in_motion_box(const struct glint_motion_header *h,
+                                     const int32_t at[3])
 {
     for (int k = 0; k < 3; k++)
         if (at[k] < h->low[k] || at[k] > h->high[k])
@@ -161,9 +161,10 @@ static int is_valid_pose(const struct glint_motion_header *h,
 
     for (int k = 0; k < 4; k++)
         square_q28 += (int64_t)p->turn_q14[k] * p->turn_q14[k];
-    /* each element of the quaternion is off by at most half a unit, so the sum
-     * by 2^15 */
-    return is_in_motion_box(h, p->at) && square_q28 >= (1 << 28) - (1 << 16) &&
+    /* each component of the quaternion has an error of at most half a unit, so
+     * the sum has an error of at most 2^15 */
+    return is_position_in_motion_box(h, p->at) &&
+           square_q28 >= (1 << 28) - (1 << 16) &&
            square_q28 <= (1 << 28) + (1 << 16);
 }
 
@@ -171,7 +172,7 @@ static int is_valid_event(const struct glint_motion_header *h,
                           const struct glint_motion_event *e)
 {
     return e->frame < h->n_frames && e->slot < h->n_foods &&
-           is_in_motion_box(h, e->at);
+           is_position_in_motion_box(h, e->at);
 }
 
 /* ------------------------------------------------------------------- records
@@ -224,9 +225,11 @@ enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
     return GLINT_OK;
 }
 
-/* Sets the position of each food in frame K, from the events up to K. */
-static enum glint_status set_food_positions(struct glint_motion *m, uint32_t k,
-                                            struct glint_motion_frame *frame)
+/* Sets the position of each food item in frame K, from the events of frames 0
+ * .. K. */
+static enum glint_status
+set_food_item_positions(struct glint_motion *m, uint32_t k,
+                        struct glint_motion_frame *frame)
 {
     const uint32_t each =
         glint_motion_per_block(sizeof(struct glint_motion_pose));
@@ -254,9 +257,9 @@ static enum glint_status set_food_positions(struct glint_motion *m, uint32_t k,
     return status;
 }
 
-static enum glint_status set_food_intensities(struct glint_motion *m,
-                                              uint32_t k,
-                                              struct glint_motion_frame *frame)
+static enum glint_status
+set_food_item_intensities(struct glint_motion *m, uint32_t k,
+                          struct glint_motion_frame *frame)
 {
     const struct glint_motion_header *h = &m->header;
     const int each = h->intensities == h->n_foods * h->n_sensors;
@@ -292,15 +295,16 @@ enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
         status = is_valid_pose(h, &frame->pose) ? GLINT_OK : GLINT_E_FORMAT;
     }
     if (status == GLINT_OK)
-        status = set_food_positions(motion, k, frame);
-    return status == GLINT_OK ? set_food_intensities(motion, k, frame) : status;
+        status = set_food_item_positions(motion, k, frame);
+    return status == GLINT_OK ? set_food_item_intensities(motion, k, frame)
+                              : status;
 }
 
 /* --------------------------------------------------------------------- open */
 
 /* Copies the sensors from the file to the motion. Returns the text of an error,
  * or NULL. */
-static const char *copy_sensors(struct glint_motion *m)
+static const char *copy_sensors_from_file(struct glint_motion *m)
 {
     for (uint32_t i = 0; i < m->header.n_sensors; i++) {
         const void *record = NULL;
@@ -329,8 +333,8 @@ static const char *check_poses(struct glint_motion *m)
     return NULL;
 }
 
-/* Checks that events are sorted by frame, and that the first events place each
- * food. */
+/* Checks that events are sorted by frame, and that the first events state the
+ * position of each food item. */
 static const char *check_events(struct glint_motion *m)
 {
     uint32_t last = 0;
@@ -346,7 +350,7 @@ static const char *check_events(struct glint_motion *m)
     return NULL;
 }
 
-/* Checks that the index agrees with the events, which it locates by frame. */
+/* Checks that the index by frame agrees with the events. */
 static const char *check_event_index(struct glint_motion *m)
 {
     const uint32_t each =
@@ -395,7 +399,7 @@ enum glint_status glint_motion_open(struct glint_motion *motion,
             ? outside
             : check_motion_header(&motion->header, bytes / GLINT_MOTION_BLOCK);
     if (!*reason)
-        *reason = copy_sensors(motion);
+        *reason = copy_sensors_from_file(motion);
     if (!*reason)
         *reason = check_poses(motion);
     if (!*reason)
@@ -416,7 +420,7 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
     motion->blocks = *blocks;
     motion->buffer = buffer;
     motion->held = 0;
-    status = fetch_block(motion, 0, &first);
+    status = get_file_block(motion, 0, &first);
     *reason =
         status == GLINT_OK ? NULL : "the motion's first block cannot be read";
     if (status != GLINT_OK)
@@ -437,6 +441,6 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
         *reason = fault_text[glint_blob_check_name(
             &(struct glint_blob){.header = (const void *)&motion->header})];
     if (!*reason)
-        *reason = copy_sensors(motion);
+        *reason = copy_sensors_from_file(motion);
     return *reason ? GLINT_E_FORMAT : GLINT_OK;
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Plays a recorded motion: moves the objects of a scene to their positions in a
- * frame, and finds which sensors see which foods. Each frame is computed from
- * the file alone, so frames can be played in any order. */
+ * frame, and finds which sensors see which food items (balls that the recording
+ * places). Each frame is computed from the file alone, so frames can be played
+ * in any order. */
 #include "scene/motion/play.h"
 
 #include "base/divide.h"
@@ -11,8 +12,9 @@
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets N_FOODS and N_SENSORS to the numbers in the file's header, clamped to
- * their max, as the file is not checked yet. */
+/* Sets N_FOODS and N_SENSORS to the numbers of food items and sensors that the
+ * file's header states. The file is not checked yet, so the numbers are clamped
+ * to their max. */
 static void read_object_counts(const struct glint_scene_motion *how,
                                uint32_t *n_foods, uint32_t *n_sensors)
 {
@@ -25,7 +27,7 @@ static void read_object_counts(const struct glint_scene_motion *how,
         is_there && h->n_sensors <= GLINT_MOTION_MAX_SENSORS ? h->n_sensors : 0;
 }
 
-size_t glint_motion_max_layers(const struct glint_scene_motion *how)
+size_t glint_motion_count_max_overlays(const struct glint_scene_motion *how)
 {
     uint32_t n_foods, n_sensors;
 
@@ -45,18 +47,18 @@ glint_motion_allocate(const struct glint_scene *scene,
 
     read_object_counts(how, &n_foods, &n_sensors);
     ball = glint_arena_allocate(arena, n_foods, sizeof *ball);
-    layer = glint_arena_allocate(arena, glint_motion_max_layers(how),
+    layer = glint_arena_allocate(arena, glint_motion_count_max_overlays(how),
                                  sizeof *layer);
     if (m) {
         m->ball = ball;
         m->layer = layer;
-        m->max_layers = (int)glint_motion_max_layers(how);
+        m->max_layers = (int)glint_motion_count_max_overlays(how);
     }
     return m;
 }
 
 /* Returns log2 of (the motion's unit of length / the scene's step). */
-static int compute_scale_log2(const struct glint_scene *s)
+static int compute_length_scale_log2(const struct glint_scene *s)
 {
     return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
 }
@@ -65,7 +67,7 @@ static int compute_scale_log2(const struct glint_scene *s)
 static void convert_to_scene_steps(const struct glint_scene *s,
                                    const int32_t from[3], int32_t to[3])
 {
-    const int up = compute_scale_log2(s);
+    const int up = compute_length_scale_log2(s);
     const int mirrored = s->model.header->variant == GLINT_HAND_RIGHT;
 
     for (int k = 0; k < 3; k++) {
@@ -76,12 +78,12 @@ static void convert_to_scene_steps(const struct glint_scene *s,
     }
 }
 
-/* Returns whether all points of the motion, plus the size of the objects there,
- * are in the range of scene coordinates. */
-static int fits_scene_range(const struct glint_scene *s)
+/* Returns whether all points of the motion, plus the radii of the objects
+ * there, are in the range of scene coordinates. */
+static int is_motion_in_scene_range(const struct glint_scene *s)
 {
     const struct glint_motion_header *h = &s->motion->motion.header;
-    const int up = compute_scale_log2(s);
+    const int up = compute_length_scale_log2(s);
 
     for (int k = 0; k < 3; k++) {
         const int64_t most = q_larger(h->high[k], -h->low[k]);
@@ -93,9 +95,10 @@ static int fits_scene_range(const struct glint_scene *s)
     return 1;
 }
 
-/* Returns whether objects FIRST .. FIRST + N - 1 are balls of the scene. */
-static int are_objects_balls(const struct glint_scene *s, uint32_t first,
-                             uint32_t n)
+/* Returns whether objects FIRST .. FIRST + N - 1 exist in the scene and are
+ * balls. */
+static int are_balls_of_scene(const struct glint_scene *s, uint32_t first,
+                              uint32_t n)
 {
     const uint32_t all = s->model.header->n_objects;
 
@@ -109,7 +112,7 @@ static int are_objects_balls(const struct glint_scene *s, uint32_t first,
     return 1;
 }
 
-static int are_riders_lamps(const struct glint_scene *s)
+static int are_lights_on_body_lamps(const struct glint_scene *s)
 {
     for (uint32_t i = 0; i < GLINT_SCENE_MAX_LIGHTS; i++)
         if (s->motion->how->riders >> i & 1 &&
@@ -129,10 +132,11 @@ enum glint_status glint_motion_start_playback(struct glint_scene *scene)
     m->how = how;
     if (glint_motion_open(&m->motion, how + 1, how->bytes, &reason) !=
             GLINT_OK ||
-        !fits_scene_range(scene) || !are_objects_balls(scene, how->body, 1) ||
-        !are_objects_balls(scene, how->sensor, h->n_sensors) ||
-        !are_objects_balls(scene, how->food, h->n_foods) ||
-        !are_riders_lamps(scene) ||
+        !is_motion_in_scene_range(scene) ||
+        !are_balls_of_scene(scene, how->body, 1) ||
+        !are_balls_of_scene(scene, how->sensor, h->n_sensors) ||
+        !are_balls_of_scene(scene, how->food, h->n_foods) ||
+        !are_lights_on_body_lamps(scene) ||
         (how->camera != GLINT_SCENE_NONE && how->camera >= h->n_sensors))
         return GLINT_E_FORMAT;
     m->sensor = -1;
@@ -157,7 +161,7 @@ struct wide {
 };
 
 /* Returns the 128-bit product A * B of two factors below 2^63. */
-static struct wide multiply_wide(uint64_t a, uint64_t b)
+static struct wide multiply_to_128_bits(uint64_t a, uint64_t b)
 {
     const uint64_t a1 = a >> 32, a0 = a & UINT32_MAX;
     const uint64_t b1 = b >> 32, b0 = b & UINT32_MAX;
@@ -169,7 +173,7 @@ static struct wide multiply_wide(uint64_t a, uint64_t b)
                          other << 32 | (low & UINT32_MAX)};
 }
 
-static int is_wide_less(struct wide a, struct wide b)
+static int is_128_bit_number_less(struct wide a, struct wide b)
 {
     return a.high != b.high ? a.high < b.high : a.low < b.low;
 }
@@ -181,17 +185,17 @@ int glint_motion_is_in_view_cone(const int32_t axis_q30[3],
     const int64_t dot_q30 = v3_dot(axis_q30, d);
     const uint64_t size = q_magnitude(dot_q30); /* below 2^61 */
     const uint64_t cosine = q_magnitude(cos_half_q30);
-    const struct wide seen = multiply_wide(size, size);
+    const struct wide seen = multiply_to_128_bits(size, size);
     /* 2^60 times 3 2^58 */
     const struct wide least =
-        multiply_wide(cosine * cosine, (uint64_t)v3_dot(d, d));
+        multiply_to_128_bits(cosine * cosine, (uint64_t)v3_dot(d, d));
 
     if (dot_q30 > 0)
-        return cos_half_q30 <= 0 || is_wide_less(least, seen);
-    return cos_half_q30 < 0 && is_wide_less(seen, least);
+        return cos_half_q30 <= 0 || is_128_bit_number_less(least, seen);
+    return cos_half_q30 < 0 && is_128_bit_number_less(seen, least);
 }
 
-static void detect_visible_foods(struct glint_motion_state *m)
+static void detect_food_items_in_view(struct glint_motion_state *m)
 {
     const struct glint_motion_header *h = &m->motion.header;
 
@@ -230,7 +234,7 @@ static void set_body_rotation(const struct glint_scene *s, int32_t turn_q30[4])
 
     for (int k = 0; k < 4; k++)
         square_q28 += (uint64_t)(q14[k] * q14[k]);
-    length_q29 = (int64_t)glint_square_root(square_q28 << 30);
+    length_q29 = (int64_t)glint_compute_square_root(square_q28 << 30);
     for (int k = 0; k < 4; k++) {
         const int32_t q =
             (int32_t)q_divide((int64_t)q14[k] * (INT64_C(1) << 45), length_q29);
@@ -239,10 +243,10 @@ static void set_body_rotation(const struct glint_scene *s, int32_t turn_q30[4])
     }
 }
 
-/* Sets AT to the scene position of a point with OFFSET in the body's
+/* Sets AT to the scene position of the point that is at OFFSET in the body's
  * coordinates. */
-static void convert_body_offset(const struct glint_motion_state *m,
-                                const int32_t offset[3], int32_t at[3])
+static void convert_body_offset_to_scene(const struct glint_motion_state *m,
+                                         const int32_t offset[3], int32_t at[3])
 {
     v3_rotate(&m->turn, offset, at);
     for (int k = 0; k < 3; k++)
@@ -263,11 +267,11 @@ static void move_sensors(struct glint_scene *s)
         v3_rotate(&m->turn, axis_q30, m->axis_q30[i]);
         for (int k = 0; k < 3; k++)
             out[k] = q_mul(axis_q30[k], m->size, 30);
-        convert_body_offset(m, out, m->sensor_at[i]);
+        convert_body_offset_to_scene(m, out, m->sensor_at[i]);
     }
 }
 
-/* Moves the camera to the sensor that carries it. */
+/* Moves the camera to the sensor to which it is attached. */
 static enum glint_status move_camera_to_sensor(struct glint_scene *s)
 {
     const struct glint_motion_state *m = s->motion;
@@ -324,7 +328,7 @@ static void move_objects_of_kind(struct glint_scene *s,
 
         if (!(how->riders >> i & 1))
             continue;
-        convert_body_offset(m, s->model.light[i].at, at);
+        convert_body_offset_to_scene(m, s->model.light[i].at, at);
         glint_scene_set_light(s, (int)i, at);
     }
 }
@@ -342,7 +346,7 @@ static void move_objects(struct glint_scene *s)
     for (uint32_t i = 0; i < m->motion.header.n_foods; i++)
         convert_to_scene_steps(s, m->frame.food[i], m->food_at[i]);
     move_objects_of_kind(s, turn_q30);
-    detect_visible_foods(m);
+    detect_food_items_in_view(m);
     if (m->sensor >= 0)
         move_camera_to_sensor(s);
 }
@@ -367,9 +371,10 @@ uint32_t glint_scene_frames(const struct glint_scene *scene)
 /* -------------------------------------------------------------------- looks */
 
 /* Sets FIRST to the index of the first object of kind KIND; returns the number
- * of such objects. */
-static uint32_t find_kind_objects(const struct glint_motion_state *m,
-                                  enum glint_scene_kind kind, uint32_t *first)
+ * of objects of this kind. */
+static uint32_t find_objects_of_kind(const struct glint_motion_state *m,
+                                     enum glint_scene_kind kind,
+                                     uint32_t *first)
 {
     const uint32_t of[3] = {m->how->body, m->how->sensor, m->how->food};
     const uint32_t n[3] = {1, m->motion.header.n_sensors,
@@ -388,7 +393,7 @@ void glint_scene_show_kind(struct glint_scene *scene,
     if (!m || kind >= GLINT_KINDS)
         return;
     m->shown = (m->shown & ~(1u << kind)) | (is_shown ? 1u << kind : 0);
-    n = find_kind_objects(m, kind, &first);
+    n = find_objects_of_kind(m, kind, &first);
     for (uint32_t i = 0; i < n; i++)
         glint_scene_show(
             scene, (int)(first + i),
@@ -404,7 +409,7 @@ enum glint_status glint_scene_size_kind(struct glint_scene *scene,
 
     if (!m || kind >= GLINT_KINDS || steps < 1 || steps > GLINT_SCENE_SPAN / 4)
         return GLINT_E_ARGUMENT;
-    n = find_kind_objects(m, kind, &first);
+    n = find_objects_of_kind(m, kind, &first);
     for (uint32_t i = 0; i < n; i++)
         glint_scene_set_radius(scene, (int)(first + i), steps);
     if (kind == GLINT_KIND_BODY) {
@@ -440,7 +445,7 @@ enum glint_status glint_scene_enter(struct glint_scene *scene, int sensor)
         glint_scene_set_camera(scene, c->at, (const int32_t(*)[3])c->axis_q30);
     if (status != GLINT_OK)
         m->sensor = before;
-    /* the camera is inside the sensor's ball */
+    /* hides the ball of the camera's sensor, as the camera is inside it */
     glint_scene_show_kind(scene, GLINT_KIND_SENSORS,
                           glint_motion_is_kind_shown(m, GLINT_KIND_SENSORS));
     return status;

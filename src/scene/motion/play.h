@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Playback of a recorded motion in a scene: play.c moves objects and finds
- * visible foods, layers.c draws overlays.
+ * Playback of a recorded motion in a scene: play.c moves objects and finds the
+ * food items that sensors see, layers.c draws overlays.
  *
  * Shells and lines are overlays, not objects: rays do not hit them. They are
  * composited from back to front over the shaded objects of a pixel, at samples
- * where no object is nearer. */
+ * where no object is nearer than the overlay. */
 #ifndef GLINT_SCENE_MOTION_PLAY_H
 #define GLINT_SCENE_MOTION_PLAY_H
 
@@ -18,20 +18,21 @@ enum { GLINT_BOX_EDGES = 12 };
 struct glint_motion_layer {
     struct glint_box box; /* pixels that the overlay may cover */
     enum glint_scene_kind kind;
-    int32_t z; /* z of its middle in camera coordinates, by which overlays are
-                  sorted */
+    int32_t z; /* z of the overlay's middle in camera coordinates; overlays are
+                  sorted by it */
     uint32_t material;
     const struct glint_placed *ball; /* the ball of a shell; NULL for a line */
     /* Shell: min cosine between normal and ray at which all samples of a pixel
      * see the shell. */
     int32_t inner_q30;
-    int32_t x_q8, y_q8;   /* start of the line, from the picture's middle */
+    int32_t x_q8, y_q8;   /* start of the line, 1/256 pixel from the picture's
+                             middle */
     int32_t along_q14[2]; /* direction of the line in the picture, a unit
                              vector */
     int32_t length_q8;
     int32_t half_q8[2],
-        /* Half width (1/256 pixel) and depth at both ends of the line; for a
-         * shell, depth[0] is the depth of its far side. */
+        /* Half width (1/256 pixel) and depth at both ends of the line. For a
+         * shell, depth[0] is the depth of the shell's far side. */
         depth[2];
 };
 
@@ -46,29 +47,30 @@ struct glint_motion_state {
                        are shown */
     /* Sizes of the body, shells, lines and edges of the box, steps. */
     int32_t size, shell, line, edge;
-    /* Rotation of the body, positions of objects, steps, and bit masks of the
-     * sensors that see each food. */
+    /* Rotation of the body, positions of objects in steps, and for each food
+     * item a bit mask of the sensors that see it. */
     struct glint_scene_turn turn;
     int32_t body[3], sensor_at[GLINT_MOTION_MAX_SENSORS][3];
     int32_t axis_q30[GLINT_MOTION_MAX_SENSORS][3];
     int32_t food_at[GLINT_MOTION_MAX_FOODS][3];
     uint32_t seen_by[GLINT_MOTION_MAX_FOODS];
     int32_t low[3], high[3];
-    struct glint_placed *ball;        /* [n_foods]: balls of the shells around
-                                         foods */
+    struct glint_placed *ball;        /* [n_foods]: ball of the shell around
+                                         each food item */
     struct glint_motion_layer *layer; /* [max_layers], from back to front */
     int n_layers, max_layers;
 };
 
-/* Returns whether the angle between D, the vector from a sensor to a food, and
- * the sensor's AXIS_Q30 is smaller than the angle of cosine COS_HALF_Q30.
- * Exact. D must be within +-2^29. */
+/* Returns whether a sensor sees a food item: whether the angle between D, the
+ * vector from the sensor to the item, and the sensor's axis AXIS_Q30 is smaller
+ * than half the angle of view, whose cosine is COS_HALF_Q30. Exact. D must be
+ * within +-2^29. */
 int glint_motion_is_in_view_cone(const int32_t axis_q30[3],
                                  int32_t cos_half_q30, const int32_t d[3]);
 
-/* Returns the max number of overlays that a motion with parameters HOW can
- * have, in any frame. */
-size_t glint_motion_max_layers(const struct glint_scene_motion *how);
+/* Returns the max number of overlays that a recorded motion with parameters HOW
+ * can have in any frame. */
+size_t glint_motion_count_max_overlays(const struct glint_scene_motion *how);
 
 struct glint_motion_state *
 glint_motion_allocate(const struct glint_scene *scene,

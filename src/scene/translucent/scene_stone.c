@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Light maps of translucent objects: allocates them, recomputes them per frame,
- * and looks light up. */
+ * Light maps of translucent objects: allocates them, recomputes them for each
+ * frame, and looks up their light. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
@@ -13,10 +13,11 @@ enum {
     GLINT_BLOCK_WIDTH = GLINT_STRIP,
     GLINT_BLOCK_HEIGHT = 16,
     /* Bits of the state of a block of texels in a map. */
-    GLINT_BLOCK_SEEN = 1,  /* may be visible in this frame */
-    GLINT_BLOCK_LIT = 2,   /* the light that enters its texels is computed */
-    GLINT_BLOCK_READY = 4, /* its map values are computed */
-    GLINT_BLOCK_WANTED = 8 /* is to be computed in this update */
+    GLINT_BLOCK_SEEN = 1,  /* the block may be visible in this frame */
+    GLINT_BLOCK_LIT = 2,   /* the light that enters the block's texels is
+                              computed */
+    GLINT_BLOCK_READY = 4, /* the block's map values are computed */
+    GLINT_BLOCK_WANTED = 8 /* the block is to be computed in this update */
 };
 
 /* The light map of a translucent object. */
@@ -30,17 +31,18 @@ struct glint_stone_skin {
     struct glint_spread spread;
     const uint32_t *triangle;     /* mesh: [height][width], index of each
                                      texel's triangle */
-    const int32_t (*turn_q30)[2]; /* ball: cosine and sine of columns' and then
-                                     rows' angles */
-    int across, down;             /* number of blocks */
+    const int32_t (*turn_q30)[2]; /* ball: cosines and sines of the angles of
+                                     columns, then of rows */
+    int across, down;             /* number of blocks, horizontally and
+                                     vertically */
     uint8_t *block;               /* [down][across]: states */
-    uint16_t *list;               /* [down][across]: indices of blocks to be
-                                     lit */
+    uint16_t *list;               /* [down][across]: indices of the blocks whose
+                                     light has to be computed */
     int n_list;
     int shift;      /* the light of a texel, q15, is its map value times
                        2^shift */
     int is_lit;     /* 1: the map has been computed before */
-    uint32_t moved; /* value of the scene's counter moved when the map was
+    uint32_t moved; /* value of the scene's counter MOVED when the map was
                        computed */
 };
 
@@ -50,8 +52,8 @@ struct glint_stone_state {
     int32_t around_q15; /* upper bound of the environment's irradiance */
 };
 
-/* Returns the fraction of light, q15, that the surface transmits at COSINE_Q30
- * between ray and normal. */
+/* Returns the fraction of light, q15, that the surface transmits if COSINE_Q30
+ * is the cosine between ray and normal. */
 static inline int32_t transmittance_q15(const struct glint_stone_skin *skin,
                                         int32_t cosine_q30)
 {
@@ -88,14 +90,15 @@ static void mark_all_blocks_visible(struct glint_stone_skin *skin)
 /* --------------------------------------------------------------------- balls
  */
 
-/* Max angle between a texel in the middle of a block's quarter and the points
- * of the quarter: 12.6 degrees if a ball's map is 256 texels wide, 25.2 degrees
- * if it is 128 wide, plus a texel. */
+/* Max angle between the texel in the middle of a quarter of a block and any
+ * point of that quarter: 12.6 degrees if a ball's map is 256 texels wide, 25.2
+ * degrees if it is 128 wide, plus a texel. */
 struct reach {
     int32_t cosine_q30, sine_q30;
 };
 
-static struct reach get_block_angle(const struct glint_stone_skin *skin)
+static struct reach
+compute_max_angle_in_block_quarter(const struct glint_stone_skin *skin)
 {
     const struct reach wide = {Q_CONST(.88, 30), Q_CONST(.475, 30)};
     const struct reach less = {Q_CONST(.97, 30), Q_CONST(.244, 30)};
@@ -105,9 +108,10 @@ static struct reach get_block_angle(const struct glint_stone_skin *skin)
 
 /* Returns whether, at texel (X, Y) of ball P, the cosine between the normal and
  * the direction to the camera is above LIMIT. */
-static int texel_faces_camera(const struct glint_placed *p,
-                              const struct glint_stone_skin *skin, int x, int y,
-                              const int32_t toward_q30[3], int32_t limit_q30)
+static int does_texel_face_camera(const struct glint_placed *p,
+                                  const struct glint_stone_skin *skin, int x,
+                                  int y, const int32_t toward_q30[3],
+                                  int32_t limit_q30)
 {
     const int32_t *round_q30 = skin->turn_q30[x];
     const int32_t *down_q30 = skin->turn_q30[skin->spread.width + y];
@@ -119,20 +123,21 @@ static int texel_faces_camera(const struct glint_placed *p,
     return v3_cosine_q30(turned_q30, toward_q30) > limit_q30;
 }
 
-/* Marks the blocks with points that face the camera: n.d > R / D, where n is
- * the normal, R the radius and d the unit vector to the camera at distance D
- * from the centre. Marks all blocks if the camera is inside. */
+/* Marks the blocks that have points that face the camera: n.d > R / D, where n
+ * is the point's normal, R the ball's radius, d the unit vector from its centre
+ * to the camera and D the camera's distance. Marks all blocks if the camera is
+ * inside the ball. */
 static void mark_visible_ball_blocks(const struct glint_scene *s,
                                      const struct glint_placed *p,
                                      struct glint_stone_skin *skin)
 {
-    const struct reach reach = get_block_angle(skin);
+    const struct reach reach = compute_max_angle_in_block_quarter(skin);
     int32_t off[3], toward_q30[3], limit_q30;
     int64_t wide[3];
     uint32_t away;
 
     v3_subtract(s->view.at, p->at, off);
-    away = glint_square_root((uint64_t)v3_dot(off, off));
+    away = glint_compute_square_root((uint64_t)v3_dot(off, off));
     for (int k = 0; k < 3; k++)
         wide[k] = off[k];
     if (skin->spread.width < 128 || away <= (uint32_t)p->radius ||
@@ -145,12 +150,13 @@ static void mark_visible_ball_blocks(const struct glint_scene *s,
                 reach.sine_q30 - (1 << 20);
     for (int i = 0; i < skin->across * skin->down; i++)
         for (int k = 0; k < 4; k++)
-            if (texel_faces_camera(p, skin,
-                                   i % skin->across * GLINT_BLOCK_WIDTH +
-                                       (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
-                                   i / skin->across * GLINT_BLOCK_HEIGHT +
-                                       (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
-                                   toward_q30, limit_q30))
+            if (does_texel_face_camera(
+                    p, skin,
+                    i % skin->across * GLINT_BLOCK_WIDTH +
+                        (k & 1 ? 3 : 1) * GLINT_BLOCK_WIDTH / 4,
+                    i / skin->across * GLINT_BLOCK_HEIGHT +
+                        (k & 2 ? 3 : 1) * GLINT_BLOCK_HEIGHT / 4,
+                    toward_q30, limit_q30))
                 skin->block[i] |= GLINT_BLOCK_SEEN;
 }
 
@@ -186,10 +192,10 @@ static int is_triangle_visible(const struct glint_scene *s,
            lo[1] <= all.y1 + 512;
 }
 
-/* Marks the blocks that a triangle with texture coordinates UV overlaps, with a
- * margin of one texel. */
-static void mark_triangle_blocks(struct glint_stone_skin *skin,
-                                 const int32_t *const uv_q16[3])
+/* Marks the blocks that a triangle with texture coordinates UV overlaps,
+ * enlarged by a margin of one texel. */
+static void mark_blocks_of_triangle(struct glint_stone_skin *skin,
+                                    const int32_t *const uv_q16[3])
 {
     const int size_log2[2] = {bit_length(GLINT_BLOCK_WIDTH) - 1,
                               bit_length(GLINT_BLOCK_HEIGHT) - 1};
@@ -227,12 +233,12 @@ static void mark_visible_mesh_blocks(const struct glint_scene *s,
             continue;
         for (int k = 0; k < 3; k++)
             corner_q16[k] = uv_q16 + 2 * (size_t)t->vertex[k];
-        mark_triangle_blocks(skin, corner_q16);
+        mark_blocks_of_triangle(skin, corner_q16);
     }
 }
 
-/* Marks the blocks of SKIN that may be visible. A block marked without need
- * costs time; a visible block that is not marked would be black. */
+/* Marks the blocks of SKIN that may be visible. A block that is marked but not
+ * visible costs time; a visible block that is not marked would be black. */
 static void mark_visible_blocks(const struct glint_scene *scene,
                                 struct glint_stone_skin *skin)
 {
@@ -240,7 +246,7 @@ static void mark_visible_blocks(const struct glint_scene *scene,
 
     for (int i = 0; i < skin->across * skin->down; i++)
         skin->block[i] &= (uint8_t)~GLINT_BLOCK_SEEN;
-    if (scene->has_split) /* mirrors show points that face away from the
+    if (scene->has_split) /* mirrors may show points that face away from the
                              camera */
         mark_all_blocks_visible(skin);
     else if (!p->is_seen)
@@ -270,10 +276,10 @@ static void add_environment_light(const struct glint_scene *s,
                                 rgb_q15);
 }
 
-/* Returns an upper bound of the environment's irradiance: the max over normals
- * on the faces of a cube, plus an eighth, as irradiance between them is at most
- * that much larger. */
-static int32_t bound_environment_light(const struct glint_scene *scene)
+/* Returns an upper bound of the environment's irradiance: 9/8 of the max over
+ * normals on the faces of a cube, as irradiance between these normals is at
+ * most 1/8 larger. */
+static int32_t compute_max_environment_light(const struct glint_scene *scene)
 {
     enum { STEPS = 8 };
     int32_t most = 0;
@@ -298,17 +304,19 @@ static int32_t bound_environment_light(const struct glint_scene *scene)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the max light of source LIT on a white surface of object P. For a
- * lamp: at the nearest point of P, but not nearer than 1/16 of P's size. */
-static int32_t bound_light_level(const struct glint_scene *s,
-                                 const struct glint_lit *lit,
-                                 const struct glint_placed *p)
+/* Returns the max light that source LIT can cast on a white surface of object
+ * P. For a lamp: the light at the nearest point of P, but not nearer than 1/16
+ * of P's size. */
+static int32_t compute_max_light_of_source(const struct glint_scene *s,
+                                           const struct glint_lit *lit,
+                                           const struct glint_placed *p)
 {
     int32_t toward_q30[3] = {0}, level_q15[3] = {0}, place[3], off[3];
     int64_t away;
 
     v3_subtract(lit->at, p->centre, off);
-    away = (int64_t)glint_square_root((uint64_t)v3_dot(off, off)) - p->reach;
+    away = (int64_t)glint_compute_square_root((uint64_t)v3_dot(off, off)) -
+           p->reach;
     away = away > p->reach / 16 + 1 ? away : p->reach / 16 + 1;
     for (int k = 0; k < 3; k++)
         place[k] = lit->at[k];
@@ -317,16 +325,16 @@ static int32_t bound_light_level(const struct glint_scene *s,
     return q_larger(level_q15[0], q_larger(level_q15[1], level_q15[2]));
 }
 
-/* Sets the exponent shift of SKIN's map values from the max light that may fall
+/* Sets the exponent shift of SKIN's map values from the max light that can fall
  * on the object. */
-static void set_exposure_shift(const struct glint_scene *scene,
-                               struct glint_stone_skin *skin)
+static void set_exponent_of_map_values(const struct glint_scene *scene,
+                                       struct glint_stone_skin *skin)
 {
     const struct glint_placed *p = &scene->placed[skin->of->object];
     int64_t most = scene->stones->around_q15;
 
     for (uint32_t i = 0; i < scene->n_lit; i++)
-        most += bound_light_level(scene, &scene->lit[i], p);
+        most += compute_max_light_of_source(scene, &scene->lit[i], p);
     skin->shift = 0;
     while (most >> skin->shift > MOST_VALUE && skin->shift < 15)
         skin->shift++;
@@ -377,7 +385,7 @@ static int compute_texel_weights(const int32_t *const uv_q16[3], int32_t u_q16,
     }
     if (all == 0 || sum == 0)
         return 0;
-    glint_set_vertex_weights(edge, sum, part_q30);
+    glint_compute_vertex_weights(edge, sum, part_q30);
     return 1;
 }
 
@@ -454,9 +462,9 @@ static int set_texel_surface(const struct glint_scene *s,
     return 1;
 }
 
-static void light_map_texel(const struct glint_scene *s,
-                            const struct glint_stone_skin *skin, int x, int y,
-                            int32_t rgb_q15[3])
+static void compute_light_entering_texel(const struct glint_scene *s,
+                                         const struct glint_stone_skin *skin,
+                                         int x, int y, int32_t rgb_q15[3])
 {
     struct glint_met_surface surface;
 
@@ -472,8 +480,9 @@ static void light_map_texel(const struct glint_scene *s,
 }
 
 /* Computes the light that enters the object at the texels of block I. */
-static void light_map_block(const struct glint_scene *scene,
-                            const struct glint_stone_skin *skin, int i)
+static void compute_light_entering_block(const struct glint_scene *scene,
+                                         const struct glint_stone_skin *skin,
+                                         int i)
 {
     const int x0 = i % skin->across * GLINT_BLOCK_WIDTH;
     const int y0 = i / skin->across * GLINT_BLOCK_HEIGHT;
@@ -482,7 +491,7 @@ static void light_map_block(const struct glint_scene *scene,
         for (int x = x0; x < x0 + GLINT_BLOCK_WIDTH; x++) {
             int32_t rgb_q15[3] = {0, 0, 0};
 
-            light_map_texel(scene, skin, x, y, rgb_q15);
+            compute_light_entering_texel(scene, skin, x, y, rgb_q15);
             for (int c = 0; c < CHANNELS; c++)
                 skin->spread.light[c][y * skin->spread.width + x] =
                     (int16_t)q_clamp_sat(q_shift(rgb_q15[c], skin->shift), 0,
@@ -492,7 +501,8 @@ static void light_map_block(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------ opening */
 
-static const void *get_model_table(const struct glint_scene *s, uint32_t at)
+static const void *get_table_in_scene_file(const struct glint_scene *s,
+                                           uint32_t at)
 {
     return (const unsigned char *)s->model.header + at;
 }
@@ -502,10 +512,11 @@ static const void *get_model_table(const struct glint_scene *s, uint32_t at)
 static const struct glint_translucent_header *
 get_medium_header(const struct glint_scene *s, uint32_t i)
 {
-    return get_model_table(s, s->model.stone[s->model.skin[i].stone].file_at);
+    return get_table_in_scene_file(
+        s, s->model.stone[s->model.skin[i].stone].file_at);
 }
 
-static int is_skin_of_ball(const struct glint_scene *s, uint32_t i)
+static int is_map_of_ball(const struct glint_scene *s, uint32_t i)
 {
     return s->model.object[s->model.skin[i].object].kind == GLINT_OBJECT_SPHERE;
 }
@@ -515,11 +526,11 @@ static void allocate_map(const struct glint_scene *s, struct glint_arena *a,
 {
     const int side = 1 << get_medium_header(s, i)->side_log2;
     const size_t texels = (size_t)side * (size_t)side
-                          << (is_skin_of_ball(s, i) ? 1 : 0);
+                          << (is_map_of_ball(s, i) ? 1 : 0);
     const size_t blocks = texels / (GLINT_BLOCK_WIDTH * GLINT_BLOCK_HEIGHT);
     struct glint_stone_skin k = {.of = &s->model.skin[i]};
 
-    k.spread.is_ball = is_skin_of_ball(s, i);
+    k.spread.is_ball = is_map_of_ball(s, i);
     k.spread.height = side;
     k.spread.width = side << k.spread.is_ball;
     k.across = k.spread.width / GLINT_BLOCK_WIDTH;
@@ -552,7 +563,8 @@ allocate_spread_scratch(const struct glint_scene *s, struct glint_arena *a)
         if (h->kernel > largest.kernel)
             largest.kernel = h->kernel;
     }
-    /* Clamped, as a damaged file is only detected when its medium is opened. */
+    /* The rank is clamped, as a damaged file is detected only later, when its
+     * medium is opened. */
     if (largest.rank > GLINT_TRANSLUCENT_MOST_RANK)
         largest.rank = GLINT_TRANSLUCENT_MOST_RANK;
     if (largest.kernel > GLINT_TRANSLUCENT_MOST_KERNEL)
@@ -585,25 +597,26 @@ allocate_translucency(const struct glint_scene *scene,
     return placed;
 }
 
-static enum glint_status open_medium_of_skin(const struct glint_scene *s,
-                                             struct glint_stone_skin *skin)
+static enum glint_status open_medium_of_map(const struct glint_scene *s,
+                                            struct glint_stone_skin *skin)
 {
     const struct glint_scene_stone *stone = &s->model.stone[skin->of->stone];
     const int n = skin->spread.width * skin->spread.height;
     const char *reason;
 
-    if (glint_translucent_open(&skin->stone, get_model_table(s, stone->file_at),
+    if (glint_translucent_open(&skin->stone,
+                               get_table_in_scene_file(s, stone->file_at),
                                stone->file_bytes, &reason) != GLINT_OK)
         return GLINT_E_FORMAT;
     skin->material = stone->material;
     skin->fresnel = (int)stone->fresnel;
     skin->spread.stone = &skin->stone;
-    skin->spread.convolve = glint_convolve_of(s->cfg.sets);
+    skin->spread.convolve = glint_choose_convolve_kernel(s->cfg.sets);
     if (skin->spread.is_ball)
         skin->turn_q30 =
-            (const int32_t(*)[2])get_model_table(s, skin->of->texel_at);
+            (const int32_t(*)[2])get_table_in_scene_file(s, skin->of->texel_at);
     else
-        skin->triangle = get_model_table(s, skin->of->texel_at);
+        skin->triangle = get_table_in_scene_file(s, skin->of->texel_at);
     for (int c = 0; c < CHANNELS; c++)
         for (int i = 0; i < n; i++)
             skin->spread.light[c][i] = skin->spread.map[c][i] = 0;
@@ -614,13 +627,13 @@ static enum glint_status open_medium_of_skin(const struct glint_scene *s,
 
 static void update_environment_bound(struct glint_scene *scene)
 {
-    scene->stones->around_q15 = bound_environment_light(scene);
+    scene->stones->around_q15 = compute_max_environment_light(scene);
 }
 
 static enum glint_status open_translucent_media(struct glint_scene *scene)
 {
     for (uint32_t i = 0; i < scene->model.header->n_skins; i++)
-        if (open_medium_of_skin(scene, &scene->stones->skin[i]) != GLINT_OK)
+        if (open_medium_of_map(scene, &scene->stones->skin[i]) != GLINT_OK)
             return GLINT_E_FORMAT;
     update_environment_bound(scene);
     return GLINT_OK;
@@ -640,7 +653,7 @@ static void clear_stale_blocks(const struct glint_scene *s,
         skin->block[i] = 0;
     skin->is_lit = 1;
     skin->moved = s->moved;
-    set_exposure_shift(s, skin);
+    set_exponent_of_map_values(s, skin);
 }
 
 /* Requests the computation of the light that enters at block (X, Y), unless the
@@ -665,9 +678,9 @@ static void request_block_light(struct glint_stone_skin *skin, int x, int y)
     skin->list[skin->n_list++] = (uint16_t)i;
 }
 
-/* Lists the blocks whose entering light is needed: visible blocks that are not
- * computed, and blocks within the kernel's size of them. Returns the number of
- * visible blocks to be computed. */
+/* Lists the blocks for which the entering light must be computed: visible
+ * blocks whose map values are not computed, and all blocks within the kernel's
+ * size of these. Returns the number of these visible blocks. */
 static int list_blocks_to_light(struct glint_stone_skin *skin)
 {
     const int radius = (int)skin->stone.header->kernel / 2;
@@ -695,17 +708,17 @@ struct update {
     struct glint_stone_skin *skin;
 };
 
-static void light_block_job(void *ctx, int job, int worker)
+static void compute_light_entering_block_job(void *ctx, int job, int worker)
 {
     const struct update *u = ctx;
 
     (void)worker;
-    light_map_block(u->scene, u->skin, u->skin->list[job]);
+    compute_light_entering_block(u->scene, u->skin, u->skin->list[job]);
 }
 
-/* Computes the map values of one colour channel of a column of blocks, in runs
- * of adjacent blocks. */
-static void spread_block_column_job(void *ctx, int job, int worker)
+/* Computes the map values of one colour channel in one column of blocks, for
+ * each run of adjacent blocks. */
+static void spread_light_in_block_column_job(void *ctx, int job, int worker)
 {
     const struct update *u = ctx;
     const struct glint_stone_skin *skin = u->skin;
@@ -721,7 +734,7 @@ static void spread_block_column_job(void *ctx, int job, int worker)
         if (is_wanted)
             continue;
         if (y > from)
-            glint_spread_strip(
+            glint_spread_light_in_strip(
                 &skin->spread, c, x * GLINT_STRIP, from * GLINT_BLOCK_HEIGHT,
                 y * GLINT_BLOCK_HEIGHT, &u->scene->stones->scratch[worker]);
         from = y + 1;
@@ -729,7 +742,7 @@ static void spread_block_column_job(void *ctx, int job, int worker)
 }
 
 /* Marks the blocks that have been computed in this update. */
-static void mark_blocks_done(struct glint_stone_skin *skin)
+static void mark_updated_blocks_ready(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->n_list; i++) {
         uint8_t *block = &skin->block[skin->list[i]];
@@ -741,10 +754,11 @@ static void mark_blocks_done(struct glint_stone_skin *skin)
             skin->block[i] |= GLINT_BLOCK_READY;
 }
 
-/* Returns the max reflectance of the coat of SKIN / its reflectance at normal
- * incidence, q15; 0 if there is no coat. */
-static int32_t compute_max_coat_q15(const struct glint_scene *scene,
-                                    const struct glint_stone_skin *skin)
+/* Returns (max reflectance of SKIN's coat) / (its reflectance at normal
+ * incidence), q15; 0 if there is no coat. */
+static int32_t
+compute_max_coat_reflectance_q15(const struct glint_scene *scene,
+                                 const struct glint_stone_skin *skin)
 {
     const uint32_t ward = scene->model.material[skin->material].ward;
     int32_t max_q15 = 1;
@@ -765,7 +779,7 @@ static int update_translucency_maps(struct glint_scene *scene)
         const struct glint_placed *p = &scene->placed[u.skin->of->object];
         int blocks;
 
-        u.skin->max_coat_q15 = compute_max_coat_q15(scene, u.skin);
+        u.skin->max_coat_q15 = compute_max_coat_reflectance_q15(scene, u.skin);
         if (!p->is_shown || (!p->is_seen && !scene->has_split))
             continue;
         clear_stale_blocks(scene, u.skin);
@@ -773,11 +787,11 @@ static int update_translucency_maps(struct glint_scene *scene)
         blocks = list_blocks_to_light(u.skin);
         if (blocks == 0)
             continue;
-        glint_workers_run(scene->cfg.workers, u.skin->n_list, light_block_job,
-                          &u);
+        glint_workers_run(scene->cfg.workers, u.skin->n_list,
+                          compute_light_entering_block_job, &u);
         glint_workers_run(scene->cfg.workers, CHANNELS * u.skin->across,
-                          spread_block_column_job, &u);
-        mark_blocks_done(u.skin);
+                          spread_light_in_block_column_job, &u);
+        mark_updated_blocks_ready(u.skin);
         n += blocks * BLOCK_TEXELS;
     }
     return n;
@@ -808,13 +822,16 @@ static struct between find_texel_pair(int32_t uv_q16, int side_log2,
                             (int32_t)(at_q16 & 0xffff)};
 }
 
-/* Returns the bilinear value of MAP between four texels, in the map's unit. */
-static int32_t sample_map(const int16_t *map, int width,
-                          const struct between *x, const struct between *y)
+/* Returns the value of MAP interpolated bilinearly between four texels, in the
+ * unit of the map. */
+static int32_t sample_light_map(const int16_t *map, int width,
+                                const struct between *x,
+                                const struct between *y)
 {
     const int16_t *upper = map + (ptrdiff_t)y->first * width;
     const int16_t *lower = map + (ptrdiff_t)y->second * width;
-    /* 7 more fraction bits: values are below 2^22, and products below 2^38 */
+    /* 7 more fraction bits; values are then below 2^22, and products below
+     * 2^38 */
     const int64_t a =
         (upper[x->first] << 7) +
         ((int64_t)(upper[x->second] - upper[x->first]) * x->part_q16 >> 9);
@@ -827,8 +844,8 @@ static int32_t sample_map(const int16_t *map, int width,
 
 /* Returns the coat's reflectance, 1 - transmission PASSES_Q15, divided by its
  * reflectance at normal incidence, q15. */
-static int32_t compute_coat_q15(const struct glint_stone_skin *skin,
-                                int32_t passes_q15)
+static int32_t compute_coat_reflectance_q15(const struct glint_stone_skin *skin,
+                                            int32_t passes_q15)
 {
     const uint16_t *at_q15 = skin->stone.transmit_q15;
     const int32_t ahead_q15 = ONE_Q15 - at_q15[GLINT_TRANSLUCENT_COSINES];
@@ -862,13 +879,14 @@ static int32_t add_scattered_light(const struct glint_scene *scene,
     y = find_texel_pair(uv_q16[1], log2, 0);
     passes_q15 = transmittance_q15(
         skin, -v3_cosine_q30(ray->toward_q30, surface->normal_q30));
-    coat = compute_coat_q15(skin, passes_q15);
+    coat = compute_coat_reflectance_q15(skin, passes_q15);
     passes_q15 = q_mul(passes_q15, weight_q15, 15);
     for (int c = 0; c < CHANNELS; c++) {
         const int32_t part_q15 =
             q_mul(surface->material->rgb_q15[c], passes_q15, 15);
         const int64_t light_q22 =
-            (int64_t)sample_map(skin->spread.map[c], skin->spread.width, &x, &y)
+            (int64_t)sample_light_map(skin->spread.map[c], skin->spread.width,
+                                      &x, &y)
             << skin->shift;
 
         rgb_q15[c] = q_clamp_sat(rgb_q15[c] + q_shift(light_q22 * part_q15, 22),

@@ -38,8 +38,8 @@ static int32_t read_reversed_tap(const int16_t *tap, int n, int i)
     return i < 0 || i >= n ? 0 : tap[n - 1 - i];
 }
 
-static void set_tap_pairs(const struct glint_translucent *t, uint32_t i,
-                          struct glint_spread_taps *taps)
+static void store_taps_as_pairs(const struct glint_translucent *t, uint32_t i,
+                                struct glint_spread_taps *taps)
 {
     const int n = (int)t->header->kernel;
     const int16_t *row = t->tap + 2 * (size_t)i * t->header->kernel;
@@ -48,13 +48,15 @@ static void set_tap_pairs(const struct glint_translucent *t, uint32_t i,
     taps->n = (n + 1) / 2;
     taps->shift = (int)t->shift[i];
     for (int k = 0; k < taps->n; k++) {
-        taps->row[k] = glint_pack_pair(read_reversed_tap(row, n, 2 * k),
-                                       read_reversed_tap(row, n, 2 * k + 1));
+        taps->row[k] =
+            glint_pack_int16_pair(read_reversed_tap(row, n, 2 * k),
+                                  read_reversed_tap(row, n, 2 * k + 1));
         taps->even[k] =
-            glint_pack_pair(read_reversed_tap(column, n, 2 * k),
-                            read_reversed_tap(column, n, 2 * k + 1));
-        taps->odd[k] = glint_pack_pair(read_reversed_tap(column, n, 2 * k - 1),
-                                       read_reversed_tap(column, n, 2 * k));
+            glint_pack_int16_pair(read_reversed_tap(column, n, 2 * k),
+                                  read_reversed_tap(column, n, 2 * k + 1));
+        taps->odd[k] =
+            glint_pack_int16_pair(read_reversed_tap(column, n, 2 * k - 1),
+                                  read_reversed_tap(column, n, 2 * k));
     }
 }
 
@@ -67,9 +69,9 @@ struct codes {
     int bits; /* a code stands for the factor code / 2^bits */
 };
 
-/* Returns the codes of table TABLE in row Y, from texel X to the right. */
-static struct codes find_table_codes(const struct glint_translucent *t,
-                                     size_t table, int x, int y)
+/* Returns the codes in row Y of table TABLE, from texel X to the right. */
+static struct codes find_codes_in_table_row(const struct glint_translucent *t,
+                                            size_t table, int x, int y)
 {
     const struct glint_translucent_header *h = t->header;
     const size_t log2 = h->side_log2, mask = ((size_t)1 << log2) - 1;
@@ -80,7 +82,7 @@ static struct codes find_table_codes(const struct glint_translucent *t,
                           is_signed, GLINT_TRANSLUCENT_CODE_BITS - is_signed};
 }
 
-static inline int32_t read_factor_code(const struct codes *f, int i)
+static inline int32_t read_code_of_texel(const struct codes *f, int i)
 {
     return f->is_signed ? (int8_t)f->at[i] : f->at[i];
 }
@@ -88,10 +90,10 @@ static inline int32_t read_factor_code(const struct codes *f, int i)
 /* ------------------------------------------------------------------- light */
 
 /* Sets VALUE to the light of channel C that enters at texels X .. X + N - 1 of
- * row Y, which must be in the map and within one tile of the translucent
+ * row Y. These texels must be in the map and within one tile of the translucent
  * medium. Light is below 2^15, and so is light * code / 2^bits. */
-static void set_entering_light(const struct glint_spread *s, int c, int x,
-                               int y, int n, int16_t *value)
+static void set_entering_light_of_run(const struct glint_spread *s, int c,
+                                      int x, int y, int n, int16_t *value)
 {
     const int16_t *light = s->light[c] + (ptrdiff_t)y * s->width + x;
     struct codes in;
@@ -101,17 +103,18 @@ static void set_entering_light(const struct glint_spread *s, int c, int x,
             value[i] = light[i];
         return;
     }
-    in = find_table_codes(s->stone, 3 + (size_t)c, x, y);
+    in = find_codes_in_table_row(s->stone, 3 + (size_t)c, x, y);
     for (int i = 0; i < n; i++)
-        value[i] = (int16_t)((light[i] * read_factor_code(&in, i) +
+        value[i] = (int16_t)((light[i] * read_code_of_texel(&in, i) +
                               (1 << (in.bits - 1))) >>
                              in.bits);
 }
 
 /* Sets VALUE[N] to the light that enters at texels X .. X + N - 1 of row Y;
- * texels may lie outside the map. Returns 0 if all light is 0. */
-static int set_entering_light_row(const struct glint_spread *s, int c, int x,
-                                  int y, int n, int16_t *value)
+ * these texels may lie outside the map. Returns 0 if no light enters at any of
+ * them. */
+static int set_entering_light_of_row(const struct glint_spread *s, int c, int x,
+                                     int y, int n, int16_t *value)
 {
     const int side = 1 << s->stone->header->side_log2;
     int done = 0, any = 0;
@@ -129,10 +132,10 @@ static int set_entering_light_row(const struct glint_spread *s, int c, int x,
         const int more = q_smaller(n - done, side - (at & (side - 1)));
 
         if (s->is_ball)
-            set_entering_light(s, c, at & (s->width - 1), y, more,
-                               value + done);
+            set_entering_light_of_run(s, c, at & (s->width - 1), y, more,
+                                      value + done);
         else if (at >= 0 && at < s->width)
-            set_entering_light(s, c, at, y, more, value + done);
+            set_entering_light_of_run(s, c, at, y, more, value + done);
         done += more;
     }
     for (int i = 0; i < n; i++)
@@ -140,11 +143,11 @@ static int set_entering_light_row(const struct glint_spread *s, int c, int x,
     return any;
 }
 
-/* Stores the light of N rows, from Y down, as pairs of neighbouring texels, for
- * the strip that begins at column X0. */
-static void interleave_light_rows(const struct glint_spread *s, int c, int x0,
-                                  int y, int n_rows,
-                                  struct glint_spread_scratch *scratch)
+/* Stores the entering light of rows Y .. Y + N_ROWS - 1 as pairs of
+ * neighbouring texels, for the strip that begins at column X0. */
+static void store_light_rows_as_pairs(const struct glint_spread *s, int c,
+                                      int x0, int y, int n_rows,
+                                      struct glint_spread_scratch *scratch)
 {
     const int kernel = (int)s->stone->header->kernel;
     const int n = GLINT_STRIP + kernel - 1;
@@ -154,22 +157,22 @@ static void interleave_light_rows(const struct glint_spread *s, int c, int x0,
         int32_t *pair = scratch->pair + (ptrdiff_t)i * (n + 1);
 
         scratch->any[i] =
-            set_entering_light_row(s, c, x0 - kernel / 2, y + i, n, value);
+            set_entering_light_of_row(s, c, x0 - kernel / 2, y + i, n, value);
         if (!scratch->any[i])
             continue;
         value[n] = value[n + 1] = 0;
         for (int k = 0; k <= n; k++)
-            pair[k] = glint_pack_pair(value[k], value[k + 1]);
+            pair[k] = glint_pack_int16_pair(value[k], value[k + 1]);
     }
 }
 
 /* ------------------------------------------------------------ convolutions */
 
-/* Sets SUM to the horizontal convolution of the light of row I. */
-static void convolve_row(const struct glint_spread *s,
-                         const struct glint_spread_scratch *scratch, int i,
-                         const struct glint_spread_taps *taps,
-                         int32_t sum[GLINT_STRIP])
+/* Sets SUM to the horizontal convolution of the entering light of row I. */
+static void convolve_light_row(const struct glint_spread *s,
+                               const struct glint_spread_scratch *scratch,
+                               int i, const struct glint_spread_taps *taps,
+                               int32_t sum[GLINT_STRIP])
 {
     const int stride = GLINT_STRIP + (int)s->stone->header->kernel;
 
@@ -180,12 +183,11 @@ static void convolve_row(const struct glint_spread *s,
                     taps->n, GLINT_STRIP);
 }
 
-/* Sets the values of N pairs of rows to their horizontal convolution with
- * TAPS. */
-static void convolve_row_pairs(const struct glint_spread *s,
-                               const struct glint_spread_scratch *scratch,
-                               const struct glint_spread_taps *taps, int n,
-                               int32_t *value)
+/* Convolves N pairs of rows horizontally with TAPS, and stores the results in
+ * VALUE. */
+static void convolve_pairs_of_light_rows(
+    const struct glint_spread *s, const struct glint_spread_scratch *scratch,
+    const struct glint_spread_taps *taps, int n, int32_t *value)
 {
     const int shift = taps->shift;
     const int32_t half = (1 << shift) >> 1;
@@ -194,14 +196,15 @@ static void convolve_row_pairs(const struct glint_spread *s,
         int32_t sum[2][GLINT_STRIP];
 
         for (int k = 0; k < 2; k++)
-            convolve_row(s, scratch, 2 * i + k, taps, sum[k]);
+            convolve_light_row(s, scratch, 2 * i + k, taps, sum[k]);
         for (int k = 0; k < GLINT_STRIP; k++)
-            value[k] = glint_pack_pair((sum[0][k] + half) >> shift,
-                                       (sum[1][k] + half) >> shift);
+            value[k] = glint_pack_int16_pair((sum[0][k] + half) >> shift,
+                                             (sum[1][k] + half) >> shift);
     }
 }
 
-/* Adds the vertical convolution of VALUE to SUM, rows Y0 .. of the strip. */
+/* Adds the vertical convolution of VALUE to SUM, the rows of the strip from Y0
+ * down. */
 static void add_convolved_columns(const struct glint_spread *s,
                                   const struct glint_spread_taps *taps,
                                   const int32_t *value, int rows, int32_t *sum)
@@ -215,8 +218,8 @@ static void add_convolved_columns(const struct glint_spread *s,
 /* ------------------------------------------------------------------ planes */
 
 /* Returns whether any texel of the strip uses plane P of the kernel. */
-static int strip_uses_plane(const struct glint_spread *s, uint32_t p, int x0,
-                            int y0, int y1)
+static int does_strip_use_kernel_plane(const struct glint_spread *s, uint32_t p,
+                                       int x0, int y0, int y1)
 {
     const int log2 = (int)s->stone->header->side_log2, mask = (1 << log2) - 1;
 
@@ -229,19 +232,19 @@ static int strip_uses_plane(const struct glint_spread *s, uint32_t p, int x0,
     return 0;
 }
 
-/* Adds SUM, of plane P in row Y, times the plane's weights, to TOTAL. The
- * magnitudes of all planes' sums add up to less than 2^31, so TOTAL does not
- * overflow. */
-static void add_weighted_plane(const struct glint_spread *s, int c, uint32_t p,
-                               int x0, int y, const int32_t *sum,
-                               int32_t *total)
+/* Adds SUM, the convolution by plane P of row Y, times the plane's weight at
+ * each texel, to TOTAL. The magnitudes of the sums of all planes add up to less
+ * than 2^31, so TOTAL does not overflow. */
+static void add_plane_sum_times_weights(const struct glint_spread *s, int c,
+                                        uint32_t p, int x0, int y,
+                                        const int32_t *sum, int32_t *total)
 {
     const struct glint_translucent *t = s->stone;
     const int log2 = (int)t->header->side_log2, mask = (1 << log2) - 1;
     const size_t table = t->header->variant == GLINT_TRANSLUCENT_FACTORED
                              ? (size_t)c * t->header->n_planes + p
                              : (size_t)c;
-    const struct codes f = find_table_codes(t, table, x0, y);
+    const struct codes f = find_codes_in_table_row(t, table, x0, y);
     const int32_t half = 1 << (f.bits - 1);
 
     if (t->cluster) {
@@ -249,7 +252,7 @@ static void add_weighted_plane(const struct glint_spread *s, int c, uint32_t p,
 
         for (int i = 0; i < GLINT_STRIP; i++)
             total[i] = of[i] == p ? ((sum[i] + half) >> f.bits) *
-                                        read_factor_code(&f, i)
+                                        read_code_of_texel(&f, i)
                                   : total[i];
     } else if (f.is_signed) {
         const int8_t *code = (const int8_t *)f.at;
@@ -258,14 +261,14 @@ static void add_weighted_plane(const struct glint_spread *s, int c, uint32_t p,
             total[i] += ((sum[i] + half) >> f.bits) * code[i];
     } else {
         for (int i = 0; i < GLINT_STRIP; i++)
-            total[i] += ((sum[i] + half) >> f.bits) * read_factor_code(&f, i);
+            total[i] += ((sum[i] + half) >> f.bits) * read_code_of_texel(&f, i);
     }
 }
 
-/* Adds the light that plane P of the kernel spreads to the total. */
-static void spread_kernel_plane(const struct glint_spread *s, int c, uint32_t p,
-                                int x0, int y0, int y1,
-                                struct glint_spread_scratch *scratch)
+/* Adds the light that plane P of the kernel spreads to scratch->total. */
+static void spread_light_by_kernel_plane(const struct glint_spread *s, int c,
+                                         uint32_t p, int x0, int y0, int y1,
+                                         struct glint_spread_scratch *scratch)
 {
     const struct glint_translucent_header *h = s->stone->header;
     const int rows = y1 - y0, n = (rows + (int)h->kernel) / 2;
@@ -275,21 +278,21 @@ static void spread_kernel_plane(const struct glint_spread *s, int c, uint32_t p,
     for (uint32_t r = 0; r < h->rank; r++) {
         struct glint_spread_taps *taps = scratch->taps;
 
-        set_tap_pairs(s->stone, ((uint32_t)c * h->n_planes + p) * h->rank + r,
-                      taps);
-        convolve_row_pairs(s, scratch, taps, n, scratch->value);
+        store_taps_as_pairs(
+            s->stone, ((uint32_t)c * h->n_planes + p) * h->rank + r, taps);
+        convolve_pairs_of_light_rows(s, scratch, taps, n, scratch->value);
         add_convolved_columns(s, taps, scratch->value, rows, scratch->sum);
     }
     for (int y = 0; y < rows; y++)
-        add_weighted_plane(s, c, p, x0, y0 + y,
-                           scratch->sum + (ptrdiff_t)y * GLINT_STRIP,
-                           scratch->total + (ptrdiff_t)y * GLINT_STRIP);
+        add_plane_sum_times_weights(
+            s, c, p, x0, y0 + y, scratch->sum + (ptrdiff_t)y * GLINT_STRIP,
+            scratch->total + (ptrdiff_t)y * GLINT_STRIP);
 }
 
 /* ------------------------------------------------------------------ strips */
 
-/* Sets a row of the map to TOTAL times the medium's gain, clamped to 0 or
- * more. */
+/* Sets a row of the map to TOTAL times the medium's gain; negative values
+ * become 0. */
 static void write_map_row(const struct glint_spread *s, int c, int x0, int y,
                           const int32_t *total)
 {
@@ -306,19 +309,20 @@ static void write_map_row(const struct glint_spread *s, int c, int x0, int y,
     }
 }
 
-void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
-                        int y0, int y1, struct glint_spread_scratch *scratch)
+void glint_spread_light_in_strip(const struct glint_spread *spread, int c,
+                                 int x0, int y0, int y1,
+                                 struct glint_spread_scratch *scratch)
 {
     const struct glint_translucent_header *h = spread->stone->header;
     const int kernel = (int)h->kernel, rows = y1 - y0;
 
     for (int i = 0; i < rows * GLINT_STRIP; i++)
         scratch->total[i] = 0;
-    interleave_light_rows(spread, c, x0, y0 - kernel / 2, (rows + kernel) & ~1,
-                          scratch);
+    store_light_rows_as_pairs(spread, c, x0, y0 - kernel / 2,
+                              (rows + kernel) & ~1, scratch);
     for (uint32_t p = 0; p < h->n_planes; p++)
-        if (strip_uses_plane(spread, p, x0, y0, y1))
-            spread_kernel_plane(spread, c, p, x0, y0, y1, scratch);
+        if (does_strip_use_kernel_plane(spread, p, x0, y0, y1))
+            spread_light_by_kernel_plane(spread, c, p, x0, y0, y1, scratch);
     for (int y = 0; y < rows; y++)
         write_map_row(spread, c, x0, y0 + y,
                       scratch->total + (ptrdiff_t)y * GLINT_STRIP);

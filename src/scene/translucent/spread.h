@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Spreads the light that enters a translucent object over its map, by the
- * kernel of a baked translucent medium (glint/scene/translucent.h), strip by
- * strip.
+ * Spreads the light that enters a translucent object over the object's light
+ * map, strip by strip, by the kernel of a baked translucent medium
+ * (glint/scene/translucent.h).
  *
- *   in light that enters, 0 .. 32767 of any unit; the translucent medium
- *   out light that leaves, 0 .. 32767 of that unit, saturates
+ *   in  light that enters, 0 .. 32767 in any unit; the translucent medium
+ *   out light that leaves, 0 .. 32767 in the same unit, saturated
  *
  * A strip is GLINT_STRIP columns of one colour channel. For each plane of the
  * kernel the strip's rows are convolved, two at a time, and then its columns;
@@ -33,20 +33,21 @@ struct glint_spread {
 
 enum { GLINT_SPREAD_PAIRS = (GLINT_TRANSLUCENT_MOST_KERNEL + 1) / 2 };
 
-/* Filter taps of one rank of a plane, as pairs, from the last tap to the first,
- * padded with 0. */
+/* Filter taps of one separable term (rank) of a kernel plane: stored as pairs
+ * from the last tap to the first, padded with 0. */
 struct glint_spread_taps {
     int n, shift;
     int32_t row[GLINT_SPREAD_PAIRS];
-    /* Taps for columns that begin with the first (even) or the second row (odd)
-     * of a pair of rows. */
+    /* Taps for columns that begin with the first row (even) or the second row
+     * (odd) of a pair of rows. */
     int32_t even[GLINT_SPREAD_PAIRS], odd[GLINT_SPREAD_PAIRS];
 };
 
 /* Scratch memory of one worker. */
 struct glint_spread_scratch {
     struct glint_spread_taps *taps; /* taps of one rank */
-    int32_t *any;   /* [height + kernel]: nonzero if light enters in the row */
+    int32_t *any;   /* [height + kernel]: nonzero if light enters in the row at
+                       any texel */
     int32_t *pair;  /* [height + kernel][GLINT_STRIP + kernel]: light that
                        enters, as pairs of neighbouring texels */
     int32_t *value; /* [(height + kernel) / 2][GLINT_STRIP]: convolved rows, in
@@ -64,7 +65,8 @@ glint_spread_carve(struct glint_arena *arena,
 
 /* Computes rows Y0 .. Y1 - 1 of the map of channel C in the strip that begins
  * at column X0. */
-void glint_spread_strip(const struct glint_spread *spread, int c, int x0,
-                        int y0, int y1, struct glint_spread_scratch *scratch);
+void glint_spread_light_in_strip(const struct glint_spread *spread, int c,
+                                 int x0, int y0, int y1,
+                                 struct glint_spread_scratch *scratch);
 
 #endif

@@ -58,9 +58,10 @@ static const char *check_medium_header(const struct glint_translucent_header *h)
     return NULL;
 }
 
-/* Adds the magnitudes of N taps to SUM; returns whether each is below LIMIT. */
-static int add_tap_magnitudes(const int16_t *tap, uint32_t n, int32_t limit,
-                              uint32_t *sum)
+/* Adds the magnitudes of N taps to SUM; returns whether each magnitude is below
+ * LIMIT. */
+static int add_magnitudes_of_taps(const int16_t *tap, uint32_t n, int32_t limit,
+                                  uint32_t *sum)
 {
     int fits = 1;
 
@@ -73,8 +74,8 @@ static int add_tap_magnitudes(const int16_t *tap, uint32_t n, int32_t limit,
     return fits;
 }
 
-/* Checks that sums of taps are so small that convolutions of values within
- * +-32767 do not overflow. */
+/* Checks that the sums of the taps' magnitudes are so small that convolutions
+ * of values within +-32767 do not overflow. */
 static const char *check_tap_sums(const struct glint_translucent *t)
 {
     const struct glint_translucent_header *h = t->header;
@@ -89,9 +90,9 @@ static const char *check_tap_sums(const struct glint_translucent *t)
             const uint32_t shift = t->shift[c * n + i];
             uint32_t row = 0;
 
-            if (!add_tap_magnitudes(tap, h->kernel, limit, &row) ||
-                !add_tap_magnitudes(tap + h->kernel, h->kernel, limit,
-                                    &columns))
+            if (!add_magnitudes_of_taps(tap, h->kernel, limit, &row) ||
+                !add_magnitudes_of_taps(tap + h->kernel, h->kernel, limit,
+                                        &columns))
                 return "a tap of the translucent medium has too many bits";
             if (shift > MOST_SHIFT || row > UINT32_C(1) << shift ||
                 row > GLINT_TRANSLUCENT_MOST_TAPS)
@@ -115,14 +116,15 @@ static uint32_t count_weight_codes(const struct glint_translucent_header *h)
                                                         : 1);
 }
 
-/* Returns the number of 4-byte words of N items of BYTES bytes. */
+/* Returns the number of 4-byte words that N items of BYTES bytes each
+ * occupy. */
 static uint64_t count_words(uint64_t n, uint64_t bytes)
 {
     return (n * bytes + 3) / 4;
 }
 
-static const char *locate_tables(struct glint_translucent *t,
-                                 struct glint_blob *b)
+static const char *locate_tables_in_file(struct glint_translucent *t,
+                                         struct glint_blob *b)
 {
     const struct glint_translucent_header *h = t->header;
     const uint32_t n = CHANNELS * h->n_planes * h->rank;
@@ -153,7 +155,7 @@ static const char *check_medium_contents(struct glint_translucent *t,
     if (!wrong)
         wrong = check_medium_header(h);
     if (!wrong)
-        wrong = locate_tables(t, blob);
+        wrong = locate_tables_in_file(t, blob);
     if (!wrong)
         wrong = check_tap_sums(t);
     for (uint32_t i = 0; !wrong && i < count_weight_codes(h); i++)

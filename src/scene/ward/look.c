@@ -46,14 +46,15 @@ void glint_environment_irradiance(const struct glint_environment *environment,
     int32_t u_q17, v_q17;
 
     compute_map_position(normal, &u_q17, &v_q17);
-    glint_set_texel_reads(&level, u_q17, v_q17, 256, reads.at,
-                          reads.weight_q22);
+    glint_choose_texels_to_read(&level, u_q17, v_q17, 256, reads.at,
+                                reads.weight_q22);
     glint_sum_texel_light(environment->irradiance, &reads, 4, &found);
     convert_texel_to_light(&found, rgb);
 }
 
-/* Returns the weight of the next mip level, which has four times the variance,
- * so that the blend has the variance of a level OVER_Q8 above the first. */
+/* Returns the weight of the next mip level, so that the blend of both levels
+ * has the variance of a level OVER_Q8 / 256 levels above the first. The next
+ * level has four times the first one's variance. */
 static uint32_t compute_level_weight(int32_t over_q8)
 {
     return (uint32_t)(q_exp2_q16(over_q8 * 512) - 65536) * 85 >> 16;
@@ -74,11 +75,11 @@ void glint_environment_look(const struct glint_environment *environment,
     level_q8 = q_smaller(q_larger(level_q8, 0), texels->last << 8);
     share_q8 = compute_level_weight(level_q8 & 255);
     level = &texels->level[level_q8 >> 8];
-    glint_set_texel_reads(level, u_q17, v_q17, 256 - share_q8, reads.at,
-                          reads.weight_q22);
+    glint_choose_texels_to_read(level, u_q17, v_q17, 256 - share_q8, reads.at,
+                                reads.weight_q22);
     if (share_q8)
-        glint_set_texel_reads(level + 1, u_q17, v_q17, share_q8, reads.at + 4,
-                              reads.weight_q22 + 4);
+        glint_choose_texels_to_read(level + 1, u_q17, v_q17, share_q8,
+                                    reads.at + 4, reads.weight_q22 + 4);
     glint_sum_texel_light(texels->code, &reads, share_q8 ? 8 : 4, &found);
     convert_texel_to_light(&found, rgb);
 }

@@ -14,23 +14,26 @@ struct glint_ward_state {
     struct glint_environment *opened; /* [n_environments]: all environments of
                                          the scene */
     struct glint_scene_light *sun;    /* [n_environment_lights]: bright lights
-                                         of the environment, as suns */
+                                         of the environment, as suns of the
+                                         scene */
     int has_environment;
     struct glint_environment environment; /* the environment that is shown */
     int32_t turn_q30[2];                  /* cosine and sine of its rotation to
                                              the right */
-    struct glint_real scale;              /* factor of all light of the
+    struct glint_real scale;              /* factor of all light from the
                                              environment */
-    struct glint_real unit;               /* unit of the environment's texels,
-                                             times scale */
-    struct glint_ward_material *material; /* [n_wards]: metals, with ratios of
-                                             alphas clamped */
+    struct glint_real unit;               /* unit of the environment's texels
+                                             times the factor SCALE */
+    struct glint_ward_material *material; /* [n_wards]: parameters of the
+                                             metals, with clamped ratios of
+                                             alphas */
     struct glint_ward_lobe *lobe;         /* [n_wards]: reflection lobes */
 };
 
 /* Sets TO to direction V, _q30, rotated to the environment's coordinates. */
-static inline void rotate_to_environment(const struct glint_ward_state *w,
-                                         const int32_t v[3], int32_t to[3])
+static inline void
+rotate_direction_to_environment(const struct glint_ward_state *w,
+                                const int32_t v[3], int32_t to[3])
 {
     const int64_t c = w->turn_q30[0], s = w->turn_q30[1];
 
@@ -45,12 +48,12 @@ static inline void rotate_to_environment(const struct glint_ward_state *w,
  * and the discs of its bright lights, blurred to the size of a pixel. */
 enum {
     LOG2_PI_Q16 = 108232,
-    LEAST_SPREAD_Q40 = 1 << 14 /* min angular variance, so that point lights
-                                  have a disc */
+    LEAST_SPREAD_Q40 = 1 << 14 /* min angular variance, radians^2, so that point
+                                  lights appear as discs */
 };
 
-/* Returns the mip level whose texels have variance SPREAD: level l has the
- * variance 4^l pi / side^2. */
+/* Returns the mip level, q8, whose texels have angular variance SPREAD. Level l
+ * has the variance 4^l pi / side^2, where side is that of level 0 in texels. */
 static int32_t compute_level_of_variance_q8(const struct glint_environment *e,
                                             int64_t spread_q40)
 {
@@ -61,16 +64,16 @@ static int32_t compute_level_of_variance_q8(const struct glint_environment *e,
     return (int32_t)q_shift(octaves_q16, 9);
 }
 
-/* Adds the disc of LIGHT to the background, enlarged to at least the pixel's
- * size. Its edge is blurred: light fades within half of the pixel's size on
- * both sides of the rim. */
+/* Adds the disc of LIGHT to the background, enlarged to at least the size of a
+ * pixel. Its edge is blurred: light fades out from half a pixel inside the rim
+ * to half a pixel outside. */
 static void add_light_disc(const struct glint_ward_state *w,
                            const struct glint_environment_light *light,
                            const int32_t toward_q30[3], int64_t spread_q40,
                            int32_t rgb_q15[3])
 {
     const int32_t width_q30 =
-        (int32_t)glint_square_root((uint64_t)spread_q40 << 22);
+        (int32_t)glint_compute_square_root((uint64_t)spread_q40 << 22);
     const int32_t r_q30 = q_larger(light->radius_q30, width_q30);
     const struct glint_real r = real_of(r_q30, -30);
     int32_t off_q29[3], away_q30, share_q15;
@@ -78,7 +81,7 @@ static void add_light_disc(const struct glint_ward_state *w,
 
     for (int k = 0; k < 3; k++)
         off_q29[k] = toward_q30[k] / 2 - light->toward_q30[k] / 2;
-    away_q30 = 2 * (int32_t)q_smaller((int32_t)glint_square_root(
+    away_q30 = 2 * (int32_t)q_smaller((int32_t)glint_compute_square_root(
                                           (uint64_t)v3_dot(off_q29, off_q29)),
                                       (1 << 30) - 1);
     if (away_q30 >= r_q30 + width_q30 / 2)
@@ -98,9 +101,9 @@ static void add_light_disc(const struct glint_ward_state *w,
             0, GLINT_SCENE_MOST_LIGHT);
 }
 
-static void read_blurred_environment(const struct glint_scene *scene,
-                                     const int32_t toward_q30[3],
-                                     int64_t spread_q40, int32_t rgb_q15[3])
+static void look_up_blurred_environment(const struct glint_scene *scene,
+                                        const int32_t toward_q30[3],
+                                        int64_t spread_q40, int32_t rgb_q15[3])
 {
     const struct glint_ward_state *w = scene->wards;
     const struct glint_environment *e = &w->environment;
@@ -109,7 +112,7 @@ static void read_blurred_environment(const struct glint_scene *scene,
         INT64_C(1024);
     int32_t to_q30[3], to_q16[3], light[3];
 
-    rotate_to_environment(w, toward_q30, to_q30);
+    rotate_direction_to_environment(w, toward_q30, to_q30);
     for (int k = 0; k < 3; k++)
         to_q16[k] = (int32_t)q_shift(to_q30[k], 14);
     glint_environment_look(e, to_q16, compute_level_of_variance_q8(e, seen_q40),
@@ -141,15 +144,15 @@ enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
 /* The half vector in the surface's tangent frame; all q30 except slopes. */
 struct half {
     int32_t ho_q30, hn_q30, ni_q30, no_q30;
-    uint64_t slope_q52[2]; /* squares of its slopes along the two tangents, up
-                              to 2^60 */
+    uint64_t slope_q52[2]; /* squares of the half vector's slopes along the two
+                              tangents, up to 2^60 */
 };
 
 /* Returns whether the slope ALONG_Q30 / HN_Q30 is so large that the lobe with
- * squared alpha ALPHA_Q40 is certainly 0: a quick test without root or
- * division. ALPHA_Q40 must be below 2^42. The left side is rounded down, to
- * 2^56, the right side up, to 2^63, and enlarged by 1/512, more than the error
- * of ratios. */
+ * squared alpha ALPHA_Q40 is certainly 0. A quick test without root or
+ * division. ALPHA_Q40 must be below 2^42. The compared left side is rounded
+ * down and at most 2^56; the right side is rounded up, at most 2^63, and
+ * enlarged by 1/512, more than the error of the ratios. */
 static int is_slope_outside_lobe(uint32_t along_q30, int32_t hn_q30,
                                  int64_t alpha_q40)
 {
@@ -161,9 +164,9 @@ static int is_slope_outside_lobe(uint32_t along_q30, int32_t hn_q30,
     return along_q28 * along_q28 > max_q56 + (max_q56 >> 9);
 }
 
-/* Computes the half vector of ray and light. Returns 0 if the light or the eye
- * is behind the surface, or if the lobe with squared alphas ALPHA_Q40 is 0
- * there. */
+/* Computes the half vector between ray and light. Returns 0 if the light or the
+ * eye is behind the surface, or if the lobe with squared alphas ALPHA_Q40 is 0
+ * at this half vector. */
 static int compute_half_vector(const struct glint_scene_ray *ray,
                                const struct glint_brushed *brushed,
                                const int32_t toward_q30[3],
@@ -189,8 +192,8 @@ static int compute_half_vector(const struct glint_scene_ray *ray,
     h->no_q30 = -v3_cosine_q30(ray->toward_q30, n_q30);
     if (h->ni_q30 <= 0 || h->no_q30 <= 0)
         return 0;
-    h->ho_q30 =
-        (int32_t)glint_square_root((uint64_t)v3_dot(half_q30, half_q30));
+    h->ho_q30 = (int32_t)glint_compute_square_root(
+        (uint64_t)v3_dot(half_q30, half_q30));
     if (h->ho_q30 < hn_q30)
         h->ho_q30 = hn_q30;
     h->hn_q30 = q_divide_to_fraction_q30((uint64_t)hn_q30, (uint64_t)h->ho_q30);
@@ -203,7 +206,7 @@ static int compute_half_vector(const struct glint_scene_ray *ray,
     return 1;
 }
 
-/* Returns the weight of the lobe by norm NORM, 0 .. 8, without the density
+/* Returns the weight of the lobe, 0 .. 8, in norm NORM, without the factor
  * exp(-slope). */
 static struct glint_real compute_lobe_weight(enum glint_ward_norm norm,
                                              const struct half *h)
@@ -219,22 +222,24 @@ static struct glint_real compute_lobe_weight(enum glint_ward_norm norm,
         weight = real_over(
             real_times(
                 real_times(real_times(ho, hn), real_times(hn, hn)),
-                real_of(glint_square_root((uint64_t)h->ni_q30 << 30), -30)),
-            real_of(glint_square_root((uint64_t)h->no_q30 << 30), -30));
+                real_of(glint_compute_square_root((uint64_t)h->ni_q30 << 30),
+                        -30)),
+            real_of(glint_compute_square_root((uint64_t)h->no_q30 << 30), -30));
     return real_less(weight, most) ? weight : most;
 }
 
-static int add_highlight_light(const struct glint_scene *scene,
-                               const struct glint_scene_ray *ray,
-                               const struct glint_met_surface *surface,
-                               const struct glint_brushed *brushed,
-                               const int32_t toward_q30[3],
-                               const int32_t level_q15[3], int32_t radius_q30,
-                               int32_t rgb_q15[3])
+static int add_highlight_of_light(const struct glint_scene *scene,
+                                  const struct glint_scene_ray *ray,
+                                  const struct glint_met_surface *surface,
+                                  const struct glint_brushed *brushed,
+                                  const int32_t toward_q30[3],
+                                  const int32_t level_q15[3],
+                                  int32_t radius_q30, int32_t rgb_q15[3])
 {
     const struct glint_ward_material *m =
         &scene->wards->material[surface->material->ward];
-    /* 2 r^2 / 16 of the light's disc, plus the spread of the normal. */
+    /* 2 r^2 / 16 for the light's disc of angular radius r, plus the spread of
+     * the normal. */
     const int64_t wider_q40 = ((int64_t)radius_q30 * radius_q30 >> 23) +
                               (int64_t)brushed->spread_q30 * 1024;
     struct glint_real area = real_of(4, 0), gain;
@@ -252,9 +257,9 @@ static int add_highlight_light(const struct glint_scene *scene,
             return 0;
         slope_q16 +=
             glint_divide_rounded(h.slope_q52[k] << 4, (uint64_t)alpha_q40[k]);
-        area = real_times(
-            area,
-            real_of(glint_square_root((uint64_t)alpha_q40[k] << 20), -30));
+        area = real_times(area, real_of(glint_compute_square_root(
+                                            (uint64_t)alpha_q40[k] << 20),
+                                        -30));
     }
     if (slope_q16 >= MOST_SLOPE << 16)
         return 0;
@@ -302,8 +307,8 @@ allocate_ward_state(const struct glint_scene *scene, struct glint_arena *arena)
     return placed;
 }
 
-/* Recomputes the lobe of metal I. The scale of its colours is split into a
- * factor of 1 .. 2 and a power of two. */
+/* Recomputes the reflection lobe of metal I. The scale of its colours is split
+ * into a factor of 1 .. 2 and a power of two. */
 static void prepare_metal_lobe(const struct glint_scene *s, uint32_t i)
 {
     struct glint_ward_state *w = s->wards;
@@ -338,8 +343,8 @@ static void prepare_all_lobes(const struct glint_scene *scene)
 
 /* ------------------------------------------------------------- environment */
 
-/* Sets the rotation of the environment and of its lights, which are the last of
- * the scene's lights that are on. */
+/* Sets the rotation of the environment and of its lights. These are the last
+ * ones among the scene's lights that are on. */
 static void rotate_environment(struct glint_scene *scene,
                                const int32_t turn_q30[2])
 {
@@ -430,8 +435,8 @@ static enum glint_status open_environments_and_lobes(struct glint_scene *scene)
 
 /* -------------------------------------------------------------------- lying */
 
-/* Returns the distance, at SURFACE, between the rays of neighbouring pixels,
- * steps q8, below 2^32. */
+/* Returns the distance between the rays of neighbouring pixels where they reach
+ * SURFACE, steps q8, below 2^32. */
 static int64_t compute_pixel_size_q8(const struct glint_scene *s,
                                      const struct glint_scene_ray *ray,
                                      const struct glint_met_surface *surface)
@@ -447,8 +452,8 @@ static int64_t compute_pixel_size_q8(const struct glint_scene *s,
     return t < UINT32_MAX ? t : (int64_t)UINT32_MAX;
 }
 
-/* Returns the difference between the normals of vertices A and B, scaled from
- * their distance to the distance PIXEL_Q8. */
+/* Returns the difference between the normals of vertices A and B, divided by
+ * their distance and multiplied by PIXEL_Q8. */
 static int32_t compute_normal_change(const int32_t a[3], const int32_t b[3],
                                      const int32_t na_q30[3],
                                      const int32_t nb_q30[3], int64_t pixel_q8)
@@ -459,16 +464,18 @@ static int32_t compute_normal_change(const int32_t a[3], const int32_t b[3],
     for (int k = 0; k < 3; k++)
         turn_q29[k] = na_q30[k] / 2 - nb_q30[k] / 2;
     return glint_divide_rounded(
-        (uint64_t)glint_square_root((uint64_t)v3_dot(turn_q29, turn_q29)) *
+        (uint64_t)glint_compute_square_root(
+            (uint64_t)v3_dot(turn_q29, turn_q29)) *
             (uint64_t)pixel_q8,
-        (uint64_t)glint_square_root((uint64_t)v3_dot(way, way)) << 7);
+        (uint64_t)glint_compute_square_root((uint64_t)v3_dot(way, way)) << 7);
 }
 
 /* Returns the max change of the normal, per pixel, along the three edges of the
  * triangle. */
-static int32_t max_normal_change_q30(const struct glint_scene *s,
-                                     const struct glint_met_surface *surface,
-                                     int64_t pixel)
+static int32_t
+compute_max_normal_change_q30(const struct glint_scene *s,
+                              const struct glint_met_surface *surface,
+                              int64_t pixel)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(s, surface->object);
     const struct glint_scene_triangle *t =
@@ -502,18 +509,19 @@ static int32_t compute_curvature_q30(const struct glint_scene *s,
     if (p->object->kind == GLINT_OBJECT_PLANE)
         return 0;
     if (p->object->kind == GLINT_OBJECT_MESH)
-        return max_normal_change_q30(s, surface,
-                                     compute_pixel_size_q8(s, ray, surface));
+        return compute_max_normal_change_q30(
+            s, surface, compute_pixel_size_q8(s, ray, surface));
     return glint_divide_rounded((uint64_t)compute_pixel_size_q8(s, ray, surface)
                                     << 22,
                                 (uint64_t)p->radius);
 }
 
-/* On a surface of cosine n.o neighbouring pixels are 1 / n.o as far apart along
- * its tilt. Rays turn by a pixel and half vectors by about half of that. Half
- * of the square makes a highlight, even if all else is sharp, a Gaussian of at
- * least half a pixel: samples a pixel apart then sum to the same light at any
- * position, to within +-1.5 %. */
+/* n.o is the cosine between normal and direction to the eye. On a tilted
+ * surface neighbouring pixels are 1 / n.o times as far apart along the tilt.
+ * The directions of rays change by one pixel, and half vectors by about half of
+ * that. Half of the squared change makes a highlight a Gaussian of at least
+ * half a pixel, even if everything else is sharp: samples one pixel apart then
+ * sum to the same light at any position, to within +-1.5 %. */
 static int32_t
 compute_normal_spread_q30(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,
@@ -533,11 +541,12 @@ compute_normal_spread_q30(const struct glint_scene *s,
 }
 
 /* Metal is brushed along circles around the y axis of balls and meshes. Where
- * the y axis is the normal, as everywhere on planes, it is brushed along the x
- * axis. */
-static void set_brushed_frame(const struct glint_scene *scene,
-                              const struct glint_met_surface *surface,
-                              struct glint_brushed *brushed)
+ * the normal is the y axis, as everywhere on planes, metal is brushed along the
+ * x axis. */
+static void
+set_tangent_frame_of_brushed_metal(const struct glint_scene *scene,
+                                   const struct glint_met_surface *surface,
+                                   struct glint_brushed *brushed)
 {
     const struct glint_placed *p = &scene->placed[surface->object];
     const int32_t *n_q30 = surface->normal_q30;
@@ -571,8 +580,8 @@ static void set_brushed_frame(const struct glint_scene *scene,
 /* ---------------------------------------------------------------- reflecting
  */
 
-static void add_weighted_light(int32_t *to_q15, int64_t light_q15,
-                               int32_t weight_q15)
+static void add_light_times_weight(int32_t *to_q15, int64_t light_q15,
+                                   int32_t weight_q15)
 {
     const int64_t sum_q15 =
         *to_q15 + ((light_q15 * weight_q15 + (1 << 14)) >> 15);
@@ -582,12 +591,13 @@ static void add_weighted_light(int32_t *to_q15, int64_t light_q15,
 
 /* Sets TO_Q14 to direction V, _q30, rotated to the environment's
  * coordinates. */
-static void rotate_to_environment_q14(const struct glint_ward_state *w,
-                                      const int32_t v_q30[3], int32_t to_q14[3])
+static void
+rotate_direction_to_environment_q14(const struct glint_ward_state *w,
+                                    const int32_t v_q30[3], int32_t to_q14[3])
 {
     int32_t to_q30[3];
 
-    rotate_to_environment(w, v_q30, to_q30);
+    rotate_direction_to_environment(w, v_q30, to_q30);
     for (int k = 0; k < 3; k++)
         to_q14[k] = (int32_t)q_shift(to_q30[k], 16);
 }
@@ -601,10 +611,10 @@ static void add_diffuse_reflection(const struct glint_ward_state *w,
     const int32_t diffuse_q15 = surface->material->diffuse_q15;
     int32_t normal_q14[3], light[3];
 
-    rotate_to_environment_q14(w, surface->normal_q30, normal_q14);
+    rotate_direction_to_environment_q14(w, surface->normal_q30, normal_q14);
     glint_environment_irradiance(&w->environment, normal_q14, light);
     for (int c = 0; c < 3; c++)
-        add_weighted_light(
+        add_light_times_weight(
             &rgb_q15[c],
             real_integer(real_times(real_of(light[c], 0), w->unit), 15,
                          GLINT_SCENE_MOST_LIGHT),
@@ -630,19 +640,20 @@ static void add_environment_reflection(const struct glint_scene *scene,
     if (!brushed)
         return;
     for (int k = 0; k < 3; k++) {
-        rotate_to_environment_q14(w, brushed->frame_q30[k], place.frame_q14[k]);
+        rotate_direction_to_environment_q14(w, brushed->frame_q30[k],
+                                            place.frame_q14[k]);
         place.out_q14[k] = (int32_t)q_shift(
             -v3_dot(brushed->frame_q30[k], ray->toward_q30), 46);
     }
     glint_ward_compute_light(&w->lobe[m->ward], &w->environment, &place, light);
     for (int c = 0; c < 3; c++)
-        add_weighted_light(&rgb_q15[c], light[c], weight_q15);
+        add_light_times_weight(&rgb_q15[c], light[c], weight_q15);
 }
 
 const struct glint_scene_wards glint_scene_wards = {
     allocate_ward_state,        open_environments_and_lobes,
     prepare_metal_lobe,         set_shown_environment,
     scale_environment,          rotate_environment,
-    compute_normal_spread_q30,  set_brushed_frame,
-    add_environment_reflection, add_highlight_light,
-    read_blurred_environment};
+    compute_normal_spread_q30,  set_tangent_frame_of_brushed_metal,
+    add_environment_reflection, add_highlight_of_light,
+    look_up_blurred_environment};

@@ -4,8 +4,8 @@
 
 #include "glint/scene/ward.h"
 
-/* Sets the light that a metal reflects at PLACE, as glint_ward_light(); also
- * sets the root of PLACE. */
+/* Sets RGB_Q15 to the light that a metal reflects at PLACE, like
+ * glint_ward_light(). Also sets PLACE's root, an intermediate value. */
 void glint_ward_compute_light(const struct glint_ward_lobe *lobe,
                               const struct glint_environment *environment,
                               struct glint_ward_place *place,

@@ -22,12 +22,12 @@ static int32_t scale_by_power_of_two(uint64_t x, int log2)
                                              : (int32_t)(x << log2);
 }
 
-/* Sets the root of PLACE to 1 / sqrt(n.o), n the normal, o the direction to the
- * eye. */
-static void set_inverse_root(struct glint_ward_place *place)
+/* Sets the root of PLACE to 1 / sqrt(n.o), where n is the normal and o the
+ * direction to the eye. */
+static void set_inverse_root_of_cosine(struct glint_ward_place *place)
 {
     const uint32_t root_q21 =
-        glint_square_root((uint64_t)(uint32_t)place->out_q14[2] << 28);
+        glint_compute_square_root((uint64_t)(uint32_t)place->out_q14[2] << 28);
     const int bits = bit_length(root_q21); /* 15 .. 22 */
 
     place->root_q14 =
@@ -48,7 +48,7 @@ void glint_ward_compute_light(const struct glint_ward_lobe *lobe,
         return;
     }
     if (lobe->norm == GLINT_WARD_1992)
-        set_inverse_root(place);
+        set_inverse_root_of_cosine(place);
     lobe->sum(lobe, &environment->texels, place, sum_q12);
     for (int k = 0; k < 3; k++) {
         /* The mean, below 2^45, times a colour of 2^15. */

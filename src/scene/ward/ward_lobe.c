@@ -40,14 +40,15 @@ static unsigned reverse_bits(unsigned k)
     return (k & 1) << 4 | (k & 2) << 2 | (k & 4) | (k & 8) >> 2 | k >> 4;
 }
 
-/* Sets SLOPE_Q16 to the slopes of N sampled half vectors for alphas of 1. */
+/* Sets SLOPE_Q16 to the slopes of N sampled half vectors for a lobe with alphas
+ * of 1. */
 static void compute_sample_slopes(int n,
                                   int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
         const int32_t log2_q16 =
             q_log2_q16(2 * (uint64_t)n) - q_log2_q16(2 * (uint64_t)k + 1);
-        const int32_t length_q16 = (int32_t)glint_square_root(
+        const int32_t length_q16 = (int32_t)glint_compute_square_root(
             (uint64_t)(uint32_t)log2_q16 * LN2_Q16); /* of a q32 */
         const unsigned turn = reverse_bits((unsigned)k);
 
@@ -59,7 +60,7 @@ static void compute_sample_slopes(int n,
 /* Returns the footprint f of each of N samples, q16: kappa / N, where kappa is
  * 1, 1.4, 2, 2 and 3 for 1, 4, 8, 16 and 32 samples, interpolated linearly
  * between. */
-static int32_t compute_footprint_q16(int n)
+static int32_t compute_footprint_of_sample_q16(int n)
 {
     static const int32_t at[5] = {1, 4, 8, 16, 32};
     static const int32_t kappa_q16[5] = {65536, 91750, 131072, 131072, 196608};
@@ -72,10 +73,10 @@ static int32_t compute_footprint_q16(int n)
            n;
 }
 
-/* Shifts and scales the slopes of N samples along AXIS to mean 0 and mean
- * square WANT, q32. */
-static void normalise_slopes(int n, int axis, uint32_t want_q32,
-                             int32_t slope_q16[GLINT_WARD_SAMPLES][2])
+/* Shifts and scales the slopes of N samples along AXIS, so that their mean is 0
+ * and their mean square is WANT, q32. */
+static void normalise_sample_slopes(int n, int axis, uint32_t want_q32,
+                                    int32_t slope_q16[GLINT_WARD_SAMPLES][2])
 {
     int64_t sum_q16 = 0;
     uint64_t square_q32 = 0;
@@ -89,10 +90,10 @@ static void normalise_slopes(int n, int axis, uint32_t want_q32,
             (uint64_t)((int64_t)slope_q16[k][axis] * slope_q16[k][axis]);
     }
     square_q32 /= (uint64_t)n;
-    /* With few samples all slopes may lie on the other axis. */
+    /* With few samples the slopes along one axis may all be 0. */
     by_q16 = square_q32 >> 24
-                 ? glint_square_root((uint64_t)want_q32 * (UINT64_C(1) << 32) /
-                                     square_q32)
+                 ? glint_compute_square_root((uint64_t)want_q32 *
+                                             (UINT64_C(1) << 32) / square_q32)
                  : 0;
     for (int k = 0; k < n; k++)
         slope_q16[k][axis] = q_mul(slope_q16[k][axis], (int32_t)by_q16, 16);
@@ -100,7 +101,8 @@ static void normalise_slopes(int n, int axis, uint32_t want_q32,
 
 /* Returns b, the variance by which a constant footprint F_Q16 blurs slopes,
  * clamped to 3/4 of the square of the smaller alpha. */
-static uint64_t compute_blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
+static uint64_t compute_variance_of_slope_blur_q48(const int32_t alpha_q24[2],
+                                                   int32_t f_q16)
 {
     const uint64_t smaller = (uint64_t)q_smaller(alpha_q24[0], alpha_q24[1]);
     const uint64_t max_q48 = smaller * smaller / 4 * 3;
@@ -110,9 +112,10 @@ static uint64_t compute_blur_q48(const int32_t alpha_q24[2], int32_t f_q16)
     return b_q48 < max_q48 ? b_q48 : max_q48;
 }
 
-/* Returns twice the variance of slopes along one axis, relative to alpha^2. */
-static int32_t slope_spread_q16(int32_t alpha_q24, uint64_t b_q48,
-                                int32_t f_q16)
+/* Returns twice the variance that sampled slopes must have along one axis,
+ * relative to alpha^2. */
+static int32_t compute_slope_variance_q16(int32_t alpha_q24, uint64_t b_q48,
+                                          int32_t f_q16)
 {
     const uint64_t square_q48 = (uint64_t)alpha_q24 * (uint64_t)alpha_q24;
     const int32_t matched_q16 =
@@ -125,8 +128,8 @@ static int32_t slope_spread_q16(int32_t alpha_q24, uint64_t b_q48,
 
 /* Sets the span of sample K, which selects its mip level, to X * 2^LOG2,
  * widened by BIAS_Q8 levels. X must be at least 1. */
-static void set_sample_span(struct glint_ward_lobe *lobe, int k, uint64_t x,
-                            int log2, int32_t bias_q8)
+static void set_span_of_sample(struct glint_ward_lobe *lobe, int k, uint64_t x,
+                               int log2, int32_t bias_q8)
 {
     const int32_t more_q16 = bias_q8 * 512;
     const int cut = bit_length(x) - 31;
@@ -157,25 +160,25 @@ static void set_half_vector(struct glint_ward_lobe *lobe, int k,
 }
 
 /* Sets the spans of all samples. A texel of level 0 has a solid angle of 4 pi /
- * side^2 and blurs light of that level by a variance of a quarter of it. */
-static void set_sample_spans(struct glint_ward_lobe *lobe, int n,
-                             const int32_t alpha_q24[2], uint64_t b_q48,
-                             const struct glint_ward_options *options,
-                             int side_log2)
+ * side^2, and level 0 blurs light by a variance of a quarter of that. */
+static void set_spans_of_all_samples(struct glint_ward_lobe *lobe, int n,
+                                     const int32_t alpha_q24[2], uint64_t b_q48,
+                                     const struct glint_ward_options *options,
+                                     int side_log2)
 {
     const uint64_t even_q32 =
         (uint64_t)alpha_q24[0] * (uint64_t)alpha_q24[1] >> 16;
 
     for (int k = 0; k < n; k++) {
         if (options->rule == GLINT_WARD_CONSTANT)
-            set_sample_span(lobe, k, (b_q48 >> 8) * TWO_OVER_PI_Q16,
-                            2 * side_log2 - 56, options->bias_q8);
+            set_span_of_sample(lobe, k, (b_q48 >> 8) * TWO_OVER_PI_Q16,
+                               2 * side_log2 - 56, options->bias_q8);
         else
-            set_sample_span(lobe, k,
-                            (uint64_t)q_divide((int64_t)(even_q32 << 8) *
-                                                   lobe->factor_q14[k],
-                                               2 * k + 1),
-                            2 * side_log2 + 1 - 54, options->bias_q8);
+            set_span_of_sample(lobe, k,
+                               (uint64_t)q_divide((int64_t)(even_q32 << 8) *
+                                                      lobe->factor_q14[k],
+                                                  2 * k + 1),
+                               2 * side_log2 + 1 - 54, options->bias_q8);
     }
 }
 
@@ -206,11 +209,11 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
 {
     const struct glint_environment_header *h = environment->header;
     const int n = options->samples;
-    const int32_t f_q16 = compute_footprint_q16(n);
+    const int32_t f_q16 = compute_footprint_of_sample_q16(n);
     int32_t alpha_q24[2] = {material->alpha_q24[0], material->alpha_q24[1]};
     int32_t slope_q16[GLINT_WARD_SAMPLES][2];
     const int held = glint_ward_hold(alpha_q24);
-    const uint64_t b_q48 = compute_blur_q48(alpha_q24, f_q16);
+    const uint64_t b_q48 = compute_variance_of_slope_blur_q48(alpha_q24, f_q16);
 
     *lobe =
         (struct glint_ward_lobe){.sum = glint_choose_ward_kernel(options->sets),
@@ -220,8 +223,10 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
                                  .share_q16 = ((1 << 16) + n / 2) / n};
     compute_sample_slopes(n, slope_q16);
     for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
-        normalise_slopes(
-            n, j, (uint32_t)slope_spread_q16(alpha_q24[j], b_q48, f_q16) << 15,
+        normalise_sample_slopes(
+            n, j,
+            (uint32_t)compute_slope_variance_q16(alpha_q24[j], b_q48, f_q16)
+                << 15,
             slope_q16);
     for (int k = 0; k < 3; k++)
         lobe->specular_q15[k] = material->specular_q15[k];
@@ -229,6 +234,7 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
         set_half_vector(lobe, k, slope_q16[k], alpha_q24);
     for (int k = n; k < GLINT_WARD_SAMPLES; k++)
         lobe->half_q14[2][k] = -(1 << 14);
-    set_sample_spans(lobe, n, alpha_q24, b_q48, options, (int)h->side_log2);
+    set_spans_of_all_samples(lobe, n, alpha_q24, b_q48, options,
+                             (int)h->side_log2);
     return held;
 }

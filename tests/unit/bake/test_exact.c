@@ -97,7 +97,8 @@ static bool load_golden_picture(const char *name,
 
     snprintf(path, sizeof path, "%s/golden/pictures/%s.pfm",
              shared ? shared : "../shared", name);
-    ok = glint_input_slurp(&data, &bytes, path, 1 << 26, &error) == GLINT_OK &&
+    ok = glint_input_read_whole_file(&data, &bytes, path, 1 << 26, &error) ==
+             GLINT_OK &&
          glint_pfm_read(image, data, bytes, path, &error) == GLINT_OK;
     free(data);
     return ok;

@@ -57,7 +57,7 @@ static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
 
-    glint_sums_read_code_row(s, 0, y, glint_choose_kernels(0), light_q16);
+    glint_sums_read_code_row(s, 0, y, glint_choose_pixel_kernels(0), light_q16);
     return light_q16[x];
 }
 
@@ -94,7 +94,8 @@ TEST(slanted_edge_lights_partial_pixels)
     uint16_t light_q16[STRIDE];
 
     add_red_edge(&s, 4 * 256, 0, 2 * 256, 256, 1 << 19);
-    glint_sums_read_code_row(&s, 0, 0, glint_choose_kernels(0), light_q16);
+    glint_sums_read_code_row(&s, 0, 0, glint_choose_pixel_kernels(0),
+                             light_q16);
     assert_int_equal(light_q16[1], 0);
     assert_int_equal(light_q16[2], 32768 / 4);
     assert_int_equal(light_q16[3], 32768 * 3 / 4);
@@ -186,7 +187,7 @@ static void draw_eight_edges(int fine, int64_t light_q20, int bright,
     glint_edges_add_to_sums(&s, edge, &red, ref, bright ? 10 : 8);
     assert_true(!bright || !s.in_narrow);
     for (int y = 0; y < SIDE; y++)
-        glint_sums_read_code_row(&s, 0, y, glint_choose_kernels(0),
+        glint_sums_read_code_row(&s, 0, y, glint_choose_pixel_kernels(0),
                                  light_q16[y]);
 }
 

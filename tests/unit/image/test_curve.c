@@ -69,7 +69,8 @@ TEST(decoding_is_monotone)
 
         glint_curve_init(&curve, transfers[t]);
         for (int32_t v = 0; v < CODE_WHITE_Q7; v++)
-            assert_true(curve_decode(&curve, v) < curve_decode(&curve, v + 1));
+            assert_true(curve_decode_to_light(&curve, v) <
+                        curve_decode_to_light(&curve, v + 1));
     }
 }
 
@@ -95,7 +96,7 @@ static struct errors measure_curve_errors(enum glint_tone transfer)
                 lit[i] = (uint8_t)code;
             }
             glint_add_code_c(lit, light, GLINT_LANES,
-                             glint_get_tone16(transfer), round);
+                             glint_get_tone_constants(transfer), round);
             for (int i = 0; i < GLINT_LANES; i++) {
                 const double sum =
                     decode_value(transfer, code / 255.0) + light[i] / 65535.0;
@@ -132,7 +133,7 @@ static void assert_ycc_gives_rgb(const struct glint_ycc *ycc, int y, int cb,
 {
     int32_t rgb_q7[3];
 
-    ycc_to_rgb(ycc, y, cb, cr, rgb_q7);
+    convert_ycc_to_rgb(ycc, y, cb, cr, rgb_q7);
     assert_true(abs(rgb_q7[0] - r * 128) <= within);
     assert_true(abs(rgb_q7[1] - g * 128) <= within);
     assert_true(abs(rgb_q7[2] - b * 128) <= within);

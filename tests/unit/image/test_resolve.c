@@ -567,8 +567,8 @@ static void copy_image_codes(const struct glint_image *to,
     for (int i = 0; i < 3; i++)
         for (int y = 0; y < to->height; y++)
             for (int x = 0; x < to->width; x++)
-                *glint_layout_at(lt, to, i, x, y) =
-                    *glint_layout_at(lf, from, i, x, y);
+                *glint_layout_get_sample_address(lt, to, i, x, y) =
+                    *glint_layout_get_sample_address(lf, from, i, x, y);
 }
 
 TEST(layouts_give_the_same_codes)
@@ -596,9 +596,9 @@ TEST(layouts_give_the_same_codes)
                 for (int y = 0; y < back.height; y++)
                     for (int x = 0; x < back.width; x++)
                         assert_int_equal(
-                            *glint_layout_at(glint_get_layout(back.format),
-                                             &back, i, x, y),
-                            *glint_layout_at(
+                            *glint_layout_get_sample_address(
+                                glint_get_layout(back.format), &back, i, x, y),
+                            *glint_layout_get_sample_address(
                                 glint_get_layout(fixture.image.format),
                                 &fixture.image, i, x, y));
             if (twin.format == GLINT_XRGB8888 || twin.format == GLINT_XBGR8888)
@@ -654,8 +654,9 @@ static void make_blocks_uniform(void)
     for (int i = 0; i < n_channels; i++)
         for (int y = 0; y < image->height; y++)
             for (int x = 0; x < image->width; x++)
-                *glint_layout_at(l, image, i, x, y) =
-                    *glint_layout_at(l, image, i, x & ~1, y & ~1);
+                *glint_layout_get_sample_address(l, image, i, x, y) =
+                    *glint_layout_get_sample_address(l, image, i, x & ~1,
+                                                     y & ~1);
 }
 
 static void add_light_of_quads(const struct glint_image *image, int dither,
@@ -673,9 +674,9 @@ static void add_light_of_quads(const struct glint_image *image, int dither,
             for (int i = 0; i < 3; i++)
                 light.rgb_q16[i][0][x / 2] = convert_light_to_q16(
                     fixture.light_q20[i][y * image->width + x]);
-        glint_resolve_quads(&resolve, image, 0, y, image->width,
-                            y + 2 < image->height ? 2 : image->height - y, rgb,
-                            &rows);
+        glint_resolve_add_to_quads(
+            &resolve, image, 0, y, image->width,
+            y + 2 < image->height ? 2 : image->height - y, rgb, &rows);
     }
 }
 
@@ -809,7 +810,8 @@ TEST(long_quad_spans_equal_short_spans)
             glint_resolve_init(&resolve, &image, 0,
                                k > 2 ? glint_system_sets() : 0u);
             glint_image_place(&image, got);
-            glint_resolve_quads(&resolve, &image, 0, 0, n, 2, whole, &rows);
+            glint_resolve_add_to_quads(&resolve, &image, 0, 0, n, 2, whole,
+                                       &rows);
             glint_image_place(&image, want);
             for (int x = 0; x < n; x += 8) {
                 const uint16_t *const rgb[3] = {
@@ -818,8 +820,9 @@ TEST(long_quad_spans_equal_short_spans)
                 for (int i = 0; i < 3 * 4; i++)
                     part.rgb_q16[i / 4][0][i % 4] =
                         light.rgb_q16[i / 4][0][x / 2 + i % 4];
-                glint_resolve_quads(&resolve, &image, x, 0,
-                                    n - x < 8 ? n - x : 8, 2, rgb, &rows);
+                glint_resolve_add_to_quads(&resolve, &image, x, 0,
+                                           n - x < 8 ? n - x : 8, 2, rgb,
+                                           &rows);
             }
             assert_memory_equal(got, want, bytes);
         }

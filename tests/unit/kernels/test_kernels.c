@@ -388,7 +388,7 @@ static void check_code_kernel(const struct glint_kernels *k, const char *name)
         for (int code = 0; code < 256; code++)
             for (int first = 0; first < 65536; first += N) {
                 const struct glint_tone16 *tone =
-                    glint_get_tone16((enum glint_tone)transfer);
+                    glint_get_tone_constants((enum glint_tone)transfer);
 
                 for (int i = 0; i < N; i++) {
                     want[i] = got[i] = (uint8_t)code;
@@ -399,9 +399,10 @@ static void check_code_kernel(const struct glint_kernels *k, const char *name)
                 EXPECT_SAME(got, want, N);
             }
     BENCH("add_code", name,
-          plain->add_code(want, light, N, glint_get_tone16(GLINT_TONE_SRGB),
-                          round),
-          k->add_code(got, light, N, glint_get_tone16(GLINT_TONE_SRGB), round));
+          plain->add_code(want, light, N,
+                          glint_get_tone_constants(GLINT_TONE_SRGB), round),
+          k->add_code(got, light, N, glint_get_tone_constants(GLINT_TONE_SRGB),
+                      round));
 }
 
 static void check_sum_kernel(const struct glint_kernels *k, const char *name)
@@ -538,14 +539,14 @@ static void check_convolution_kernel(glint_convolve_fn *convolve,
         const ptrdiff_t stride = 1 + turn % 2;
 
         for (int i = 0; i < VALUES; i++)
-            value[i] = glint_pack_pair(random_signed_below(32768),
-                                       random_signed_below(32768));
+            value[i] = glint_pack_int16_pair(random_signed_below(32768),
+                                             random_signed_below(32768));
         for (int k = 0; k < n_taps; k++)
-            tap[k] =
-                glint_pack_pair(random_signed_below(65536 / (2 * n_taps) < 32768
-                                                        ? 65536 / (2 * n_taps)
-                                                        : 32768),
-                                random_signed_below(1024));
+            tap[k] = glint_pack_int16_pair(
+                random_signed_below(65536 / (2 * n_taps) < 32768
+                                        ? 65536 / (2 * n_taps)
+                                        : 32768),
+                random_signed_below(1024));
         for (int i = 0; i < N; i++)
             got[i] = want[i] = random_signed_below(1 << 20);
         glint_convolve_c(want, value, stride, tap, n_taps, n);
@@ -559,7 +560,8 @@ static void check_convolution_kernel(glint_convolve_fn *convolve,
 static void test_kernels_are_identical(void)
 {
     for (int v = 0; v < N_VARIANTS; v++) {
-        const struct glint_kernels *k = glint_choose_kernels(variants[v].set);
+        const struct glint_kernels *k =
+            glint_choose_pixel_kernels(variants[v].set);
 
         if (!(variants[v].set & glint_system_sets()))
             continue;
@@ -567,7 +569,7 @@ static void test_kernels_are_identical(void)
                             variants[v].name);
         check_turn_kernel(glint_choose_turn_kernel(variants[v].set),
                           variants[v].name);
-        check_convolution_kernel(glint_convolve_of(variants[v].set),
+        check_convolution_kernel(glint_choose_convolve_kernel(variants[v].set),
                                  variants[v].name);
         check_luma_kernel(k, variants[v].name);
         check_pair_kernel(k, variants[v].name);
@@ -595,9 +597,9 @@ static void test_code_kernel_in_c(void)
                     (uint16_t)(light < 65535 ? light : 65535)};
 
                 memset(lit, code, sizeof lit);
-                glint_add_code_c(lit, add, GLINT_LANES,
-                                 glint_get_tone16((enum glint_tone)transfer),
-                                 round);
+                glint_add_code_c(
+                    lit, add, GLINT_LANES,
+                    glint_get_tone_constants((enum glint_tone)transfer), round);
                 EXPECT(lit[0] >= before);
                 EXPECT(lit[1] == code);
                 before = lit[0];

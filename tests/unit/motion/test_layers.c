@@ -46,7 +46,7 @@ static double compute_shell_coverage(const struct glint_scene *s,
     int32_t c[3];
     int hits = 0;
 
-    glint_view_to_camera(&s->view, l->ball->at, c);
+    glint_view_convert_to_camera(&s->view, l->ball->at, c);
     for (int k = 0; k < SAMPLES; k++)
         hits +=
             compute_cosine_to_normal(

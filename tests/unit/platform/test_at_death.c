@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests glint_at_death(): registered functions run at every end of a process:
- * signal, fault, abort() and exit().
+ * Tests glint_at_death_register(): registered functions run at every end of a
+ * process: signal, fault, abort() and exit().
  */
 #include <stdint.h>
 
@@ -54,9 +54,9 @@ static void expect_end_of_child(void (*die)(int), int number, int code,
             signal(i, SIG_DFL); /* replaces cmocka's handler */
         close(child_pipe[0]);
         setrlimit(RLIMIT_CORE, &no_core);
-        if (!glint_at_death(write_1_at_exit) ||
-            !glint_at_death(write_2_at_exit) ||
-            !glint_at_death(write_1_at_exit))
+        if (!glint_at_death_register(write_1_at_exit) ||
+            !glint_at_death_register(write_2_at_exit) ||
+            !glint_at_death_register(write_1_at_exit))
             _exit(97);
         die(number);
         _exit(0);
@@ -101,14 +101,14 @@ static int report_library_idle(void)
 
 static void end_by_abort_in_library(int number)
 {
-    glint_at_death_in_library(number ? report_library_busy
-                                     : report_library_idle);
+    glint_at_death_set_library_report(number ? report_library_busy
+                                             : report_library_idle);
     abort();
 }
 
 static void end_by_exit_in_library(int number)
 {
-    glint_at_death_in_library(report_library_busy);
+    glint_at_death_set_library_report(report_library_busy);
     exit(number);
 }
 

@@ -10,14 +10,14 @@
 
 TEST(endings_match_in_any_case)
 {
-    assert_true(glint_ends_in("clip.y4m", ".y4m"));
-    assert_true(glint_ends_in("in.d/CLIP.Y4M", ".y4m"));
-    assert_true(glint_y4m_is_name("CLIP.Y4m"));
-    assert_false(glint_ends_in("clip.y4m2", ".y4m"));
-    assert_false(glint_ends_in("clipy4m", ".y4m"));
-    assert_false(glint_ends_in("4m", ".y4m"));
-    assert_false(glint_ends_in(".y4m", ".y4m"));
-    assert_false(glint_ends_in("", ".y4m"));
+    assert_true(glint_has_extension("clip.y4m", ".y4m"));
+    assert_true(glint_has_extension("in.d/CLIP.Y4M", ".y4m"));
+    assert_true(glint_y4m_has_extension("CLIP.Y4m"));
+    assert_false(glint_has_extension("clip.y4m2", ".y4m"));
+    assert_false(glint_has_extension("clipy4m", ".y4m"));
+    assert_false(glint_has_extension("4m", ".y4m"));
+    assert_false(glint_has_extension(".y4m", ".y4m"));
+    assert_false(glint_has_extension("", ".y4m"));
 }
 
 TEST(ending_is_that_of_the_last_path_component)

@@ -109,7 +109,7 @@ static bool convert_v4l2_colour(struct glint_image *image,
     const struct glint_v4l2_colour colour = {space, enc, quantization, xfer};
 
     *image = (struct glint_image){.format = format};
-    return glint_v4l2_colour_read(&colour, image);
+    return glint_v4l2_colour_to_image(&colour, image);
 }
 
 TEST(undeclared_colour_has_defaults)
@@ -179,8 +179,8 @@ TEST(colour_declarations_are_inverse)
         struct glint_image back = {.format = GLINT_YUYV};
         struct glint_v4l2_colour colour;
 
-        glint_v4l2_colour_write(&colour, &image);
-        assert_true(glint_v4l2_colour_read(&colour, &back));
+        glint_v4l2_colour_from_image(&colour, &image);
+        assert_true(glint_v4l2_colour_to_image(&colour, &back));
         assert_int_equal(back.range, image.range);
         assert_int_equal(back.matrix, image.matrix);
         assert_int_equal(back.transfer, image.transfer);

@@ -57,7 +57,7 @@ static void expect_file_text(const char *text)
     uint8_t *data;
     size_t bytes;
 
-    assert_ok(glint_input_slurp(&data, &bytes, path, 1000, &error));
+    assert_ok(glint_input_read_whole_file(&data, &bytes, path, 1000, &error));
     assert_int_equal(bytes, strlen(text));
     assert_memory_equal(data, text, bytes);
     free(data);
@@ -299,7 +299,8 @@ TEST(writes_of_any_size_keep_their_order)
         assert_ok(glint_output_write(&out, data, sizes[i], &error));
     }
     assert_ok(glint_output_commit(&out, &error));
-    assert_ok(glint_input_slurp(&read_back, &bytes, path, 1 << 20, &error));
+    assert_ok(
+        glint_input_read_whole_file(&read_back, &bytes, path, 1 << 20, &error));
     assert_int_equal(bytes, 396620);
     for (size_t i = 0; i < 8; i++)
         for (size_t j = 0; j < sizes[i]; j++)
@@ -459,17 +460,18 @@ TEST(checks_paths_before_writing)
 
     snprintf(text, sizeof text, "%s: is a folder; name a file in it",
              scratch_dir);
-    assert_int_equal(glint_output_check(scratch_dir, &error), GLINT_E_OUTPUT);
+    assert_int_equal(glint_output_check_path(scratch_dir, &error),
+                     GLINT_E_OUTPUT);
     assert_string_equal(error.text, text);
-    assert_int_equal(glint_output_check("/nowhere/x.ppm", &error),
+    assert_int_equal(glint_output_check_path("/nowhere/x.ppm", &error),
                      GLINT_E_OUTPUT);
     assert_string_equal(error.text,
                         "/nowhere/x.ppm: cannot create a temporary file in its "
                         "folder '/nowhere': No such file or directory");
-    assert_ok(glint_output_check("-", &error));
-    assert_ok(glint_output_check("/dev/null", &error));
+    assert_ok(glint_output_check_path("-", &error));
+    assert_ok(glint_output_check_path("/dev/null", &error));
     snprintf(name, sizeof name, "%s/x.ppm", scratch_dir);
-    assert_ok(glint_output_check(name, &error));
+    assert_ok(glint_output_check_path(name, &error));
     assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 

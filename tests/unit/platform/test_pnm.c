@@ -270,7 +270,8 @@ static void expect_output_bytes(struct glint_output *out, const char *want,
     size_t bytes;
 
     assert_ok(glint_output_commit(out, &error));
-    assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 10000, &error));
+    assert_ok(glint_input_read_whole_file(&data, &bytes, scratch_file, 10000,
+                                          &error));
     assert_int_equal(bytes, want_bytes);
     assert_memory_equal(data, want, bytes);
     free(data);
@@ -327,7 +328,8 @@ TEST(pfm_round_trip)
     open_output_file(&out);
     assert_ok(glint_pfm_write(&out, &floats, &error));
     assert_ok(glint_output_commit(&out, &error));
-    assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 100000, &error));
+    assert_ok(glint_input_read_whole_file(&data, &bytes, scratch_file, 100000,
+                                          &error));
     assert_ok(glint_pfm_read(&again, data, bytes, scratch_file, &error));
     assert_memory_equal(again.rgb, values, sizeof values);
     free(again.rgb);

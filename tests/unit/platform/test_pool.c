@@ -227,8 +227,8 @@ static int use_stack_in_large_thread(void)
 {
     int two = 2;
 
-    return glint_process_run_on_stack(GLINT_WORKER_STACK_BYTES, use_stack,
-                                      &two) != 3;
+    return glint_process_run_with_stack(GLINT_WORKER_STACK_BYTES, use_stack,
+                                        &two) != 3;
 }
 
 TEST(threads_have_enough_stack)
@@ -237,7 +237,7 @@ TEST(threads_have_enough_stack)
     run_with_small_stack(use_stack_in_large_thread);
     threads_left = 0; /* If no thread can start, dig() is called directly. */
     assert_int_equal(
-        glint_process_run_on_stack(SIZE_MAX / 4, use_stack, &(int){4}), 5);
+        glint_process_run_with_stack(SIZE_MAX / 4, use_stack, &(int){4}), 5);
     threads_left = -1;
 }
 
@@ -281,7 +281,8 @@ TEST(fault_in_a_helper_runs_functions)
         signal(SIGSEGV, SIG_DFL); /* replaces cmocka's handler */
         signal(SIGBUS, SIG_DFL);
         setrlimit(RLIMIT_CORE, &no_core);
-        if (!glint_at_death(write_child_pipe) || glint_pool_create(&workers, 2))
+        if (!glint_at_death_register(write_child_pipe) ||
+            glint_pool_create(&workers, 2))
             _exit(97);
         workers->run(workers, 2, fault_in_helper_thread, nowhere);
         _exit(96);

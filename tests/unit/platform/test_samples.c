@@ -18,7 +18,7 @@ static struct glint_samples describe_samples(int width, int height,
                                              enum glint_sample sample,
                                              bool has_alpha, void *mem)
 {
-    const size_t bytes = glint_sample_bytes(sample);
+    const size_t bytes = glint_sample_get_bytes(sample);
     struct glint_samples s = {.width = width,
                               .height = height,
                               .window_width = width,
@@ -33,10 +33,10 @@ static struct glint_samples describe_samples(int width, int height,
 
     for (size_t c = 0; c < 3; c++)
         s.colour[c] = (struct glint_sample_place){sample, c * bytes};
-    glint_colours_set(&s.colours,
-                      glint_sample_is_float(sample) ? GLINT_TONE_IS_LINEAR
-                                                    : GLINT_TONE_IS_SRGB,
-                      0, "");
+    glint_colours_set_bt709(&s.colours,
+                            glint_sample_is_float(sample) ? GLINT_TONE_IS_LINEAR
+                                                          : GLINT_TONE_IS_SRGB,
+                            0, "");
     return s;
 }
 
@@ -126,22 +126,22 @@ TEST(icc_profile_matches_hand_computation)
     uint8_t p[400];
 
     write_icc_profile(p, 563);
-    assert_true(glint_icc_read(&c, p, sizeof p));
+    assert_true(glint_icc_read_colours(&c, p, sizeof p));
     assert_false(c.is_srgb);
     assert_true(fabs(glint_tone_curve_decode(&c.transfer[1], 0.5) - 0.21776) <
                 1e-4);
     assert_true(fabs(c.to_bt709[0][1] + 0.3983) < 2e-3);
     assert_true(fabs(c.to_bt709[0][0] + c.to_bt709[0][1] + c.to_bt709[0][2] -
                      1) < 2e-3);
-    assert_false(glint_icc_read(&c, p, 100));
+    assert_false(glint_icc_read_colours(&c, p, 100));
     memcpy(p + 16, "CMYK", 4);
-    assert_false(glint_icc_read(&c, p, sizeof p));
+    assert_false(glint_icc_read_colours(&c, p, sizeof p));
     for (size_t n = 0; n < 400; n++) { /* truncated at any byte */
         write_icc_profile(p, 563);
         uint8_t *const exact = malloc(n + 1);
 
         memcpy(exact, p, n);
-        (void)glint_icc_read(&c, exact, n);
+        (void)glint_icc_read_colours(&c, exact, n);
         free(exact);
     }
 }

@@ -39,7 +39,7 @@ TEST(replaces_invalid_utf8)
         char text[64];
 
         snprintf(text, sizeof text, "%s", cases[k].text);
-        glint_utf8_clean(text);
+        glint_utf8_replace_unprintable(text);
         assert_string_equal(text, cases[k].clean);
     }
 }

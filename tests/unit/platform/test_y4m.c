@@ -355,7 +355,8 @@ static void expect_file_bytes(const char *want, size_t want_bytes)
     uint8_t *data;
     size_t bytes;
 
-    assert_ok(glint_input_slurp(&data, &bytes, scratch_file, 1 << 24, &error));
+    assert_ok(glint_input_read_whole_file(&data, &bytes, scratch_file, 1 << 24,
+                                          &error));
     assert_int_equal(bytes, want_bytes);
     assert_memory_equal(data, want, bytes);
     free(data);
@@ -557,7 +558,7 @@ TEST(transfer_tables_match_the_standards)
         for (int i = 0; i <= GLINT_Y4M_STEPS; i++) {
             const double want =
                 decode_transfer_code((enum glint_transfer_curve)t, i / 4096.0);
-            const int32_t light_q24 = glint_transfer_light_q24(
+            const int32_t light_q24 = glint_transfer_decode_q24(
                 (enum glint_transfer_curve)t, i, GLINT_Y4M_STEPS);
 
             assert_true(fabs(ldexp(light_q24, -24) - want) <=

@@ -83,6 +83,6 @@ TEST(halves_round_to_nearest)
 {
     for (int s = 1; s < 24; s++)
         for (int64_t n = -70000; n < 70000; n++)
-            assert_true(y4m_halve(16 * n, s) ==
+            assert_true(y4m_divide_by_power_of_two(16 * n, s) ==
                         divide_rounded(16 * n, INT64_C(1) << s));
 }

@@ -50,7 +50,7 @@ static int intersect_and_shade_ray(const struct glint_scene *s,
     struct glint_met met;
 
     if (!glint_scene_find_nearest_hit(s, ray, GLINT_NOTHING, 0, &met) ||
-        !glint_scene_set_surface(s, ray, &met, &surface))
+        !glint_scene_find_surface_at_hit(s, ray, &met, &surface))
         return 0;
     glint_scene_shade_surface(s, ray, &surface, to);
     return 1;
@@ -150,7 +150,7 @@ TEST(projection_inverts_pixel_rays)
         assert_true(glint_view_init(&view, &file.header.camera, 256, 256, 0));
         glint_view_set_ray(&view, x_q8, y_q8, &ray, seen_q30);
         assert_true(glint_ray_point_at_distance(&ray, (1 << 26), place));
-        glint_view_to_camera(&view, place, seen);
+        glint_view_convert_to_camera(&view, place, seen);
         c = glint_view_project_vertex(&view, seen);
         assert_int_equal(c.w, 1);
         /* A step is 2^-26 of the distance. */
@@ -616,7 +616,7 @@ TEST(a13_texture_coordinates)
             }
         ray = make_ray_from_doubles(0, 0, 0, place[0], place[1], place[2]);
         assert_true(glint_scene_ray_hits_id(s, &ray, ray.toward_q30, 0, &met) &&
-                    glint_scene_set_surface(s, &ray, &met, &surface));
+                    glint_scene_find_surface_at_hit(s, &ray, &met, &surface));
         /* half a texel; 1/256 texel is 128 in Q15 */
         for (int k = 0; k < 2; k++)
             assert_true(fabs(surface.uv_q16[k] - uv[k]) < (i < 3 ? 8 : 16));

@@ -391,7 +391,7 @@ enum glint_status keyboard_open(struct keyboard *k, int fd)
     if (tcgetattr(fd, &before) != 0)
         return GLINT_E_IO;
     k->fd = fd;
-    glint_at_death(restore_terminal);
+    glint_at_death_register(restore_terminal);
     terminal = fd;
     raw = before;
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);

@@ -92,7 +92,7 @@ enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
     o->white = 255;
     if (!o->file)
         return GLINT_OK;
-    if (glint_y4m_is_name(o->file))
+    if (glint_y4m_has_extension(o->file))
         return open_mask_video(o, error);
     o->is_numbered = numbered_is_pattern(o->file);
     return o->is_numbered ? load_numbered_mask(o, 0, error)

@@ -68,9 +68,9 @@ static void draw_number_label(struct labels *l, int number, int x, int y)
     for (int i = 0; i < 4; i++)
         l->box[l->n][i] = box[i];
     l->n++;
-    paint_colour(p, 0, 0, 0);
-    paint_fill(p, box[0], box[1], box[2], box[3]);
-    paint_colour(p, 255, 224, 96);
+    paint_set_colour(p, 0, 0, 0);
+    paint_fill_rectangle(p, box[0], box[1], box[2], box[3]);
+    paint_set_colour(p, 255, 224, 96);
     paint_text(p, x + 2 * p->line, y + 2 * p->line, text);
 }
 

@@ -64,7 +64,7 @@ void sheet_draw_caption(const struct sheet *s, int k, const char *text)
 
     below.plane[0] += s->height * below.stride_bytes[0];
     below.height = caption_height(s);
-    paint_colour(&p, 224, 224, 224);
+    paint_set_colour(&p, 224, 224, 224);
     text = skip_caption_blanks(text);
     for (int i = 0; i < s->rows && *text; i++) {
         const size_t n = caption_row_length(s->width, text);

@@ -36,7 +36,7 @@ static void set_ghost_palette(struct paint *p, int k)
 {
     const uint8_t *c = palette[k % PALETTE];
 
-    paint_colour(p, c[0], c[1], c[2]);
+    paint_set_colour(p, c[0], c[1], c[2]);
 }
 
 /* ------------------------------------------------------------------- tiles */
@@ -156,8 +156,8 @@ static void draw_ghost_label(struct marking *m, int k, int number)
                              9 * p.line, &l))
         return;
     m->label[m->n_labels++] = l;
-    paint_colour(&p, 0, 0, 0);
-    paint_fill(&p, l.x0, l.y0, l.x1, l.y1);
+    paint_set_colour(&p, 0, 0, 0);
+    paint_fill_rectangle(&p, l.x0, l.y0, l.x1, l.y1);
     set_ghost_palette(&p, k);
     paint_text(&p, l.x0 + 2 * p.line, l.y0 + 2 * p.line, text);
 }
@@ -171,8 +171,9 @@ static void draw_ghost_outline(const struct marking *m, int k)
     for (int y = 0; y < m->height; y++)
         for (int x = 0; x < m->width; x++)
             if (is_rim_pixel(m, x, y))
-                paint_fill(&p, x, y, x + wide,
-                           y + wide < m->height ? y + wide : m->height);
+                paint_fill_rectangle(&p, x, y, x + wide,
+                                     y + wide < m->height ? y + wide
+                                                          : m->height);
 }
 
 /* ------------------------------------------------------------------ legend */
@@ -209,12 +210,12 @@ static void draw_legend_title(const struct marking *m,
     char text[160];
     const int y = m->height + 3 * p.line;
 
-    paint_colour(&p, 64, 76, 120);
-    paint_fill(&p, 4 * p.line, y, 9 * p.line, y + 5 * p.line);
+    paint_set_colour(&p, 64, 76, 120);
+    paint_fill_rectangle(&p, 4 * p.line, y, 9 * p.line, y + 5 * p.line);
     snprintf(text, sizeof text, "%d of %d tiles  %d of %d ghosts  %s",
              m->explain->all.tiles, m->explain->n_tiles,
              count_marked_ghosts(m->explain, t), m->explain->n_ghosts, t->lens);
-    paint_colour(&p, 208, 208, 208);
+    paint_set_colour(&p, 208, 208, 208);
     paint_text(&p, 12 * p.line, y, text);
 }
 
@@ -230,7 +231,7 @@ static void draw_legend_entry(const struct marking *m, int k, int ghost)
     char text[64];
 
     set_ghost_palette(&p, k);
-    paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
+    paint_fill_rectangle(&p, x, y, x + 5 * p.line, y + 5 * p.line);
     snprintf(text, sizeof text, "%d", ghost);
     paint_text(&p, x + 8 * p.line, y, text);
     snprintf(text, sizeof text, "light %.1f%%  work %.1f%%", 100 * part->share,

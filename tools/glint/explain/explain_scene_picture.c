@@ -135,10 +135,10 @@ static void draw_object_numbers(const struct heat *h)
         find_nearest_object_pixel(h, i, sum, &x0, &y0);
         x0 -= wide / 2;
         y0 -= 2 * p.line;
-        paint_colour(&p, 0, 0, 0);
-        paint_fill(&p, x0 - 2 * p.line, y0 - 2 * p.line, x0 + wide + 2 * p.line,
-                   y0 + 7 * p.line);
-        paint_colour(&p, 255, 255, 255);
+        paint_set_colour(&p, 0, 0, 0);
+        paint_fill_rectangle(&p, x0 - 2 * p.line, y0 - 2 * p.line,
+                             x0 + wide + 2 * p.line, y0 + 7 * p.line);
+        paint_set_colour(&p, 255, 255, 255);
         paint_text(&p, x0, y0, text);
     }
 }
@@ -170,9 +170,9 @@ static void draw_legend_entry(const struct heat *h, int i)
     uint8_t rgb[3];
 
     compute_heat_colour(h, i, rgb);
-    paint_colour(&p, rgb[0], rgb[1], rgb[2]);
-    paint_fill(&p, x, y, x + 5 * p.line, y + 5 * p.line);
-    paint_colour(&p, 208, 208, 208);
+    paint_set_colour(&p, rgb[0], rgb[1], rgb[2]);
+    paint_fill_rectangle(&p, x, y, x + 5 * p.line, y + 5 * p.line);
+    paint_set_colour(&p, 208, 208, 208);
     snprintf(text, sizeof text, "%d %.16s  %.1f steps a px", i, object->name,
              compute_heat_steps(h, i));
     paint_text(&p, x + 8 * p.line, y, text);

@@ -230,7 +230,7 @@ static enum glint_status start_program(struct child *child,
     int data[2], failed[2], number;
     const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
 
-    glint_at_death(kill_all_children);
+    glint_at_death_register(kill_all_children);
     if (null < 0 || !open_child_pipes(data, failed)) {
         number = errno;
         if (null >= 0)

@@ -101,7 +101,7 @@ static uint64_t begin_timed_frame(struct live_timed *timed,
 
     *frame = (struct glint_source_frame){.is_drawable = true};
     if (n > 0)
-        frame->time_us = glint_now_us();
+        frame->time_us = glint_get_time_us();
     return n;
 }
 
@@ -221,7 +221,7 @@ static void draw_test_frame(struct live_timed *s, int64_t n)
     const double angle = 6.283185307179586 * turn;
 
     if (s->is_black) {
-        paint_black(i);
+        paint_set_image_black(i);
         return;
     }
     draw_frame_background(s, n);
@@ -394,7 +394,7 @@ static bool is_test_device(const char *name)
 
 bool live_input_is_camera(const char *name)
 {
-    return !is_test_device(name) && !glint_y4m_is_name(name) &&
+    return !is_test_device(name) && !glint_y4m_has_extension(name) &&
            strcmp(name, "-") != 0;
 }
 

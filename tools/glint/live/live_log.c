@@ -301,7 +301,7 @@ void live_log_warn_memory(struct live_log *log,
 
 static void print_statistics(const struct live_log *log, bool total)
 {
-    const int64_t now_us = glint_now_us();
+    const int64_t now_us = glint_get_time_us();
     char text[LIVE_STATS_TEXT];
 
     if (log->report == LIVE_REPORT_JSON) {
@@ -318,7 +318,7 @@ static void print_statistics(const struct live_log *log, bool total)
 
 void live_log_print_second(struct live_log *log, bool is_asked)
 {
-    const int64_t now_us = glint_now_us();
+    const int64_t now_us = glint_get_time_us();
 
     if (!live_stats_is_second_over(&log->stats, now_us) && !is_asked)
         return;

@@ -96,14 +96,14 @@ static int open_live_output(struct live *l, const struct glint_image *image)
 
     if (l->output.sink)
         return EXIT_OK;
-    if (glint_now_us() < l->retry_us)
+    if (glint_get_time_us() < l->retry_us)
         return EXIT_OK;
     status = live_output_open(&l->output, image, l->format.fps_num,
                               l->format.fps_den, &error);
     if (status == GLINT_OK)
         print_output_description(l);
     if (status == GLINT_OK || (l->retry_us && status == GLINT_E_DEVICE)) {
-        l->retry_us = glint_now_us() + 1000 * RETRY_MS;
+        l->retry_us = glint_get_time_us() + 1000 * RETRY_MS;
         return EXIT_OK;
     }
     return live_log_print_error(&l->log, status, &error,
@@ -272,7 +272,7 @@ static int handle_output_loss(struct live *l, enum glint_status status,
     struct glint_error unsaid;
 
     live_output_close(&l->output, &unsaid);
-    l->retry_us = glint_now_us() + 1000 * RETRY_MS;
+    l->retry_us = glint_get_time_us() + 1000 * RETRY_MS;
     return handle_device_loss(l, "output", status, why);
 }
 
@@ -328,7 +328,7 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
                  : tool_fail(l->tool, GLINT_E_MEMORY, "");
     if (code != EXIT_OK)
         return code;
-    at_us[1] = glint_now_us();
+    at_us[1] = glint_get_time_us();
     status = drawing_draw_flare(drawing, image, elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
@@ -338,10 +338,10 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
     code = open_live_output(l, image);
     if (code != EXIT_OK)
         return code;
-    at_us[2] = glint_now_us();
+    at_us[2] = glint_get_time_us();
     if (l->output.sink)
         status = l->output.sink->put(l->output.sink, image, &error);
-    at_us[3] = glint_now_us();
+    at_us[3] = glint_get_time_us();
     record_frame_statistics(l, frame, at_us);
     adapt_quality(l, at_us[3] - at_us[0],
                   l->n_shown ? frame->n_dropped + frame->n_late : 0);
@@ -384,7 +384,7 @@ static int process_next_frame(struct live *l)
     struct glint_source *const source = l->in.source;
     struct glint_source_frame frame;
     struct glint_error error = {""};
-    const int64_t taken_us = glint_now_us();
+    const int64_t taken_us = glint_get_time_us();
     const enum glint_status status = source->next(source, &frame, &error);
     int code = -1;
 
@@ -511,7 +511,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     if (code == EXIT_OK)
         code = start_live_run(l);
     if (code == EXIT_OK) {
-        live_stats_start(&l->log.stats, glint_now_us());
+        live_stats_start(&l->log.stats, glint_get_time_us());
         code = run_frame_loop(l);
         if (code == EXIT_OK)
             code = drawing_finish_lamp_file(tool, &o->drawing);

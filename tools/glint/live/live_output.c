@@ -18,7 +18,7 @@ bool live_output_parse(struct live_output *o, const char *name)
                    : k == LIVE_OUTPUT_FB ? !colon || *o->path
                                          : colon && *o->path;
         }
-    if (!glint_y4m_is_name(name))
+    if (!glint_y4m_has_extension(name))
         return false;
     o->kind = LIVE_OUTPUT_Y4M;
     o->path = name;

@@ -93,7 +93,7 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
         return NULL;
     if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) ||
         !is_file_trusted(&st) || !is_folder_trusted(path) ||
-        glint_input_append(&in, &data, bytes, max, &error) != GLINT_OK) {
+        glint_input_read_rest(&in, &data, bytes, max, &error) != GLINT_OK) {
         free(data);
         data = NULL;
     }
@@ -131,9 +131,10 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
             : glint_error_report(
                   error, GLINT_E_OUTPUT, path,
                   "is in a folder that other users may write to; chmod o-w it");
-    return status == GLINT_OK ? glint_output_save(path, GLINT_OUTPUT_BINARY,
-                                                  data, bytes, error)
-                              : status;
+    return status == GLINT_OK
+               ? glint_output_save_file(path, GLINT_OUTPUT_BINARY, data, bytes,
+                                        error)
+               : status;
 }
 
 static bool make_lock_name(char *name, size_t bytes, const char *path)

@@ -41,7 +41,8 @@ static uint8_t *read_installed_model(const char *path, size_t *bytes)
     struct glint_error error;
     uint8_t *data = NULL;
 
-    return glint_input_slurp(&data, bytes, path, MAX_BYTES, &error) == GLINT_OK
+    return glint_input_read_whole_file(&data, bytes, path, MAX_BYTES, &error) ==
+                   GLINT_OK
                ? data
                : NULL;
 }

@@ -17,7 +17,7 @@ bool tool_is_file_name(const char *argument)
     bool is_file = strchr(argument, '/') != NULL;
 
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        is_file = is_file || glint_ends_in(argument, endings[i]);
+        is_file = is_file || glint_has_extension(argument, endings[i]);
     return is_file;
 }
 
@@ -74,8 +74,8 @@ int tool_open_model(const struct tool *tool, const char *path,
     enum glint_status status;
 
     *model = (struct model_file){.data = NULL};
-    status =
-        glint_input_slurp(&data, &model->bytes, path, MAX_MODEL_BYTES, &error);
+    status = glint_input_read_whole_file(&data, &model->bytes, path,
+                                         MAX_MODEL_BYTES, &error);
     model->data = data; /* malloc() aligns the data */
     if (status == GLINT_OK) {
         status = open_model_data(model, &reason);

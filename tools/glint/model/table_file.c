@@ -87,7 +87,7 @@ static bool is_importable_file(const char *name)
     bool is = false;
 
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-        is = is || glint_ends_in(name, endings[i]);
+        is = is || glint_has_extension(name, endings[i]);
     return is && access(name, F_OK) == 0;
 }
 
@@ -101,7 +101,7 @@ static enum glint_status parse_lens_table(const char *file,
     uint8_t *text = NULL;
     size_t bytes = 0;
 
-    status = glint_input_slurp(&text, &bytes, file, 1 << 20, error);
+    status = glint_input_read_whole_file(&text, &bytes, file, 1 << 20, error);
     if (status == GLINT_E_UNSUPPORTED ||
         (status == GLINT_OK && bytes > 0 && memchr(text, 0, bytes)))
         status = glint_error_report(
@@ -154,7 +154,7 @@ int tool_read_lens(const struct tool *tool, const char *argument,
     status = parse_lens_table(file, lens, &error);
     if (status == GLINT_OK)
         return EXIT_OK;
-    if (status == GLINT_E_LENS && !glint_ends_in(file, ".lens"))
+    if (status == GLINT_E_LENS && !glint_has_extension(file, ".lens"))
         tool_error(tool, "%s; glint import reads lens files of other programs",
                    error.text);
     else

@@ -15,7 +15,7 @@
 
 bool motion_file_is_source(const char *argument)
 {
-    return glint_ends_in(argument, ".json");
+    return glint_has_extension(argument, ".json");
 }
 
 bool motion_file_is_baked(const char *argument)
@@ -87,8 +87,8 @@ enum glint_status motion_file_read(const char *path, const char *written,
     if (status == GLINT_OK && motion_file_is_source(path)) {
         status = bake_motion_recording(path, file, error);
     } else if (status == GLINT_OK) {
-        status =
-            glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
+        status = glint_input_read_whole_file(&data, &file->bytes, path,
+                                             MAX_FILE_BYTES, error);
         file->data = data; /* malloc() aligns the data */
     }
     if (status != GLINT_OK ||

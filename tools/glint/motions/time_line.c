@@ -24,7 +24,7 @@ static void draw_frame_tick(const struct bar *b, uint32_t frame)
 {
     const int x = frame_position_px(b, frame), high = b->y1 - b->y0;
 
-    paint_fill(&b->paint, x, b->y0 - high, x + b->paint.line, b->y0);
+    paint_fill_rectangle(&b->paint, x, b->y0 - high, x + b->paint.line, b->y0);
 }
 
 /* Marks the frames at which foods were replaced. */
@@ -64,14 +64,16 @@ void draw_time_line(const struct glint_image *image,
                     .last = n > 1 ? n - 1 : 1};
     char text[32];
 
-    paint_colour(&b.paint, 70, 75, 80);
-    paint_fill(&b.paint, b.x0, b.y0, b.x1, b.y1);
-    paint_colour(&b.paint, 255, 150, 40);
+    paint_set_colour(&b.paint, 70, 75, 80);
+    paint_fill_rectangle(&b.paint, b.x0, b.y0, b.x1, b.y1);
+    paint_set_colour(&b.paint, 255, 150, 40);
     draw_food_changes(&b, motion);
-    paint_colour(&b.paint, 240, 240, 240);
-    paint_fill(&b.paint, b.x0, b.y0, frame_position_px(&b, now), b.y1);
-    paint_fill(&b.paint, frame_position_px(&b, now) - high / 2, b.y0 - high,
-               frame_position_px(&b, now) + high / 2 + 1, b.y1 + high);
+    paint_set_colour(&b.paint, 240, 240, 240);
+    paint_fill_rectangle(&b.paint, b.x0, b.y0, frame_position_px(&b, now),
+                         b.y1);
+    paint_fill_rectangle(&b.paint, frame_position_px(&b, now) - high / 2,
+                         b.y0 - high, frame_position_px(&b, now) + high / 2 + 1,
+                         b.y1 + high);
     snprintf(text, sizeof text, "%u/%u", now, n - 1);
     paint_text(&b.paint, b.x1 - paint_text_width(&b.paint, text),
                b.y0 - 2 * high - 6 * b.paint.line, text);

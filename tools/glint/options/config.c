@@ -259,7 +259,8 @@ int config_read(struct config *config, const char *path)
     size_t bytes = 0;
     int code = EXIT_INPUT;
 
-    if (glint_input_slurp(&text, &bytes, path, MAX_BYTES, &error) == GLINT_OK)
+    if (glint_input_read_whole_file(&text, &bytes, path, MAX_BYTES, &error) ==
+        GLINT_OK)
         code = config_parse(config, path, (const char *)text, bytes, &error);
     free(text);
     if (code != EXIT_OK && error.text[0])

@@ -15,7 +15,7 @@ static void write_json_text(FILE *file, const char *text)
     fputc('"', file);
     while (*text) {
         const unsigned char c = (unsigned char)*text;
-        const size_t length = glint_utf8_length(text);
+        const size_t length = glint_utf8_get_length(text);
 
         if (c == '"' || c == '\\')
             fputc('\\', file);

@@ -33,7 +33,7 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
 
     *lines = (struct text_lines){.name = name};
     if (!text && bytes) {
-        status = glint_input_slurp(&data, &bytes, name, bytes, error);
+        status = glint_input_read_whole_file(&data, &bytes, name, bytes, error);
         text = (const char *)data;
     }
     if (status == GLINT_OK && bytes && memchr(text, '\0', bytes))

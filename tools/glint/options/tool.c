@@ -218,7 +218,7 @@ int tool_save_file(const struct tool *tool, const char *path,
 {
     struct glint_error error = {""};
     const enum glint_status status =
-        glint_output_save(path, kind, data, bytes, &error);
+        glint_output_save_file(path, kind, data, bytes, &error);
 
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
@@ -243,7 +243,7 @@ int tool_check_output(const struct tool *tool, const char *path)
     /* the number is in the name of a folder */
     if (slash && pattern && pattern < slash)
         return EXIT_OK;
-    if (glint_output_check(path, &error) == GLINT_OK)
+    if (glint_output_check_path(path, &error) == GLINT_OK)
         return EXIT_OK;
     tool_fail(tool, GLINT_E_OUTPUT, error.text);
     return EXIT_OUTPUT;
@@ -252,7 +252,7 @@ int tool_check_output(const struct tool *tool, const char *path)
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what)
 {
-    return !*glint_get_extension(path) || glint_ends_in(path, ending)
+    return !*glint_get_extension(path) || glint_has_extension(path, ending)
                ? EXIT_OK
                : tool_usage(tool, "%s is a %s, not '%s'", what, ending, path);
 }

@@ -45,7 +45,7 @@ void apart_add_drawing_files(struct apart *files,
 static bool would_overwrite_input(const char *input, const char *output)
 {
     return glint_target_is_input(input, output) ||
-           (strchr(input, '%') && glint_target_is_same(input, output));
+           (strchr(input, '%') && glint_target_is_same_file(input, output));
 }
 
 /* Returns whether A and B are the same output; "-" is standard output. */
@@ -53,7 +53,7 @@ static bool is_same_output(const char *a, const char *b)
 {
     if (strcmp(a, "-") == 0)
         return strcmp(b, "-") == 0 || glint_target_is_input(b, a);
-    return glint_target_is_input(a, b) || glint_target_is_same(a, b);
+    return glint_target_is_input(a, b) || glint_target_is_same_file(a, b);
 }
 
 static int report_overwritten_input(const struct tool *tool,

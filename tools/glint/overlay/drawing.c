@@ -727,7 +727,7 @@ static enum glint_status draw_exposed_flare(struct drawing *d,
     if (status != GLINT_OK)
         return status;
     if (d->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
-        paint_black(image);
+        paint_set_image_black(image);
     status = glint_engine_draw(run->engine, run->lamp, run->n_lamps, image,
                                &run->report);
     record_flare_time(run, start);

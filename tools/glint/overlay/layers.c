@@ -53,7 +53,7 @@ static bool can_file_hold_layers(const struct layers *layers, const char *name)
     const int n = strstr(layers->path, "%s") ? 5 : 1;
 
     for (int i = 0; i < n; i++)
-        if (glint_ends_in(name, kinds[i]))
+        if (glint_has_extension(name, kinds[i]))
             return true;
     return false;
 }
@@ -153,14 +153,14 @@ static enum glint_status save_layer_file(const char *name,
     void *data = NULL;
     size_t bytes = 0;
 
-    if (glint_ends_in(name, ".pfm") && layers->n == 1)
+    if (glint_has_extension(name, ".pfm") && layers->n == 1)
         return glint_picture_save_float(name, &floats, error);
     status = glint_oiio_load(&oiio, error);
     if (status == GLINT_OK)
         status = oiio->encode_layers(&data, &bytes, name, layers, error);
     if (status == GLINT_OK)
-        status =
-            glint_output_save(name, GLINT_OUTPUT_BINARY, data, bytes, error);
+        status = glint_output_save_file(name, GLINT_OUTPUT_BINARY, data, bytes,
+                                        error);
     free(data);
     return status;
 }

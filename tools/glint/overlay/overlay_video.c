@@ -41,7 +41,7 @@ struct video {
 
 static bool is_y4m_name(const char *name)
 {
-    return strcmp(name, "-") == 0 || glint_y4m_is_name(name);
+    return strcmp(name, "-") == 0 || glint_y4m_has_extension(name);
 }
 
 bool overlay_is_video(const char *name)
@@ -53,10 +53,10 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
 {
     const int n = glint_gif_count_frames(o->input);
     const bool moves =
-        overlay_is_video(o->output) || glint_ends_in(o->output, ".gif");
+        overlay_is_video(o->output) || glint_has_extension(o->output, ".gif");
 
     *video = n > 1 && moves;
-    if (glint_ends_in(o->output, ".gif") && overlay_is_video(o->input))
+    if (glint_has_extension(o->output, ".gif") && overlay_is_video(o->input))
         *video = true;
     else if (n == 1 && overlay_is_video(o->output))
         return tool_usage(tool, "%s has one frame, which is not a video",
@@ -92,7 +92,7 @@ static ptrdiff_t read_from_child(void *ctx, void *dst, size_t bytes)
  * input: not for a GIF, nor if --frames cuts the end off. */
 static bool can_keep_other_streams(const struct overlay *o)
 {
-    return !glint_ends_in(o->output, ".gif") && o->last == INT_MAX;
+    return !glint_has_extension(o->output, ".gif") && o->last == INT_MAX;
 }
 
 /* Sets range, matrix and transfer of the input by its tags. Prints a warning

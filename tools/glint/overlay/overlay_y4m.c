@@ -60,7 +60,7 @@ static enum glint_status draw_flare_on_planes(void *ctx,
     if (status != GLINT_OK || !drawing->files.has_lens)
         return status;
     if (drawing->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
-        glint_y4m_light_blacken(&y->light, y->planes);
+        glint_y4m_light_set_black(&y->light, y->planes);
     if (drawing->run.n_lamps == 0 &&
         !glint_engine_has_veil(drawing->run.engine))
         return GLINT_OK;

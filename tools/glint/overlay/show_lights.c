@@ -10,16 +10,16 @@ static void set_colour_of_state(struct paint *p, enum glint_lamp_state state)
 {
     switch (state) {
     case GLINT_LAMP_RISING:
-        paint_colour(p, 255, 255, 0);
+        paint_set_colour(p, 255, 255, 0);
         break;
     case GLINT_LAMP_STEADY:
-        paint_colour(p, 0, 255, 0);
+        paint_set_colour(p, 0, 255, 0);
         break;
     case GLINT_LAMP_FADING:
-        paint_colour(p, 255, 0, 0);
+        paint_set_colour(p, 255, 0, 0);
         break;
     case GLINT_LAMP_LEAVING:
-        paint_colour(p, 0, 128, 255);
+        paint_set_colour(p, 0, 128, 255);
         break;
     }
 }
@@ -28,8 +28,8 @@ static void draw_lamp_cross(const struct paint *p, int x, int y)
 {
     const int d = p->line;
 
-    paint_fill(p, x - 2 * d, y, x + 3 * d, y + d);
-    paint_fill(p, x, y - 2 * d, x + d, y + 3 * d);
+    paint_fill_rectangle(p, x - 2 * d, y, x + 3 * d, y + d);
+    paint_fill_rectangle(p, x, y - 2 * d, x + d, y + 3 * d);
 }
 
 /* Returns the line width, pixels, at which text on IMAGE is readable. */
@@ -64,7 +64,7 @@ static void draw_mark_strokes(const struct paint *p, int x, int y, int half,
 
     snprintf(number, sizeof number, "%lu", (unsigned long)id);
     draw_lamp_cross(p, x, y);
-    paint_box(p, x, y, half);
+    paint_square_outline(p, x, y, half);
     draw_lamp_number(p, x, y, half, number, stops);
 }
 
@@ -77,7 +77,7 @@ static void draw_shadowed_mark(const struct glint_image *image,
     const int x = track->x_q8 >> 8, y = track->y_q8 >> 8;
     const int half = 4 * p.line + (track->size_q8 >> 7);
 
-    paint_colour(&p, 0, 0, 0);
+    paint_set_colour(&p, 0, 0, 0);
     draw_mark_strokes(&p, x + p.line, y + p.line, half, track->id, stops);
     set_colour_of_state(&p, track->state);
     draw_mark_strokes(&p, x, y, half, track->id, stops);
@@ -121,9 +121,9 @@ void show_mark_legend(const struct glint_image *image, bool followed)
 
     if (width > image->width || 3 * height > image->height)
         return;
-    paint_colour(&p, 0, 0, 0);
-    paint_fill(&p, 0, image->height - height, width, image->height);
-    paint_colour(&p, 255, 255, 255);
+    paint_set_colour(&p, 0, 0, 0);
+    paint_fill_rectangle(&p, 0, image->height - height, width, image->height);
+    paint_set_colour(&p, 255, 255, 255);
     paint_text(&p, x, y, words);
     for (int i = 0; followed && i < 4; i++) {
         if (i % 3 == 0) {

@@ -91,8 +91,8 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     if (!input || strcmp(input, "-") == 0)
         return tool_usage(tool, "--zoom A-B needs a video in a file; otherwise "
                                 "use --keys with a column zoom");
-    n = glint_y4m_is_name(input) ? count_y4m_frames(input, &error)
-                                 : ffmpeg_count_frames(input);
+    n = glint_y4m_has_extension(input) ? count_y4m_frames(input, &error)
+                                       : ffmpeg_count_frames(input);
     if ((n <= 0 || n > MOST_FRAMES) && !error.text[0])
         glint_error_report(
             &error, GLINT_E_FORMAT, input,

@@ -190,7 +190,7 @@ static enum glint_status write_video_frame(struct frames *f,
     for (size_t i = 0; i < 3 * n; i++)
         f->rgb_q16[i % 3 * n + i / 3] =
             (uint16_t)lrintf(65535 * fminf(fmaxf(f->r->image.rgb[i], 0), 1));
-    paint_black(&f->frame);
+    paint_set_image_black(&f->frame);
     glint_composite_add(f->composite, &f->frame, &layer);
     return glint_y4m_writer_put(&f->writer, &f->frame, "", error);
 }

@@ -40,8 +40,8 @@ int baked_scene_open(const struct tool *tool, const char *path,
         code = tool_check_scene_not_overwritten(tool, path);
         if (code != EXIT_OK)
             return code;
-        status = glint_input_slurp(&data, &scene->bytes, path, MAX_SCENE_BYTES,
-                                   &error);
+        status = glint_input_read_whole_file(&data, &scene->bytes, path,
+                                             MAX_SCENE_BYTES, &error);
         scene->data = data; /* malloc() aligns the data */
     }
     if (status != GLINT_OK)

@@ -18,14 +18,16 @@
 
 static bool is_environment_text(const char *name)
 {
-    return glint_ends_in(name, ".environment");
+    return glint_has_extension(name, ".environment");
 }
 
 bool environment_file_is_source(const char *argument)
 {
-    return is_environment_text(argument) || glint_ends_in(argument, ".exr") ||
-           glint_ends_in(argument, ".hdr") || glint_ends_in(argument, ".pfm") ||
-           glint_ends_in(argument, ".dds");
+    return is_environment_text(argument) ||
+           glint_has_extension(argument, ".exr") ||
+           glint_has_extension(argument, ".hdr") ||
+           glint_has_extension(argument, ".pfm") ||
+           glint_has_extension(argument, ".dds");
 }
 
 bool environment_file_is_baked(const char *argument)
@@ -40,7 +42,7 @@ static enum glint_status read_environment_text(
     uint8_t *text = NULL;
     size_t bytes = 0;
     enum glint_status status =
-        glint_input_slurp(&text, &bytes, path, 1 << 16, error);
+        glint_input_read_whole_file(&text, &bytes, path, 1 << 16, error);
 
     if (status == GLINT_OK)
         status = glint_environment_parse(options, source, (const char *)text,
@@ -128,8 +130,8 @@ enum glint_status environment_file_read(
     if (status == GLINT_OK && environment_file_is_source(path)) {
         status = bake_source(path, written, override, ctx, left, file, error);
     } else if (status == GLINT_OK) {
-        status =
-            glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
+        status = glint_input_read_whole_file(&data, &file->bytes, path,
+                                             MAX_FILE_BYTES, error);
         file->data = data; /* malloc() aligns the data */
     }
     if (status != GLINT_OK ||

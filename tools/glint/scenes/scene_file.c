@@ -20,7 +20,7 @@ enum { TEXT_BYTES = 1 << 20 };
 
 bool tool_is_scene(const char *argument)
 {
-    return glint_ends_in(argument, ".scene");
+    return glint_has_extension(argument, ".scene");
 }
 
 /* Reader state of a scene text */
@@ -60,7 +60,7 @@ static enum glint_status return_read_data(struct reading *reading,
 
 static bool is_obj_name(const char *name)
 {
-    return glint_ends_in(name, ".obj");
+    return glint_has_extension(name, ".obj");
 }
 
 /* Reads a mesh as an OBJ text. */
@@ -75,12 +75,12 @@ static enum glint_status read_obj_mesh(void *ctx, const char *name,
     if (status != GLINT_OK)
         return status;
     if (is_obj_name(name))
-        status = glint_input_slurp(data, bytes, path,
-                                   GLINT_DESCRIPTION_MAX_MESH_BYTES, error);
+        status = glint_input_read_whole_file(
+            data, bytes, path, GLINT_DESCRIPTION_MAX_MESH_BYTES, error);
     else
-        status = glint_assimp_read(data, bytes, path,
-                                   GLINT_DESCRIPTION_MAX_MESH_BYTES,
-                                   GLINT_DESCRIPTION_MAX_TRIANGLES, error);
+        status = glint_assimp_read_mesh(data, bytes, path,
+                                        GLINT_DESCRIPTION_MAX_MESH_BYTES,
+                                        GLINT_DESCRIPTION_MAX_TRIANGLES, error);
     /* returns the same status as for an error in an OBJ file */
     if (status == GLINT_E_FORMAT)
         status = GLINT_E_LENS;
@@ -174,7 +174,8 @@ int tool_read_scene(const struct tool *tool, const char *path,
 
     if (code != EXIT_OK)
         return code;
-    status = glint_input_slurp(&text, &bytes, path, TEXT_BYTES, &error);
+    status =
+        glint_input_read_whole_file(&text, &bytes, path, TEXT_BYTES, &error);
     if (status == GLINT_OK) {
         tool_hash_into_key(&reading.key, text, bytes);
         status = glint_description_parse(scene, (const char *)text, bytes, path,

@@ -8,7 +8,7 @@
 
 bool tool_is_scene(const char *argument)
 {
-    return glint_ends_in(argument, ".scene");
+    return glint_has_extension(argument, ".scene");
 }
 
 int tool_bake_scene(const struct tool *tool, const char *path, uint8_t **data,

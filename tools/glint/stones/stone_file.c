@@ -17,7 +17,7 @@
 
 bool stone_file_is_text(const char *argument)
 {
-    return glint_ends_in(argument, ".translucent");
+    return glint_has_extension(argument, ".translucent");
 }
 
 bool stone_file_is_baked(const char *argument)
@@ -118,7 +118,7 @@ read_source(const struct tool *tool, const char *path,
     uint8_t *data = NULL;
     size_t bytes = 0;
     enum glint_status status =
-        glint_input_slurp(&data, &bytes, path, 1 << 16, error);
+        glint_input_read_whole_file(&data, &bytes, path, 1 << 16, error);
 
     if (status == GLINT_OK)
         status =
@@ -338,8 +338,8 @@ stone_file_read(const struct tool *tool, const char *path,
     if (status == GLINT_OK && stone_file_is_text(path)) {
         status = read_text(tool, path, over, ctx, anew, left, file, error);
     } else if (status == GLINT_OK) {
-        status =
-            glint_input_slurp(&data, &file->bytes, path, MAX_FILE_BYTES, error);
+        status = glint_input_read_whole_file(&data, &file->bytes, path,
+                                             MAX_FILE_BYTES, error);
         file->data = data; /* malloc() aligns the data */
         if (status == GLINT_OK) {
             struct glint_error cause;
