@@ -265,7 +265,8 @@ void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens);
 
 /* Returns pixels per mm on the sensor for a picture of WIDTH x HEIGHT pixels
- * that is as large as fits the film of LENS, as by glint_view_fit(). */
+ * that is as large as fits into the image area (film) of LENS, like
+ * glint_view_fit(). */
 struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
                                             int width, int height);
 
@@ -279,9 +280,9 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
 
 /* Returns a white light of power 1 whose image through LENS lies at (X, Y):
  * pixels from the top left corner, y down, of a picture of WIDTH x HEIGHT that
- * is as large as fits the film of LENS. Distances from the centre, across and
- * down, are clamped to 2^22 pixels. The integer counterpart of
- * glint_view_to_angles(): no sine or cosine is off by more than 2^-28. */
+ * is as large as fits into the image area (film) of LENS. Distances from the
+ * centre, across and down, are clamped to 2^22 pixels. The integer counterpart
+ * of glint_view_to_angles(): no sine or cosine is off by more than 2^-28. */
 struct glint_light glint_light_from_pixel(const struct glint_lens *lens,
                                           int width, int height, int32_t x_q8,
                                           int32_t y_q8);

@@ -88,8 +88,8 @@ void glint_path_init_at(struct glint_path *path,
 
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
-    /* The ray misses a surface, meets a sphere beyond its equator, or cannot
-     * continue. */
+    /* The ray misses a surface, hits only the far half of a surface's sphere,
+     * or cannot continue. */
     GLINT_RAY_MISSED = 1,
     GLINT_RAY_TOTAL_REFLECTION =
         2 /* total reflection at a surface where the path refracts */

@@ -58,7 +58,8 @@ double glint_projection_deg(const struct glint_projection *projection,
 double glint_projection_rho(const struct glint_projection *projection,
                             double theta_deg);
 
-/* Returns the largest view of WIDTH x HEIGHT that fits the film. */
+/* Returns the largest view of WIDTH x HEIGHT pixels that fits into an image
+ * area (film) of this size. */
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                  double film_height_mm);
 

@@ -290,8 +290,7 @@ struct inside {
     struct glint_sheared sheared;
     /* distance along the original ray, steps, at which this ray begins */
     int32_t start;
-    uint32_t but; /* index of the triangle on which the ray starts, which is
-                     skipped */
+    uint32_t but; /* index of the triangle to skip, as the ray starts on it */
 };
 
 /* Transforms RAY to the space of OBJECT; the new ray starts at distance T. */

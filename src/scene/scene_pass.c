@@ -133,8 +133,8 @@ static inline int shade_sample(struct glint_scene_worker *w, uint32_t id, int x,
     return 0;
 }
 
-/* Returns whether none of the N samples of a pixel sees an object. */
-static inline int does_pixel_see_no_object(const uint32_t *id, int n)
+/* Returns whether all N samples of a pixel see the background. */
+static inline int does_pixel_see_only_background(const uint32_t *id, int n)
 {
     uint32_t all = id[0];
 
@@ -446,7 +446,7 @@ static inline int draw_pixel_row(struct glint_scene_worker *w,
             same = w->n_spans ? q_smaller(s->cfg.parts.motions->next(w, x), x1)
                               : x1;
         for (end = x;
-             end < same && !w->n_over && does_pixel_see_no_object(id, n);
+             end < same && !w->n_over && does_pixel_see_only_background(id, n);
              id += n)
             end++;
         if (end > x) {

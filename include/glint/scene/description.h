@@ -4,7 +4,7 @@
  * double precision.
  *
  *     glint_description_parse(&scene, text, bytes, "shop.scene", &files,
- * &error);
+ *                             &error);
  *     ...
  *     glint_description_free(&scene);
  *

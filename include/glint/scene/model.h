@@ -217,9 +217,9 @@ struct glint_scene_mesh {
     int32_t origin[3];  /* lowest corner of the grid, steps, within
                            +-GLINT_SCENE_SPAN */
     uint32_t cell_log2; /* log2 of the side of a cell, steps, 2 .. 28 */
-    uint32_t cells[3];  /* number along each axis, 1 .. GLINT_SCENE_MAX_CELLS;
-                           the far corner of the grid is within
-                           GLINT_SCENE_SPAN */
+    uint32_t cells[3];  /* number of cells along each axis, 1 ..
+                           GLINT_SCENE_MAX_CELLS; the far corner of the grid is
+                           within GLINT_SCENE_SPAN */
     /* Cell c lists triangles ref[start[c]] .. ref[start[c + 1] - 1] in rising
      * order: all triangles whose bounding box, enlarged by GLINT_SCENE_MARGIN
      * steps on each side, touches the cell. glint_scene_open() rejects

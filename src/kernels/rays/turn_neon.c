@@ -47,8 +47,8 @@ static inline uint32x4_t scale_products(struct scale_products s,
     return fits;
 }
 
-static inline void mark_lost_rays(uint32x4_t x_fits, uint32x4_t y_fits,
-                                  int32_t *lost)
+static inline void mark_rays_beyond_limit(uint32x4_t x_fits, uint32x4_t y_fits,
+                                          int32_t *lost)
 {
     const int32x4_t fit = vreinterpretq_s32_u32(vandq_u32(x_fits, y_fits));
 
@@ -70,10 +70,10 @@ void glint_turn_neon(const struct glint_turn *t, const int32_t *x,
         const struct products yc = multiply_lanes(b, c),
                               ys = multiply_lanes(b, s);
 
-        mark_lost_rays(
+        mark_rays_beyond_limit(
             scale_products(to, subtract_products(xc, ys), out[0] + i),
             scale_products(to, add_products(xs, yc), out[1] + i), lost[0] + i);
-        mark_lost_rays(
+        mark_rays_beyond_limit(
             scale_products(to, add_products(xc, ys), out[2] + i),
             scale_products(to, subtract_products(xs, yc), out[3] + i),
             lost[1] + i);

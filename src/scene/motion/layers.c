@@ -570,7 +570,7 @@ static int compute_shell_cover_q8(const struct glint_scene_worker *w,
     if (!glint_quick_intersect_ball(l->ball, &ray, across_q30, &cosine_q30) ||
         cosine_q30 < l->inner_q30)
         return compute_shell_rim_cover_q8(w, l, x, y);
-    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) { /* depth[0] is the depth
+    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) { /* compared with the depth
                                                          of the shell's far
                                                          side */
         t = glint_quick_get_ball_distance(l->ball, &ray, cosine_q30);
