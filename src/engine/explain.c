@@ -96,8 +96,7 @@ static void collect_bundle_statistics(struct glint_explain *e)
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
                 add_bundle_statistics(&e->all, &a);
-                /* NOLINTNEXTLINE: set_ghost_numbers() has set all elements of
-                 * ghost_of */
+                /* NOLINTNEXTLINE: set_ghost_numbers() has set ghost_of */
                 add_bundle_statistics(&e->ghost[e->ghost_of[ghost]], &a);
                 add_bundle_statistics(&e->light[light], &a);
                 add_bundle_statistics(&e->wave[find_part_of_wave(e, wave)], &a);
