@@ -267,7 +267,7 @@ int main(int argc, char **argv)
         return 1;
     for (int i = 0; i < n; i++) {
         lit += hash_random_frame(&h);
-        /* the first line that differs identifies the frame */
+        /* the first different line identifies the frame */
         if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }

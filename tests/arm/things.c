@@ -128,7 +128,8 @@ static int draw_and_hash_image(uint64_t *h)
     uint64_t before, after;
     void *mem;
 
-    /* too many triangles for this image shape: rejected on every machine */
+    /* this image shape has too many triangles: the arena rejects it on every
+     * machine */
     if (!room) {
         free(pixels);
         return 0;
@@ -181,7 +182,7 @@ int main(int argc, char **argv)
         open_scene(argv[i]);
     for (int i = 0; i < n; i++) {
         changed += draw_and_hash_image(&h);
-        /* the first line that differs identifies the image */
+        /* the first different line identifies the image */
         if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }

@@ -16,7 +16,8 @@
 
 enum {
     ONE = 1 << 30,
-    /* max overshoot of a piecewise polynomial between two knots, 2^-30 */
+    /* max overshoot of an interpolated value between two knots, units of
+     * 2^-30 */
     SLACK = 64
 };
 
@@ -70,7 +71,8 @@ static void check_ray_grids(struct glint_transfer *t)
     }
 }
 
-/* Checks that the window of an opening is inside the ghost's box. */
+/* Checks that the pupil window of an opening lies inside the pupil box of the
+ * ghost. */
 static void check_window_in_box(struct glint_transfer *t, int32_t opening_q30)
 {
     static struct glint_window_nodes nodes;
@@ -194,7 +196,7 @@ static void draw_model_frame(const struct glint_lens *lens, int32_t opening_q30)
     glint_flare_draw(flare, &image);
 }
 
-/* Sets magic, version, size and checksum in the header to valid values. */
+/* Sets magic, version, size and checksum of the header to valid values. */
 static void seal_blob_header(uint32_t *word, size_t size, uint32_t magic,
                              uint32_t version)
 {
@@ -209,8 +211,8 @@ static void seal_blob_header(uint32_t *word, size_t size, uint32_t magic,
 /* ---------------------------------------------------------------------- zoom
  */
 
-/* Makes the headers valid of the zoom in WORD[SIZE] and of its models that lie
- * inside the file. */
+/* Seals the zoom in WORD[SIZE]: sets magic, version, size and checksum of its
+ * header, and of each model that lies inside the file, to valid values. */
 static void seal_zoom_models(uint32_t *word, size_t size)
 {
     const struct glint_zoom_header *const h = (const void *)word;
@@ -230,7 +232,7 @@ static void seal_zoom_models(uint32_t *word, size_t size)
     seal_blob_header(word, size, GLINT_ZOOM_MAGIC, GLINT_ZOOM_VERSION);
 }
 
-/* Checks GHOST of the zoom at angles of the model at the next lower
+/* Checks GHOST of the zoom at the angles of the nearest model at a lower zoom
  * position. */
 static void check_ghost_of_zoom(const struct glint_zoom_lens *zoom, int ghost,
                                 uint32_t pick)

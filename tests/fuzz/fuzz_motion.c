@@ -15,7 +15,8 @@ struct file {
     uint32_t n_blocks;
 };
 
-/* Copies block BLOCK of the file to TO, with a valid number and checksum. */
+/* Copies block BLOCK of the file to TO and sets its number and checksum to
+ * valid values. */
 static int read_motion_block(void *ctx, uint32_t block, uint8_t *to)
 {
     const struct file *file = ctx;

@@ -9,7 +9,8 @@
 #include "formats/pnm.h"
 #include "fuzz/fuzz.h"
 
-unsigned glint_fuzz_sink; /* prevents reads from being optimised away */
+/* global, so that the compiler cannot remove the reads */
+unsigned glint_fuzz_sink;
 
 static void open_null_output(struct glint_output *out)
 {

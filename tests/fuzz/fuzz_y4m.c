@@ -10,7 +10,8 @@
 #include "fuzz/fuzz.h"
 #include "video/y4m.h"
 
-unsigned glint_fuzz_sink; /* prevents reads from being optimised away */
+/* global, so that the compiler cannot remove the reads */
+unsigned glint_fuzz_sink;
 
 struct memory {
     const uint8_t *data;
@@ -39,7 +40,7 @@ static void check_printed_header(const struct glint_y4m_header *header)
     require(header->width >= 1 && header->width <= GLINT_MAX_SIDE);
     require(header->height >= 1 && header->height <= GLINT_MAX_SIDE);
     require(len == strlen(line) && len < sizeof line && line[len - 1] == '\n');
-    /* tags that printing adds can make the line too long */
+    /* Printing can add tags, which make the line too long. */
     if (len > GLINT_Y4M_LINE)
         return;
     line[len - 1] = 0;

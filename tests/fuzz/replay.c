@@ -17,8 +17,8 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* Returns 1 if PATH was run, 0 if it is not a regular file, -1 if it could
- * not be read or is larger than MAX_BYTES. */
+/* Returns 1 if the fuzz target ran on PATH, 0 if PATH is not a regular file, -1
+ * if it could not be read or is larger than MAX_BYTES. */
 static int replay_file(const char *path)
 {
     struct stat st;
@@ -47,8 +47,8 @@ static int replay_file(const char *path)
     return 1;
 }
 
-/* Returns the number of files of DIR that were run, or -1 if DIR or one of
- * its files could not be read. */
+/* Runs the fuzz target on each file of DIR. Returns the number of files, or -1
+ * if DIR or one of its files could not be read. */
 static int replay_directory(const char *dir)
 {
     DIR *const d = opendir(dir);

@@ -2,10 +2,11 @@
  *
  * frei0r_host PLUGIN WIDTHxHEIGHT INSTANCES [NAME=VALUE...] <FRAMES >OUT
  *
- * A small host of frei0r plug-ins: BGRA frames of 1/25 s go through INSTANCES
- * of the plug-in at once, a thread each; the frames of the first are written.
- * Fails if another's differ. NAME@FRAME=VALUE sets a parameter before that
- * frame. Numbers have the decimal point of the locale.
+ * A small host of frei0r plug-ins: BGRA frames of 1/25 s are filtered by
+ * INSTANCES of the plug-in at once, one thread per instance. The frames of the
+ * first instance are written. Fails if another instance outputs different
+ * frames. NAME@FRAME=VALUE sets a parameter before that frame. Numbers have
+ * the decimal point of the locale.
  */
 #include <dlfcn.h>
 #include <locale.h>
@@ -147,7 +148,7 @@ int main(int argc, char **argv)
     n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
     for (int i = 4; i < argc; i++)
         parse_setting_argument(argv[i]);
-    /* Hosts with a user interface set the user's locale. */
+    /* Set the user's locale, as hosts with a user interface do. */
     setlocale(LC_ALL, "");
     load_plugin(argv[1]);
     bytes = n_frames * frame_bytes;

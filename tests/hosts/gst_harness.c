@@ -19,7 +19,7 @@ static void print_test_result(const char *name, int is_met)
     status |= !is_met;
 }
 
-/* Returns a buffer, which owns its memory, with frame number K: a lamp on
+/* Returns a buffer that owns its memory and contains frame K: a lamp on
  * grey. */
 static GstBuffer *make_frame_buffer(int k)
 {
@@ -157,7 +157,8 @@ static void test_quality_of_service(void)
 
     print_test_result("frames in time come", out != NULL);
     gst_buffer_unref(out);
-    /* The sink received the frame with time stamp 40 ms 200 ms late. */
+    /* Reports that the sink received the frame of time stamp 40 ms 200 ms
+     * late. */
     gst_harness_push_upstream_event(h, gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW,
                                                          2, 200 * GST_MSECOND,
                                                          40 * GST_MSECOND));

@@ -63,7 +63,7 @@ static enum video_format find_format_by_name(const char *name)
 
 /* -------------------------------------------------------------------- probe */
 
-/* The last frame that the filter output, its rows without padding. */
+/* The last frame that the filter output; its rows have no padding. */
 static struct {
     pthread_mutex_t lock;
     uint64_t timestamp;
@@ -179,7 +179,8 @@ static void start_obs(const char *path)
     obs_register_source(&probe);
 }
 
-/* Applies those of the N SETTINGS to the filter whose frame number is FRAME. */
+/* Applies to the filter the settings among SETTINGS[N] whose frame number is
+ * FRAME. */
 static void apply_frame_settings(struct run *r, char **settings, int n,
                                  long frame)
 {

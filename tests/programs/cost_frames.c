@@ -2,13 +2,13 @@
  *
  * cost_frames [--from N] FILE - draws the frames to which the cost model is
  * fitted, a third of them through lenses that are held out for validation.
- * Writes a line for each to FILE: 1 if it is held out, its description, the
- * counts that its plan predicts, and those of drawing. If FILE exists, only
- * draws the frames from number N on: tools/measure/cost-fit counts their
- * instructions with callgrind.
+ * Writes a line per frame to FILE: 1 if the frame is held out, its parameters,
+ * the numbers of operations that its plan predicts, and the numbers counted
+ * while drawing. If FILE exists, only draws the frames from number N on:
+ * tools/measure/cost-fit counts their instructions with callgrind.
  *
- * Lights, sizes, qualities, stops and parts are pseudo-random, the same in each
- * run.
+ * Lights, image sizes, quality settings, f-numbers and enabled effects are
+ * pseudo-random, the same in each run.
  */
 #include <math.h>
 #include <stdio.h>
@@ -49,8 +49,8 @@ static double random_between(uint32_t *seed, double low, double high)
     return low + (high - low) * rng_unit(seed);
 }
 
-/* Returns the parameters of frame I. Dust and soft edges, which have many
- * edges, are drawn in small images. */
+/* Returns the parameters of frame I. Frames with dust or soft edges, which draw
+ * many edges, have a small image. */
 static struct shape make_frame_parameters(int i)
 {
     static const int width[] = {320, 480, 640};
@@ -165,14 +165,16 @@ static enum glint_status find_frame_exposure(struct glint_frame *frame,
     return status;
 }
 
-/* Draws the frame twice, so that the second allocates no memory. */
+/* Draws the frame twice. The first drawing allocates the memory, so that the
+ * second measures drawing alone. */
 static void draw_frame_twice(struct stage *s, const struct shape *shape)
 {
     struct glint_engine_report report;
 
     for (int i = 0; i < shape->n_lamps; i++)
         s->lamp[i].power *= s->exposure * exp2(shape->stops);
-    /* The star's fraction compensates the exposure of the lamps. */
+    /* The exposure scales lamps and stars. Divide the star's fraction by it, so
+     * that the star's light does not depend on the exposure. */
     s->frame.star.share *= exp2(shape->star_stops) /
                            (s->exposure * exp2(shape->stops)) * shape->n_lamps;
     canvas_restore_background(&s->canvas);
@@ -204,7 +206,7 @@ static void count_lit_in_row(const struct stage *s, double *counted)
     }
 }
 
-/* Returns the number of pixels that the flare gives light. */
+/* Returns the number of pixels to which the flare adds light. */
 static double count_lit_pixels(const struct stage *s)
 {
     const size_t n =

@@ -3,17 +3,17 @@
  * motion LENS [--from DEG] [--to DEG] [--csv OUT]
  *             [--jump CODES] [--flux SHARE] [--crawl CODES]
  *
- * Moves a light slowly across the frame and measures by how much the image in
- * codes changes from frame to frame beyond the true change, which is that of a
- * reference: the model with grids four times as fine, irradiance without steps
- * and nothing dropped.
+ * Moves a light slowly across the frame and compares the change of the image
+ * from frame to frame, in codes, with the change of a reference: the same
+ * model, drawn with grids four times as fine, without rounding irradiance to
+ * steps, and with all ghosts. It prints three measures:
  *
  *   jump   max change of the mean of any 8 x 8 block, codes: popping
- *   flux   change of the sum of all codes / that sum
+ *   flux   change of the sum of all codes, as a fraction of that sum
  *   crawl  99.9th percentile of the change of pixels, codes: crawling edges
  *
- * The error of a frame is its codes minus those of the reference, which are not
- * rounded; the measures are the change of the error. For jump and flux the
+ * The error of a frame is its codes minus the unrounded codes of the reference.
+ * Each measure is a change of this error between frames. For jump and flux the
  * image is dithered, so that means of blocks are accurate to 1/64 code; without
  * dither, a uniform area that becomes brighter would change by a whole code at
  * once because of the format. Exit code 1: a measure exceeded its limit
@@ -47,14 +47,14 @@ struct sweep {
     float error[2][2][SAMPLES];
     uint8_t codes[SAMPLES];
     double power;
-    double sum; /* sum of the reference's last frame, codes */
+    double sum; /* sum over the pixels of the last reference frame, codes */
     struct sample worst;
 };
 
 /* ------------------------------------------------------------------ frames */
 
-/* Sets ERROR to the codes of the image, dithered if DITHER, minus those of
- * the reference in s->linear. */
+/* Sets ERROR to the codes of the image minus the codes of the reference in
+ * s->linear. DITHER: dithers the image. */
 static bool measure_code_errors(struct sweep *s, const struct glint_lamp *lamp,
                                 int dither, float *error)
 {

@@ -3,8 +3,8 @@
  * motion_table FRAMES - prints the errors of localisation (a body's pose from
  * the observed positions of foods, its landmarks), by method and motion.
  *
- * The methods run alternately on blocks of frames, so that their times are
- * comparable.
+ * The methods run alternately on blocks of frames, so that a varying machine
+ * load affects all of their times alike.
  */
 #include <math.h>
 #include <stdio.h>
@@ -17,8 +17,8 @@
 
 enum { CHUNK = 1000, BINS = 100, MOST_METHODS = 6, SEED = 163635 };
 
-/* A method of localisation: from all foods, like glint bake, with or without
- * averaging; or from four foods. */
+/* A method of localisation: the least-squares fit of glint bake to all foods
+ * (landmarks), with or without averaging; or a fit to four foods. */
 struct method {
     const char *name;
     bool all, average;
@@ -26,16 +26,16 @@ struct method {
     enum four_arithmetic arithmetic;
 };
 
-/* Result of a method on a track; errors are distances between estimated and
- * true positions. */
+/* Accuracy of a method on one track; errors are distances between estimated and
+ * true body positions. */
 struct result {
     struct glint_localiser all;
     struct four four;
     const char *wrong;
     double square[BINS], worst, last_worst, seconds, residual[BINS];
     int count[BINS];
-    /* sums of the error, of the mean distance of foods, of their squares and
-     * product */
+    /* sums for the correlation: x = error, y = mean distance of foods; sums of
+     * x, y, x^2, y^2, x y */
     double sums[5];
 };
 
@@ -131,7 +131,8 @@ static void localise_all_tracks(const struct track_options *options,
     }
 }
 
-/* Returns the root mean square error of bins FIRST .. END - 1. */
+/* Returns the root mean square position error over the error histogram bins
+ * FIRST .. END - 1. */
 static double compute_rms(const struct result *r, int first, int end)
 {
     double square = 0;

@@ -6,9 +6,9 @@
  * A lamp is a disc 6 stops above white; its image has the glare of a lens: a
  * narrow core and a tail that falls with the cube of the distance. The pole
  * hides the disc, but not the glare. The power, divided by its mean before the
- * pole, is compared with the visible fraction of the disc's area in the same
- * frame, and in the earlier frame that fits best (lag). --log prints every
- * frame.
+ * pole, is compared with the visible fraction of the disc in the same frame,
+ * and in the earlier frame that matches best; the distance of that frame is
+ * the lag. --log prints every frame.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -35,7 +35,8 @@ struct scene {
     double radius, pole, speed;
 };
 
-/* Visible fraction and measured power in the frames of one scene. */
+/* Visible fraction of the lamp and its measured power, per frame of one
+ * scene. */
 struct passing {
     double share[FRAMES], power[FRAMES];
     int lamps[FRAMES];
@@ -44,8 +45,8 @@ struct passing {
 static struct glint_lamp_detector detector;
 static uint8_t rgb[3 * WIDTH * HEIGHT];
 
-/* Returns the glare at distance R of a point, per unit of its light;
- * integrates to about 1. */
+/* Returns the glare of a point light at distance R, per unit of its light. The
+ * integral over the plane is about 1. */
 static double compute_glare(double r)
 {
     return 0.14 * exp(-r * r / 2) + 0.02 / pow(1 + r, 3);
@@ -70,7 +71,7 @@ static double draw_occluded_lamp(const struct scene *s, double x0, double x1)
     for (int i = 0; i < 4 * SQUARES && table[0] == 0; i++)
         table[4 * SQUARES - 1 - i] =
             compute_glare(sqrt((4 * SQUARES - 0.5 - i) / 4));
-    /* sample points of the disc, in a sunflower spiral */
+    /* Samples the disc at points of a sunflower spiral. */
     for (int i = 0; i < POINTS; i++) {
         const double r = s->radius * sqrt((i + 0.5) / POINTS);
         const double x = cx + r * cos(2.399963 * i);
@@ -134,8 +135,8 @@ static bool track_occluded_lamp(const struct scene *s, struct passing *p)
     return true;
 }
 
-/* Returns the RMS difference between the power and the fraction LAG frames
- * before. */
+/* Returns the RMS difference between the power in a frame and the visible
+ * fraction LAG frames earlier. */
 static double rms_difference(const struct passing *p, double full, int lag)
 {
     double sum = 0;

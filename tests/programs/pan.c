@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * pan IN FRAMES WxH > OUT.y4m - makes a video of a camera that pans over a
- * photograph, with the noise of a small sensor: real lamps that move in a known
- * way. Frame n of N shows the window at x = (width - W) n / N, y = middle + a
- * slow oscillation; the noise is the same in every run.
+ * photograph, with the noise of a small sensor. It shows real lamps whose
+ * motion is known. Frame n of N shows the window at x = (width - W) n / N, y =
+ * middle + a slow oscillation; the noise is the same in every run.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,7 +15,7 @@
 #include "video/y4m.h"
 #include "options/tool.h"
 
-/* Returns noise of -6 .. 6 codes, the sum of three uniform numbers. */
+/* Returns the sum of three uniform random numbers, -6 .. 6 codes. */
 static int random_noise(uint32_t *state)
 {
     return (int)((rng_bits32(state) >> 16) % 5 + (rng_bits32(state) >> 16) % 5 +

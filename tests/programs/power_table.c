@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * power_table [PANORAMA.pfm ...] - prints the data to which tests/power-fit
- * fits the power of clipped lamps. Each line has group, power, visible light,
- * light of the core, and features, of one image of a clipped lamp. Lamps
- * (rendered, or in HDR panoramas) are exposed ten times, each time half as
- * bright, to codes of 8 bits, every fourth image to RGB565, and measured like
- * those of any image. Every second lamp and panorama is held out for
+ * fits the power of clipped lamps. Each line describes one image of a clipped
+ * lamp: its group, true power, visible light, light of the clipped core, and
+ * features. Lamps (rendered, or in HDR panoramas) are exposed ten times, each
+ * time half as bright, to codes of 8 bits, every fourth image to RGB565, and
+ * measured by the lamp finder. Every second lamp and panorama is held out for
  * validation.
  */
 #include <math.h>
@@ -31,9 +31,9 @@ enum {
 /* ------------------------------------------------------------------ measure */
 
 struct camera {
-    /* the photographed image as RGB24; coarse: the same image as RGB565 */
+    /* image: the camera's image as RGB24; coarse: the same image as RGB565 */
     struct glint_image image, coarse;
-    /* the one of the two that the finder receives */
+    /* the image that the finder receives: image or coarse */
     const struct glint_image *seen;
     struct glint_lamp_finder *finder;
     struct glint_profile *profile;
@@ -83,9 +83,9 @@ static int is_bright_pixel(const struct camera *c, int i)
     return px[0] >= 240 || px[1] >= 240 || px[2] >= 240;
 }
 
-/* Returns the sum of the luminance of SCENE times GAIN over the bright
- * pixels connected to (CX, CY). Sets SPOT to the result of an ideal finder
- * for them. */
+/* Measures the bright region of SCENE times GAIN that is connected to pixel
+ * (CX, CY). Returns the sum of its luminance; sets SPOT to the values that an
+ * ideal lamp finder would report. */
 static double measure_bright_region(struct camera *c,
                                     const struct power_picture *scene,
                                     double gain, int cx, int cy,
@@ -140,7 +140,8 @@ static double measure_bright_region(struct camera *c,
     return area ? light : 0;
 }
 
-/* Returns the rank of SPOT among all spots, counted from the left. */
+/* Returns the rank of SPOT among all spots of the image, ordered from left to
+ * right. */
 static int find_spot_rank(const struct camera *c, const struct glint_spot *spot)
 {
     int i = 0;
@@ -168,8 +169,8 @@ static void print_spot_features(struct camera *c, int id, double power,
     printf("\n");
 }
 
-/* Takes an image of SCENE times GAIN with noise of SIGMA codes. Every fourth
- * image, by its number K, is RGB565. */
+/* Renders the camera's image of SCENE times GAIN, with noise of standard
+ * deviation SIGMA codes. Every fourth image, by its number K, is RGB565. */
 static void expose_scene(struct camera *c, const struct power_picture *scene,
                          double gain, double sigma, int k, uint32_t *seed)
 {
@@ -258,8 +259,8 @@ static void print_rendered_lamps(int i)
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = exp2(-k - rng_unit(&seed));
 
-        /* The background keeps its exposure, as lamps are visible by day and
-         * by night. */
+        /* The background keeps its exposure: lamps are seen by day and by
+         * night. */
         for (int p = 0; p < W * H; p++)
             for (int j = 0; j < 3; j++)
                 scene.rgb[3 * p + j] =
@@ -322,8 +323,8 @@ static double compute_mean(const struct power_picture *s)
     return sum / (3 * s->width * s->height);
 }
 
-/* Applies a random lens to the image, with the glare of all pixels above
- * OVER. */
+/* Applies a random lens to the image: pixels brighter than OVER produce
+ * glare. */
 static void apply_random_lens(struct power_picture *s, double over,
                               uint32_t *seed)
 {
@@ -341,8 +342,8 @@ static void apply_random_lens(struct power_picture *s, double over,
     free(light);
 }
 
-/* Takes one view of panorama P at all exposures and prints the lamps found.
- * TRUTH is the light that enters the lens, without its glare. */
+/* Renders one view of panorama P at all exposures and prints the lamps found.
+ * TRUTH: the light that enters the lens, without glare. */
 static void print_view_lamps(const struct glint_float_image *p, int id,
                              double yaw, double pitch)
 {

@@ -4,11 +4,12 @@
  * (support/random_lens.h) as a draft and compares an image of its model,
  * in linear light and in codes, with the exact image.
  *
- * Prints a line: number; drawn, dark both ways, or refused by the bake; number
- * of rejected tables; surfaces, ghosts, focal length in mm, f-number, degrees
- * of the light, PSNR in dB, flux / exact flux, 99th percentile of differences
- * in codes, and the grid of the exact image. --table: prints the table of the
- * lens instead. tests/extremes runs many, each with a time limit.
+ * Prints a line: number of the lens; result (drawn; dark in both images;
+ * rejected by the bake); number of invalid random tables before this lens;
+ * surfaces, ghosts, focal length in mm, f-number, degrees of the light, PSNR
+ * in dB, flux / exact flux, 99th percentile of differences in codes, and the
+ * grid of the exact image. --table: prints the table of the lens instead.
+ * tests/extremes runs many, each with a time limit.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +34,7 @@ static struct glint_lamp random_lamp(const struct stage *s, uint64_t seed,
     return stage_make_lamp(theta, stage_random_uniform(&r, -180, 180), 1);
 }
 
-/* Prints the line of lens NUMBER of S with the result WHAT. */
+/* Prints the output line of lens NUMBER of S, with the result WHAT. */
 static int print_lens_result(const struct stage *s, int number,
                              const char *what, int tries, double theta_deg,
                              const struct glint_measure *m, int grid)
@@ -66,7 +67,8 @@ static int compare_lens_with_exact(uint64_t seed, int number)
         return print_lens_result(&s, number, "refused", tries, lamp.theta_deg,
                                  &m, 0);
     stage_set_view(&s, WIDTH, HEIGHT, 0);
-    bright.power = 1e9; /* saturates the codes; range checks must not trap */
+    /* A power that saturates all codes: range checks must not trap. */
+    bright.power = 1e9;
     grid = glint_ghost_list(&s.lens, NULL, 0) > MANY_GHOSTS ? 64 : 128;
     if (!stage_draw_linear(&s, &lamp, 1, model) ||
         !stage_draw_codes(&s, &bright, 1, codes) ||
@@ -74,7 +76,9 @@ static int compare_lens_with_exact(uint64_t seed, int number)
         return 1;
     m = stage_compare_images(&s, exact, model);
     if (m.psnr_db < 45 && stage_draw_exact(&s, &lamp, 1, 2 * grid, exact)) {
-        grid *= 2; /* shows whether the exact image caused the difference */
+        /* Doubles the grid to show whether the exact image caused the
+         * difference. */
+        grid *= 2;
         m = stage_compare_images(&s, exact, model);
     }
     return print_lens_result(&s, number,

@@ -4,10 +4,10 @@
  * stationary lights: 1920x1080 codes on black with LIGHTS lights of a night
  * street, at the default quality with three wavelengths.
  *
- * With SCALE, a factor on their powers, draws several times, by the function
- * draw_and_time_frame(), onto a frame that was drawn before: without reuse;
- * with the same lights; with lights that moved by up to half a pixel and whose
- * powers changed by up to a fifth.
+ * With SCALE, a factor on their powers, calls draw_and_time_frame() several
+ * times for frames after the first: without reuse; with the same lights; with
+ * lights that moved by up to half a pixel and whose powers changed by up to a
+ * fifth.
  *
  * Without SCALE, prints the scale at which all but 1e-4 of the samples are at
  * most a quarter of white; the bytes of a frame without and with memory for
@@ -42,12 +42,12 @@ static void draw_and_time_frame(struct glint_frame *f, int n, double scale,
         exit(1);
 }
 
-/* A volatile pointer prevents inlining, so that the function keeps its name
- * in profiles. */
+/* The call through a volatile pointer prevents inlining, so that profiles show
+ * the function's name. */
 static void (*volatile frame)(struct glint_frame *, int, double,
                               uint8_t *) = draw_and_time_frame;
 
-/* Draws on black. PX: tolerance of reuse, pixels; below 0: no reuse. */
+/* Draws on black. PX: reuse tolerance, pixels; negative: without reuse. */
 static void draw_with_reuse(int n, double scale, double px, uint8_t *codes)
 {
     struct glint_frame *f = px < 0 ? &plain : &reusing;
@@ -95,7 +95,8 @@ static double find_exposure_scale(int n)
     return exp2(low);
 }
 
-/* Returns the min PSNR of frames whose lights have moved by up to PX pixels. */
+/* Returns the min PSNR, dB, of frames with reuse whose lights have moved by up
+ * to PX pixels, against frames without reuse. */
 static double min_psnr(int n, double scale, double px)
 {
     uint64_t noise = 1;

@@ -3,15 +3,15 @@
  * steady [--lens LENS] [VIDEO.y4m...] - prints how steady the flare is in
  * synthetic scenes and in videos.
  *
- * From frame to frame the total light of the drawn flare changes because of the
- * lamps, which move, appear, vanish or are hidden, and because of the exposure.
- * The change at a constant exposure is due to the lamps; the part of a step
- * outside the interval from 0 to that change is glint's own step. Frames after
- * a cut are not counted. In synthetic scenes the lamps are known as well: there
- * a step is due to the lamps as far as their true light, through the lens,
- * varies as much within the last WINDOW frames, as a tracked lamp fades in and
- * out over six frames. Exit code 1: by either measure a step of glint's own is
- * larger than MOST.
+ * Two causes change the total light of the flare from frame to frame: the
+ * lamps, which move, appear, vanish or are occluded, and the automatic
+ * exposure. The change at a constant exposure is attributed to the lamps; the
+ * part of a step outside the interval from 0 to that change is attributed to
+ * glint ("own step"). Frames after a cut are not counted. In synthetic scenes
+ * the true lamps are known: a step is attributed to them up to the range of
+ * their true flare light within the last WINDOW frames. The window is needed
+ * because a tracked lamp fades in and out over six frames. Exit code 1: an own
+ * step is larger than MOST, by either attribution.
  */
 #include <getopt.h>
 #include <math.h>
@@ -33,11 +33,14 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 struct steady {
     struct tool tool;
     struct drawing drawing;
-    double total, own; /* light of the last frame after and before exposure */
-    /* true light, most recent frame first; -1: unknown */
+    /* flare light of the previous frame: total after exposure, own before it */
+    double total, own;
+    /* flare light of the true lamps, latest frame first; -1: unknown */
     double truth[WINDOW + 1];
-    double worst, largest; /* largest own step; largest step of all */
-    double unmade; /* largest part of a step that true lamps do not explain */
+    /* worst: largest own step; largest: largest step of any cause */
+    double worst, largest;
+    /* largest part of a step that the true lamps do not explain */
+    double unmade;
     int worst_frame, unmade_frame, cuts, frames, most_lights;
 };
 
@@ -58,8 +61,8 @@ static double sum_flare_light(struct steady *s)
     return glint_largest_channel(light.mean);
 }
 
-/* Returns by how much STEP exceeds the interval between 0 and OWN; all are
- * logarithms of ratios. */
+/* Returns how far STEP lies outside the interval between 0 and OWN. Both are
+ * logarithms of ratios of light. */
 static double compute_excess_step(double step, double own)
 {
     const double low = fmin(own, 0), high = fmax(own, 0);
@@ -67,7 +70,7 @@ static double compute_excess_step(double step, double own)
     return step > high ? step - high : step < low ? low - step : 0;
 }
 
-/* Returns the logarithm of max / min true light within the last WINDOW
+/* Returns ln(max / min) of the true flare light within the last WINDOW
  * frames. */
 static double compute_true_light_span(const struct steady *s)
 {
@@ -83,7 +86,7 @@ static double compute_true_light_span(const struct steady *s)
 static void record_light_step(struct steady *s, double total, double own)
 {
     const bool is_cut = drawing_has_restarted(&s->drawing);
-    /* a fainter flare is invisible, so its appearance is not a step */
+    /* a fainter flare is invisible: its appearance is not a step */
     const double least = 1e-6;
 
     s->cuts += is_cut && s->frames > 0;
@@ -123,7 +126,7 @@ static void draw_and_record_frame(struct steady *s,
     drawing_set_exposure(drawing, image);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         held += drawing->run.lamp[i].lamp.power;
-    if (held < power) /* limits lamps that are too bright */
+    if (held < power) /* limits the power of lamps that are too bright */
         drawn = sum_flare_light(s);
     record_light_step(s, drawn * drawing_exposure_factor(&drawing->run), own);
     if (drawing->run.n_lamps > s->most_lights)
@@ -158,8 +161,7 @@ static bool print_step_statistics(const struct steady *s, const char *name)
 
 typedef int lamps_fn(struct night *night, int i, struct night_lamp *lamp);
 
-/* Sets LAMP to the five lamps of a street, all visible. Returns their
- * number. */
+/* Sets LAMP to the five lamps of a street, all visible, and returns 5. */
 static int set_street_lamps(struct night_lamp *lamp)
 {
     for (int i = 0; i < 5; i++)
@@ -251,8 +253,8 @@ static const struct {
     {"hard cuts", set_scene_cuts},
 };
 
-/* Returns the light of LAMP's visible pixels, white x pixels. Sets AT to
- * their centroid, pixels. */
+/* Returns the sum of the light of LAMP's visible pixels, white x pixels. Sets
+ * AT to their centroid, pixels. */
 static double measure_visible_light(const struct night *night,
                                     const struct night_lamp *lamp, double at[2])
 {
@@ -278,7 +280,7 @@ static double measure_visible_light(const struct night *night,
     return sum;
 }
 
-/* Adds the flare's light of the true lamps to s->truth. */
+/* Adds the flare light that the true lamps produce to s->truth. */
 static void add_true_lamp_light(struct steady *s, const struct night *night,
                                 const struct night_lamp *lamp, int n)
 {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * stone_cost FILE [FRAMES [SET]] - measures the light map of a baked
- * translucent medium: spreads light over the whole map, three channels, one
- * thread. tools/measure/scenes/stone-table counts its instructions. Prints for
- * each set of kernels (c, sse41, avx2, neon), or for SET only, the median CPU
- * time of FRAMES maps, ms, and a hash of the map; sets run alternately.
+ * stone_cost FILE [FRAMES [SET]] - measures the cost of the light map of a
+ * baked translucent medium: scatters light over the whole map, three channels,
+ * one thread. tools/measure/scenes/stone-table counts its instructions. Prints
+ * for each set of kernels (c, sse41, avx2, neon), or for SET only, the median
+ * CPU time of FRAMES maps, ms, and a hash of the map; sets run alternately.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,8 +24,8 @@ static const struct {
                   {"avx2", GLINT_SET_SSE41 | GLINT_SET_AVX2},
                   {"neon", GLINT_SET_NEON}};
 
-/* Instructions of a map are counted from the call of stone_cost_frame() to
- * that of stone_cost_idle(). */
+/* tools/measure counts the instructions of a map from the call of
+ * stone_cost_frame() to the call of stone_cost_idle(). */
 void stone_cost_frame(const struct glint_spread *spread,
                       struct glint_spread_scratch *scratch);
 void stone_cost_idle(const struct glint_spread *spread);
@@ -45,7 +45,7 @@ void stone_cost_idle(const struct glint_spread *spread)
         spread->map[c][0] = 0;
 }
 
-/* Sets the light to a ramp with a shadow across, and every tenth texel
+/* Sets the incident light to a ramp crossed by a shadow; every tenth texel is
  * bright. */
 static void set_incident_light(const struct glint_spread *s)
 {

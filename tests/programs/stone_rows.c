@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
  * stone_rows DIR - bakes two translucent media, chess and veins, with all
- * models that a frame can draw, for tools/measure/scenes/stone-table. Prints a
- * line each: medium, model, PSNR in dB of the fit and of the integers against
- * the light of all rows, and CPU seconds of the fit. The models of the first
- * medium are written to DIR/MODEL.glint. Media have 128 texels, kernels 29.
+ * scattering models that the run time can draw, for
+ * tools/measure/scenes/stone-table. Prints a line each: medium, model, PSNR in
+ * dB of the fit, and of the fit rounded to integers, against the light
+ * scattered by the exact rows, and CPU seconds of the fit. The models of the
+ * first medium are written to DIR/MODEL.glint. Media have 128 x 128 texels,
+ * kernels 29 x 29.
  */
 #include <math.h>
 #include <stdio.h>
@@ -54,8 +56,8 @@ static void write_medium_model(const char *dir, const char *name,
         exit_with_error(path);
 }
 
-/* LIGHT: three arrays of [3][n]: incident light, the result by all rows, and
- * scratch. */
+/* Measures a fit and its baked integers. LIGHT: three arrays of [3][n]:
+ * incident light; light scattered by the exact rows; scratch. */
 static void bake_and_measure_fit(const struct glint_scatter_fit *fit,
                                  const double *const light, double *room,
                                  const char *dir, const char *name, double *db)
@@ -95,7 +97,7 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
         exit_with_error("no fit");
-    /* Fits by clusters and by albedo get their rank only in the bake. */
+    /* fits by clusters and by albedo: the bake sets their rank */
     fit.rank = o.rank;
     bake_and_measure_fit(&fit, light, room, stone ? NULL : dir,
                          model_of[model].name, &db);

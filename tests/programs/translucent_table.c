@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * translucent_table - compares scattering models on four translucent media of
- * 48 texels with kernels of 21. Prints the tables of [Kurt14] as Markdown, with
- * the published values next to ours.
+ * 48 x 48 texels with kernels of 21 x 21. Prints the tables of [Kurt14] as
+ * Markdown, with the published values next to ours.
  */
 #include <math.h>
 #include <stdio.h>
@@ -19,7 +19,8 @@ enum { STONES = 4, GRID_TERMS = 5, GRID_DEGREES = 5 };
 static const char *const stone_name[STONES] = {"chess 4 x 4", "chess 8 x 8",
                                                "veins", "pale veins"};
 
-/* Candidates that are evaluated once per medium and used by several tables. */
+/* Model candidates that are evaluated once per medium and used in several
+ * tables. */
 enum run {
     CLUSTERED,
     FACTORED,
@@ -63,7 +64,7 @@ static const struct {
 
 struct table {
     int side, kernel;
-    double seconds[STONES]; /* CPU time of the rows */
+    double seconds[STONES]; /* CPU time for computing the scattering rows */
     struct glint_scatter_rows rows[STONES];
     struct glint_scatter_judgement j[STONES][RUNS];
 };
@@ -79,7 +80,7 @@ static void exit_with_error(const char *what)
     exit(1);
 }
 
-/* Returns the judgement of candidate O on ROWS, without its maps. */
+/* Returns the errors of candidate O on ROWS and frees their maps. */
 static struct glint_scatter_judgement
 judge_candidate(struct glint_scatter_rows *rows,
                 const struct glint_scatter_candidate *o)
@@ -172,7 +173,8 @@ static void print_model_errors(const struct table *t)
     }
 }
 
-/* Prints the RMSE of RUNS by medium, and the published values. */
+/* Prints the RMSE of the candidates RUNS, per medium, next to the published
+ * values. */
 static void print_published_comparison(const struct table *t, const char *title,
                                        const enum run *runs, int n,
                                        const char *theirs)
@@ -213,7 +215,7 @@ static void print_source_tables(const struct table *t)
         "S = 20 and 10: .0066 beside .0138, .0197 beside .0492.");
 }
 
-/* Sets OFF to ROWS with 30 % of them shifted by a texel. */
+/* Copies ROWS to OFF and shifts a random 30 % of them by one texel. */
 static void shift_some_rows(const struct glint_scatter_rows *rows,
                             struct glint_scatter_rows *off)
 {
@@ -318,8 +320,8 @@ static void print_logarithm_errors(struct table *t)
     printf("\nSource: \"never negative\"; its prototype: .4 to 7 %%.\n");
 }
 
-/* Table C11: CPU seconds for summing all rows of a fit of five terms, entry
- * by entry and by running sums. */
+/* Prints table C11: CPU seconds for summing all rows of a fit of five terms,
+ * once entry by entry and once by running sums. */
 static void print_row_sum_times(struct table *t)
 {
     const struct glint_scatter_options options = {GLINT_SCATTER_FACTORED, 5, 3};
@@ -366,7 +368,7 @@ static void print_row_sum_times(struct table *t)
                glint_scatter_candidate_sums(&svd, texels, k2, true));
 }
 
-/* Returns the CPU seconds of an image by FIT, entry by entry. */
+/* Returns the CPU seconds of scattering an image by FIT, entry by entry. */
 static double time_light_by_entries(const struct glint_scatter_fit *fit,
                                     const double *light, double *out)
 {
@@ -386,8 +388,8 @@ static double time_light_by_entries(const struct glint_scatter_fit *fit,
     return cpu_seconds() - start;
 }
 
-/* Returns the CPU seconds of an image by the integers that ROWS are baked
- * to. */
+/* Returns the CPU seconds of scattering an image by the baked integers of the
+ * fit to ROWS. */
 static double time_light_by_integers(struct glint_scatter_rows *rows,
                                      const double *light, double *out)
 {
@@ -416,7 +418,7 @@ static double time_light_by_integers(struct glint_scatter_rows *rows,
     return took;
 }
 
-/* Table C12: CPU seconds of an image of 64 x 64 texels. */
+/* Prints table C12: CPU seconds of scattering an image of 64 x 64 texels. */
 static void print_image_times(void)
 {
     enum { SIDE = 64, N = 3 * SIDE * SIDE };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * ward_table PICTURE... - measures lookups of Ward's reflection lobe against
- * sums over all texels, by alpha, rule and number of samples: PSNR in dB of a
- * brushed ball 32 pixels wide, exposed with its median at 1/4 of white, mean
- * over all pictures; of sRGB codes and of linear light.
+ * sums over all texels, by alpha, lookup rule and number of samples: PSNR in
+ * dB of a brushed ball 32 pixels wide, exposed such that its median is 1/4 of
+ * white; mean over all pictures, for sRGB codes and for linear light.
  *
  * The sums are over 512 x 512 texels in double precision. Separated lights are
  * added to the lookups in double precision, as lobes of alpha^2 + r^2 / 8.
@@ -23,7 +23,9 @@ static const double alphas[ALPHAS][2] = {
 static const double view[3] = {0, 0, -1};
 
 struct map {
-    unsigned char *data[2][2]; /* [gauss, mip][without lights, with lights] */
+    /* baked maps: [Gaussian levels, mipmap levels][without, with separated
+     * lights] */
+    unsigned char *data[2][2];
     struct glint_environment environment[2][2];
     struct glint_sphere sphere;
 };
@@ -85,7 +87,8 @@ static void compute_psnr(ward_picture want, ward_picture got, double db[WAYS])
     db[1] = ward_compute_psnr(want, got);
 }
 
-/* Sets DB to the PSNR of the published rule at the bias with the best PSNR. */
+/* Finds the mipmap bias at which the published lookup rule has the best PSNR,
+ * and sets DB to that PSNR. */
 static void find_best_mipmap_bias(const struct glint_environment *e,
                                   const struct glint_ward_material *material,
                                   ward_picture want, ward_picture got,

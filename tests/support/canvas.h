@@ -7,7 +7,7 @@
 
 #include "glint/image.h"
 
-/* all pixel formats except linear light */
+/* number of pixel formats except linear light */
 enum { CANVAS_FORMATS = 12 };
 extern const enum glint_pixel_format canvas_format[CANVAS_FORMATS];
 
@@ -27,9 +27,9 @@ int canvas_read_grey_pixel(const struct glint_image *image, int x, int y);
 void canvas_fill_grey_box(const struct glint_image *image, int x0, int y0,
                           int x1, int y1, int code);
 
-/* canvas_decode_value() returns the linear light of V, a code divided by 255;
- * canvas_encode_light() is its inverse. White is 1; the curve is odd: f(-x) =
- * -f(x). */
+/* canvas_decode_value() returns the linear light (1 = white) of V, a code
+ * divided by 255; canvas_encode_light() is its inverse. Both accept negative
+ * values: f(-x) = -f(x). */
 double canvas_decode_value(double v, enum glint_tone tone);
 double canvas_encode_light(double light,
                            enum glint_tone tone); /* clamped to 1 */
@@ -39,8 +39,8 @@ int canvas_encode_srgb(double light);
 
 double canvas_decode_srgb(int code);
 
-/* Returns the fraction of pixel (X, Y), 0 .. 1, that the disc covers, by 16
- * x 16 samples. */
+/* Returns the fraction of pixel (X, Y), 0 .. 1, that the disc covers, measured
+ * by 16 x 16 samples. */
 double canvas_disc_coverage(int x, int y, double cx, double cy, double radius);
 
 /* Draws an antialiased disc of LIGHT (1 = white) onto a grey image. */

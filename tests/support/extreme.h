@@ -11,7 +11,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Returns whether long tests are requested: GLINT_LONG is set and not 0. */
+/* Returns whether long tests are requested: the variable GLINT_LONG is set and
+ * not 0. */
 static inline bool extreme_is_long_run(void)
 {
     const char *text = getenv("GLINT_LONG");
@@ -19,8 +20,8 @@ static inline bool extreme_is_long_run(void)
     return text && *text && *text != '0';
 }
 
-/* Prints the worst value WORST of case NAME. Returns whether it is at most
- * BOUND. */
+/* Prints the worst value WORST of case NAME and its upper bound BOUND. Returns
+ * whether WORST <= BOUND. */
 static inline bool extreme_check_at_most(const char *name, double worst,
                                          double bound, const char *unit)
 {
@@ -29,8 +30,8 @@ static inline bool extreme_check_at_most(const char *name, double worst,
     return worst <= bound;
 }
 
-/* Prints the worst value WORST of case NAME. Returns whether it is at least
- * BOUND. */
+/* Prints the worst value WORST of case NAME and its lower bound BOUND. Returns
+ * whether WORST >= BOUND. */
 static inline bool extreme_check_at_least(const char *name, double worst,
                                           double bound, const char *unit)
 {

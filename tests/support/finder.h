@@ -9,10 +9,10 @@
 
 enum { FINDER_SPOTS = 1024 };
 
-/* lamps of the last search */
+/* lamps that the last search found */
 extern struct glint_spot finder_spot[FINDER_SPOTS];
 
-/* seed of the random byte that fills the memory of each new finder */
+/* seed of the byte with which the memory of each new finder is filled */
 extern uint32_t finder_seed;
 
 /* finder_find_lamps_up_to() finds at most MAX lamps of IMAGE, stores them in
@@ -26,8 +26,8 @@ int finder_find_lamps_up_to(const struct glint_lamp_finder_config *cfg,
 int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
                       const struct glint_image *image);
 
-/* Returns the light half-way between the sRGB codes CODE - 1 and CODE, stops
- * above white, Q8. */
+/* Returns the threshold between the sRGB codes CODE - 1 and CODE: their mean
+ * light, stops relative to white, Q8. */
 int32_t finder_threshold_stops_q8(int code);
 
 /* Returns a configuration without filters: every region counts, whatever its

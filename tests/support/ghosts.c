@@ -32,8 +32,7 @@ struct glint_flare_config octagonal_stop_config(void)
 
 struct glint_vertex compute_ghost_vertex(const struct ghost *g, int i, int j)
 {
-    /* sx and sy are -1.25 .. 1.25 stop radii, Q16, computed in integers
-     * only. */
+    /* sensor coordinates -1.25 .. 1.25 stop radii, Q16, in integers only */
     const int64_t sx = (int64_t)163840 * i / g->n - 81920;
     const int64_t sy = (int64_t)163840 * j / g->n - 81920;
     const int64_t bent = (sx * sx / 65536 + sx * sy / 131072) * g->bend / 1000;
@@ -82,7 +81,7 @@ struct glint_flare *allocate_flare(struct glint_flare_config *c, void **mem)
 
     assert_int_not_equal(bytes, 0);
     assert_int_equal(posix_memalign(mem, 64, bytes), 0);
-    /* Dirty memory reveals members that init() leaves unset. */
+    /* Filled memory reveals members that init() leaves unset. */
     memset(*mem, 0xa5, bytes);
     assert_ok(glint_flare_init(&f, c, *mem, bytes));
     return f;
@@ -152,7 +151,7 @@ struct ghost make_random_ghost(void)
         draw_random_number(WIDTH - 60) - 20,
         draw_random_number(HEIGHT),
         size,
-        draw_random_number(1500) - 750, /* above +-320 the ghost is folded */
+        draw_random_number(1500) - 750, /* bends beyond +-320 fold the ghost */
         draw_random_number(2) ? 1 : -1,
         draw_random_number(2000) - 1000,
         draw_random_number(4),

@@ -14,10 +14,10 @@ enum { WIDTH = 203, HEIGHT = 151, N_GHOSTS = 6 };
 struct ghost {
     int n;
     int cx, cy; /* centre, pixels */
-    int size;   /* pixels per stop radius */
-    int bend;   /* quadratic term, 1/1000 of size */
+    int size;   /* pixels per stop radius of the ghost's image */
+    int bend;   /* quadratic distortion, 1/1000 of size */
     int mirror; /* -1: mirrored */
-    /* offset of the barrel's centre from the stop's, 1/1000 of the stop
+    /* offset of the barrel's centre from the stop's centre, 1/1000 of the stop
      * radius */
     int barrel_shift;
     int32_t flux_exponent;
@@ -29,8 +29,8 @@ extern const struct ghost ghosts[N_GHOSTS];
 /* Returns a configuration with an octagonal stop and memory for all ghosts. */
 struct glint_flare_config octagonal_stop_config(void);
 
-/* Returns a flare with configuration C. Sets *MEM to its memory, which the
- * caller frees. */
+/* Allocates and returns a flare with configuration C. Sets *MEM to its memory,
+ * which the caller frees. */
 struct glint_flare *allocate_flare(struct glint_flare_config *c, void **mem);
 
 /* Returns the vertex in column I and row J of G's grid. */
@@ -38,11 +38,12 @@ struct glint_vertex compute_ghost_vertex(const struct ghost *g, int i, int j);
 
 void add_ghost_to_flare(struct glint_flare *f, const struct ghost *g);
 
-/* Clears PX[HEIGHT][WIDTH][3] and returns a linear image over it. */
+/* Clears the samples PX[HEIGHT][WIDTH][3] and returns a linear image that
+ * contains them. */
 struct glint_image make_linear_image(int32_t *px);
 
 /* draw_ghost_list() draws the N ghosts of LIST into OUT[HEIGHT][WIDTH][3],
- * linear light Q20; draw_scene() draws the list `ghosts`. */
+ * linear light Q20; draw_scene() draws the global list `ghosts`. */
 struct glint_flare_stats draw_ghost_list(struct glint_flare_config c,
                                          const struct ghost *list, int n,
                                          int32_t *out);

@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* Checks that |GOT - EXPECTED| <= TOLERANCE in double precision; cmocka
- * compares floats only. */
+/* Checks that |GOT - EXPECTED| <= TOLERANCE in double precision; cmocka can
+ * compare only floats. */
 #define assert_near(got, expected, tolerance) \
     check_near(got, expected, tolerance, #got, __FILE__, __LINE__)
 

@@ -52,7 +52,8 @@ struct glint_lens model_open_image(const struct model_image *m);
 
 struct glint_real model_real_from_double(double x);
 
-/* Wavelengths of 800 and 400 nm as 1 / wavelength^2, um^-2, Q24; 1 in Q30. */
+/* Wavelengths of 800 and 400 nm, encoded as 1 / wavelength^2, um^-2, Q24; 1 in
+ * Q30. */
 enum {
     MODEL_WAVE_LO_Q24 = 26214400,
     MODEL_WAVE_HI_Q24 = 104857600,
@@ -62,8 +63,8 @@ enum {
 void model_begin_header(struct model_image *m, enum glint_basis basis,
                         const char *name);
 
-/* Writes the tables of the N polynomials P into M and S; coefficients are
- * divided by 2^HALVED. */
+/* Writes the output polynomials P[N] to M and refers to them from S.
+ * Coefficients are divided by 2^HALVED. */
 void model_write_outputs(struct model_image *m, struct glint_model_system *s,
                          const struct model_polynomial *p, uint32_t n,
                          int halved);
@@ -81,8 +82,8 @@ void model_append_ghosts(struct model_image *m,
                          const struct glint_model_system *systems,
                          uint32_t n_systems);
 
-/* Returns a model of three ghosts: ghost 0 has two ranges of angles, sines 0
- * .. 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never
+/* Returns a model of three ghosts. Ghost 0 has two ranges of angles, sines 0 ..
+ * 1/4 and 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never
  * visible; ghost 2 has two bands of wavelengths. */
 struct model_image model_make_auto(void);
 

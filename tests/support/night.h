@@ -16,15 +16,15 @@ enum { NIGHT_MAX = 1024, NIGHT_NOISE = 1 << 16 };
 
 struct night_lamp {
     double x, y, radius;
-    /* light of the disc, 1 = white; outside it falls by a factor e per 1.5
-     * pixels */
+    /* light of the lamp's disc, 1 = white; outside the disc it falls by a
+     * factor e per 1.5 pixels */
     double light;
 };
 
 struct night {
     struct glint_image image;
-    double sigma; /* standard deviation of the noise, codes */
-    /* columns between which a pole hides lamps, pixels */
+    double sigma; /* standard deviation of the camera noise, codes */
+    /* first and last column of a pole that hides lamps, pixels */
     double pole_x0, pole_x1;
     struct glint_lamp_finder *finder;
     struct glint_lamp_finder_config lights;
@@ -36,21 +36,22 @@ struct night {
     struct glint_lamp_track track[NIGHT_MAX];
     int n_spots, n_tracks;
     uint32_t seed;
-    int8_t noise[NIGHT_NOISE];     /* units of sigma / 16 */
-    int row_noise[GLINT_MAX_SIDE]; /* index in noise of a row's first pixel */
+    int8_t noise[NIGHT_NOISE]; /* noise values in units of sigma / 16 */
+    /* index in `noise` of the first pixel of each row */
+    int row_noise[GLINT_MAX_SIDE];
 };
 
-/* Sets NIGHT to a size, default parameters and a table of noise: sums of
- * twelve uniform numbers, nearly Gaussian. */
+/* Sets NIGHT to a size, default parameters and a table of nearly Gaussian
+ * noise, sums of twelve uniform numbers. */
 void night_init_parameters(struct night *night, int width, int height);
 
-/* Opens finder, profile and tracker with the configurations in N. Returns
+/* Opens the finder, profile and tracker with the configurations in N. Returns
  * whether this succeeded. */
 int night_open_tracker(struct night *n);
 
 void night_close_tracker(struct night *night);
 
-/* Draws the N lamps of LAMP with noise of sigma around them, on a dark
+/* Draws the N lamps of LAMP, with noise of sigma codes around them, on a dark
  * background with noise of one code. */
 void night_draw_lamps(struct night *night, const struct night_lamp *lamp,
                       int n);

@@ -33,8 +33,8 @@ static int is_point_in_shape(const struct power_lamp *l, double x, double y)
     }
 }
 
-/* Sets LIGHT to the fraction of each pixel that the shape covers, normalised
- * to a sum of 1. */
+/* Sets LIGHT to the fraction of each pixel that the shape covers, divided by
+ * the sum of these fractions. */
 static void draw_shape(double *light, int width, int height,
                        const struct power_lamp *l)
 {
@@ -94,8 +94,9 @@ static void blur_image(double *light, int width, int height, double sigma)
     free(tmp);
 }
 
-/* Adds to LIGHT the glare of the lit pixels of SHAPE. If more than SOURCES
- * pixels are lit, every k-th pixel represents k of them. */
+/* Adds the glare of the lit pixels of SHAPE to LIGHT. If more than SOURCES
+ * pixels are lit, only every k-th pixel is a source of glare, with k times its
+ * light. */
 static void add_glare(double *light, const double *shape, int width, int height,
                       const struct power_lamp *l)
 {
@@ -106,8 +107,7 @@ static void add_glare(double *light, const double *shape, int width, int height,
 
     for (int r2 = 0; r2 < width * width + height * height && r2 < KERNEL; r2++)
         kernel[r2] = pow(1 + r2 / (l->reach * l->reach), -l->fall / 2);
-    /* TOTAL is the glare of one pixel, integrated to a radius of 2000
-     * pixels. */
+    /* TOTAL: the glare of one pixel, integrated to a radius of 2000 pixels */
     for (double r = 0.25; r < 2000; r += 0.5)
         total +=
             3.14159265 * r * pow(1 + r * r / l->reach / l->reach, -l->fall / 2);

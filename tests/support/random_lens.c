@@ -59,8 +59,8 @@ static double compute_sag(double radius, double height)
                      copysign(sqrt(radius * radius - height * height), radius);
 }
 
-/* Chooses glasses, semi-diameters from 0.1 .. 0.5 on, and radii that grow
- * with the number of surfaces. */
+/* Chooses glasses, semi-diameters of at least 0.1 .. 0.5, and radii of
+ * curvature that grow with the number of surfaces. */
 static void choose_surface_shapes(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);
@@ -86,9 +86,9 @@ static void choose_surface_shapes(uint64_t *r, struct glint_prescription *l)
     }
 }
 
-/* Chooses thicknesses slightly larger than needed to keep rims from
- * crossing. The stop is a separate plane before, between or after the
- * surfaces. */
+/* Chooses thicknesses slightly larger than needed to keep the rims of
+ * neighbouring surfaces from crossing. The stop is a separate plane before,
+ * between or after the surfaces. */
 static void choose_thicknesses(uint64_t *r, struct glint_prescription *l)
 {
     l->stop_after = random_below(r, l->n_surfaces + 1);
@@ -120,7 +120,8 @@ static void choose_thicknesses(uint64_t *r, struct glint_prescription *l)
 static void choose_coatings(uint64_t *r, struct glint_prescription *l)
 {
     const double coated = stage_random_uniform(r, -0.3, 1.3);
-    double before = 0; /* vd of the medium in front of the surface; air: 0 */
+    /* Abbe number vd of the medium in front of the surface; 0: air */
+    double before = 0;
 
     for (int k = 0; k < l->n_surfaces; k++) {
         struct glint_surface *s = &l->surface[k];
@@ -157,8 +158,8 @@ static double *find_gap_before_sensor(struct glint_prescription *l)
                : &l->surface[l->n_surfaces - 1].thickness_mm;
 }
 
-/* Sets f-number, film and its distance. Returns false if the lens forms no
- * image, or an image inside itself. */
+/* Chooses the f-number and sensor size, and focuses the lens. Returns false if
+ * the lens forms no image, or forms it inside itself. */
 static bool set_focus_and_film(uint64_t *r, struct glint_prescription *l)
 {
     struct glint_optics o;
@@ -241,8 +242,8 @@ static bool make_lens_candidate(uint64_t *r, struct glint_prescription *l,
                                 int number, char *text)
 {
     struct glint_error error;
-    /* Most lenses get few surfaces, as the number of ghosts grows with its
-     * square. */
+    /* Most lenses get few surfaces, as the number of ghosts grows with the
+     * square of the number of surfaces. */
     const double u = stage_random_uniform(r, 0, 1);
     const int n = (int)floor(2 * pow(32.5, u * u));
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Random valid lenses: nobody would build them, but the checker accepts them
- * and they form an image.
+ * Random valid lenses: not practical designs, but the parser accepts them and
+ * they form an image.
  */
 #ifndef GLINT_TESTS_RANDOM_LENS_H
 #define GLINT_TESTS_RANDOM_LENS_H
@@ -10,12 +10,13 @@
 
 enum { RANDOM_LENS_TEXT = 16384 };
 
-/* Makes lens NUMBER of the sequence of SEED: its table in TEXT, the parsed lens
- * in LENS. A lens has 2 to 64 surfaces (a single one would have air on both
- * sides), radii of both signs and planes, cemented or not, catalogue glasses or
- * any n and V, with or without coatings, the stop anywhere, focal lengths of 1
- * mm to 10 m, films of 1 to 100 mm if possible. Returns the number of invalid
- * candidates before it, or -1 if all were invalid. */
+/* Makes lens NUMBER of the random sequence SEED: its table in TEXT, the parsed
+ * lens in LENS. A lens has 2 to 64 surfaces (one surface alone would have air
+ * on both sides): planes and radii of both signs, cemented or not, catalogue
+ * glasses or any n and V, with or without coatings, the stop anywhere, focal
+ * lengths of 1 mm to 10 m, and image sizes of 1 to 100 mm if possible. Returns
+ * the number of invalid candidates before the lens, or -1 if all candidates
+ * were invalid. */
 int make_random_lens(struct glint_prescription *lens, uint64_t seed, int number,
                      char text[RANDOM_LENS_TEXT]);
 

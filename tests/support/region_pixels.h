@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds regions pixel by pixel: the reference for sums over whole rows.
+ * Sums the moments of image regions pixel by pixel: the reference for the
+ * library's sums over whole rows.
  */
 #ifndef GLINT_TESTS_SUPPORT_REGION_PIXELS_H
 #define GLINT_TESTS_SUPPORT_REGION_PIXELS_H
 
 #include "lamps/regions.h"
 
-/* Adds pixels X0 .. X1 - 1 of row Y, all with the same light, to moments and
- * colour of SUM. */
+/* Adds pixels X0 .. X1 - 1 of row Y, all with the same light, to the moments
+ * and colour of SUM. */
 static inline void region_add_pixels(struct glint_region *sum,
                                      const struct glint_region_light *light,
                                      int x0, int x1, int y)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Pseudo-random numbers for tests, the same on every machine, by a linear
- * congruential generator, whose high bits are the best.
+ * congruential generator. Its high bits are the most random.
  *
  *     uint32_t seed = 1;
  *     x = rng_int_below(&seed, 256);
@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 
-/* Returns 32 bits; bit k repeats after 2^(k + 1) numbers. */
+/* Returns 32 random bits. Bit k has a period of 2^(k + 1) numbers. */
 static inline uint32_t rng_bits32(uint32_t *seed)
 {
     return *seed = *seed * UINT32_C(1664525) + UINT32_C(1013904223);

@@ -23,7 +23,7 @@ void scratch_create_file(void)
 
 void scratch_remove_file(void)
 {
-    unlink(scratch_file); /* does nothing if a test has removed it */
+    unlink(scratch_file); /* no effect if a test has removed the file */
 }
 
 void scratch_create_dir(void)
@@ -64,5 +64,5 @@ int scratch_count_entries(const char *dir)
     while (readdir(d))
         n++;
     closedir(d);
-    return n - 2; /* . and .. do not count */
+    return n - 2; /* without . and .. */
 }

@@ -15,21 +15,22 @@
 /* Expands to two arguments: TEXT, and its length without the terminating 0. */
 #define BYTES(text) text, sizeof text - 1
 
-/* path of the single file, which exists and is empty before the first test */
+/* path of the single file; it exists and is empty before the first test */
 extern char scratch_file[];
 void scratch_create_file(void);
 void scratch_remove_file(void);
 
-/* path of the folder; closing it fails if a test has left a file in it */
+/* path of the folder; scratch_remove_dir() fails if a test has left a file in
+ * it */
 extern char scratch_dir[];
 void scratch_create_dir(void);
 void scratch_remove_dir(void);
 
-/* Returns the path of NAME in the folder, valid until the call after the
- * next. */
+/* Returns the path of file NAME in the folder. The result is valid until the
+ * next but one call. */
 const char *scratch_path_of(const char *name);
 
-/* Writes DATA to the file NAME in the folder; fails the test on an error. */
+/* Writes DATA[BYTES] to file NAME in the folder; fails the test on an error. */
 void scratch_write_file(const char *name, const char *data, size_t bytes);
 
 /* Returns the number of entries of the folder DIR, including hidden ones. */

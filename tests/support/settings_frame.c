@@ -34,7 +34,7 @@ int make_frame_from_settings(const struct tool *tool,
     frame->dials = settings->dials;
     frame->only_ghost = settings_get_only_ghost(settings);
     frame->tints = lens->tints;
-    /* A limit of work would make the grid coarser than requested. */
+    /* no work limit, which could make the grid coarser than requested */
     frame->limits.most_minsn =
         settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
             ? 0

@@ -41,7 +41,7 @@ bool stage_parse_lens(struct stage *stage, const char *text)
            print_error_and_fail(error.text);
 }
 
-/* Wavelengths of red, green and blue. */
+/* wavelengths of the red, green and blue channel */
 static const double nm[3] = {650, 532, 450};
 
 bool stage_set_up_lens(struct stage *stage, int n_blades)
@@ -53,7 +53,8 @@ bool stage_set_up_lens(struct stage *stage, int n_blades)
            print_error_and_fail(error.text);
 }
 
-/* Sets of_model, the lens data that frames are drawn with, from the model. */
+/* Sets of_model, the lens data with which frames are drawn, from the baked
+ * model. */
 static bool set_lens_of_model(struct stage *stage)
 {
     const struct glint_setup *s = &stage->setup;

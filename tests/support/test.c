@@ -45,7 +45,7 @@ int main(int argc, char **argv)
     const char *const name = argc ? strrchr(*argv, '/') : NULL;
 
     if (n_tests > sizeof tests / sizeof *tests)
-        return 99; /* more tests than the table can hold */
+        return 99; /* the table of tests is full */
     return _cmocka_run_group_tests(name ? name + 1 : "tests", tests, n_tests,
                                    set_up_test_group, tear_down_test_group);
 }

@@ -32,7 +32,8 @@
     }                                                         \
     static void test_##name(void)
 
-/* Functions that run before the first test and after the last. */
+/* Defines a function that runs before the first test, or after the last
+ * test. */
 #define TEST_OPEN  TEST_FIXTURE(open_tests, test_opens)
 #define TEST_CLOSE TEST_FIXTURE(close_tests, test_closes)
 #define TEST_FIXTURE(name, of)                                \
@@ -43,7 +44,7 @@
     }                                                         \
     static void name(void)
 
-/* Functions that run before and after each test. */
+/* Defines a function that runs before each test, or after each test. */
 #define TEST_BEFORE TEST_FIXTURE(before_test, test_before)
 #define TEST_AFTER  TEST_FIXTURE(after_test, test_after)
 
@@ -56,7 +57,7 @@
     }                                                          \
     struct test_group
 
-/* Checks for GLINT_OK or EXIT_OK. */
+/* Checks that STATUS is GLINT_OK or EXIT_OK. */
 #define assert_ok(status) assert_int_equal(status, 0)
 
 void test_register(const char *name, CMUnitTestFunction run);

@@ -19,9 +19,9 @@ void four_init_localiser(struct four *four, enum four_fit fit,
         four->chain[k][k] = 1;
 }
 
-/* Computes barycentric weights of a point with respect to four points that are
- * not coplanar. The weights sum to 1 and are invariant under rigid motion of
- * all points. */
+/* Base of four points that are not coplanar. The barycentric weights of a
+ * point with respect to them sum to 1 and do not change when all points move
+ * rigidly. */
 struct base {
     enum four_arithmetic arithmetic;
     /* normal[i]: cross product of the other two edges */
@@ -59,8 +59,8 @@ static void set_base_matrix(struct base *b, const double (*const from[4])[3])
     b->det = compute_dot(b, b->edge[0], b->normal[0]);
 }
 
-/* Sets PLACE to the image of POINT under the motion from the points FROM to
- * the points TO. */
+/* Sets PLACE to where POINT moves in the motion that takes the four points FROM
+ * to the points TO. */
 static void move_point_by_bases(const struct base *b,
                                 const double (*const from[4])[3],
                                 const double (*const to[4])[3],
@@ -83,8 +83,8 @@ static void move_point_by_bases(const struct base *b,
     }
 }
 
-/* Returns the volume of the tetrahedron of the four points FROM / its upper
- * bound: 0 .. 1, in double precision. */
+/* Returns the volume of the tetrahedron of the four points FROM divided by its
+ * upper bound, 0 .. 1, in double precision. */
 static double four_span_volume(const double (*const from[4])[3])
 {
     struct base b = {.arithmetic = FOUR_DOUBLE};
@@ -96,9 +96,9 @@ static double four_span_volume(const double (*const from[4])[3])
     return bound > 0 ? fabs(b.det) / bound : 0;
 }
 
-/* Sets MAP to the affine map that moves FROM[4] to TO[4], a 3 x 4 matrix by
- * columns: images of the axes, then of the origin. Returns false if
- * four_span_volume() is below 2^-20. */
+/* Sets MAP, 3 x 4 by columns, to the affine map that moves FROM[4] to TO[4]:
+ * first the images of the three axes, then the image of the origin. Returns
+ * false if four_span_volume() is below 2^-20. */
 static bool four_solve_affine_map(enum four_arithmetic arithmetic,
                                   const double (*const from[4])[3],
                                   const double (*const to[4])[3],
@@ -121,8 +121,9 @@ static bool four_solve_affine_map(enum four_arithmetic arithmetic,
     return true;
 }
 
-/* Sets FOUR to the indices of the known foods that FIT uses. Returns false
- * if there are fewer than four. */
+/* Sets FOUR to the indices of the four foods (landmarks), among those observed
+ * before, that the method l->fit uses. Returns false if there are fewer than
+ * four. */
 static bool choose_four_foods(const struct four *l, int n,
                               const double (*seen)[3], const bool *is_new,
                               int four[4])
@@ -156,8 +157,8 @@ static bool choose_four_foods(const struct four *l, int n,
     return true;
 }
 
-/* Multiplies the chain of motions by MAP, from this frame to the previous
- * one. */
+/* Appends MAP, the motion from this frame to the previous one, to the product
+ * of all motions. */
 static void extend_motion_chain(struct four *l, double map[4][3])
 {
     double next[4][3];
@@ -177,8 +178,8 @@ static void extend_motion_chain(struct four *l, double map[4][3])
     memcpy(map, next, sizeof next);
 }
 
-/* Sets MAP to the affine motion of the body since the reference frame, from
- * four of its N foods. Returns NULL or an error text. */
+/* Sets MAP to the affine motion of the body since the reference frame, solved
+ * from four of the N observed foods. Returns NULL or an error text. */
 static const char *solve_body_motion(struct four *l, int n,
                                      const double (*seen)[3],
                                      const bool *is_new, double map[4][3])

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Localises a body by four foods (landmarks), as published [Bodonyi26]: the
- * barycentric weights of a point with respect to four foods do not change when
- * the body moves. The interface is that of glint_localiser
+ * Localises a body by four foods (landmarks), by the method of [Bodonyi26]:
+ * the barycentric weights of a point with respect to four fixed foods do not
+ * change when the body moves. The interface is that of glint_localiser
  * (bake/motion/localise.h).
  */
 #ifndef REFERENCE_MOTION_FOUR_H
@@ -11,14 +11,14 @@
 #include "bake/motion/localise.h"
 
 enum four_fit {
-    /* weights with respect to the four foods that span the largest volume */
+    /* weights with respect to the four foods whose tetrahedron is largest */
     FOUR_BEST,
-    FOUR_FIRST, /* weights with respect to the first four foods */
-    FOUR_CHAIN  /* product of the motions from frame to frame */
+    FOUR_FIRST, /* weights with respect to the first four foods of the frame */
+    FOUR_CHAIN  /* product of the motions between successive frames */
 };
 
-/* FOUR_FLOAT32 rounds every result to float. The bits are those of float
- * arithmetic, as double has more than twice its digits. */
+/* FOUR_FLOAT32 rounds every result to float. As double has more than twice the
+ * digits of float, the bits equal those of float arithmetic. */
 enum four_arithmetic { FOUR_DOUBLE, FOUR_FLOAT32 };
 
 struct four {
@@ -26,13 +26,13 @@ struct four {
     enum four_arithmetic arithmetic;
     bool has_begun;
     double place[GLINT_MOTION_MAX_FOODS][3];
-    /* food positions observed in the previous frame */
+    /* positions of the foods in the previous frame */
     double last[GLINT_MOTION_MAX_FOODS][3];
-    /* product of the motions of all frames so far, by columns */
+    /* product of the motions of all frames so far, 3 x 4 by columns */
     double chain[4][3];
 };
 
-/* Returns X rounded to ARITHMETIC. */
+/* Returns X rounded to the precision of ARITHMETIC. */
 double four_round_value(enum four_arithmetic arithmetic, double x);
 
 void four_init_localiser(struct four *four, enum four_fit fit,

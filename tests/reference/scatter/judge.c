@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the errors of models of subsurface scattering against the rows that
- * they were fitted to.
+ * Measures the errors of models of subsurface scattering against the rows of
+ * the scattering matrix that they were fitted to.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -43,7 +43,8 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
     const double line = sqrt(entries);
 
     switch (candidate->kind) {
-    case GLINT_CANDIDATE_CLUSTERED: /* the cluster costs one byte per texel */
+    /* the cluster index costs one byte per texel */
+    case GLINT_CANDIDATE_CLUSTERED:
         return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
         return 8 * 3 * candidate->terms * (texels + 2 * candidate->rank * line);
@@ -84,12 +85,14 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
         return kept ? 3 * (texels + entries) : 3 * texels * entries;
     case GLINT_CANDIDATE_CLUSTERED:
         return 3 * texels * entries;
-    case GLINT_CANDIDATE_PEERS: /* stored sums of G h_j, for each cluster */
+    /* stored sums of mean row G times kernel h_j, per cluster */
+    case GLINT_CANDIDATE_PEERS:
         return kept ? terms * (texels + candidate->clusters * entries)
                     : (terms + 3) * texels * entries;
     case GLINT_CANDIDATE_TUCKER:
         return (candidate->terms + 3.0 * candidate->degree) * texels * entries;
-    case GLINT_CANDIDATE_SUBEDIT: /* two interpolations and a square root */
+    /* two profile interpolations and a square root per entry */
+    case GLINT_CANDIDATE_SUBEDIT:
         return 3 * 4 * texels * entries;
     case GLINT_CANDIDATE_LOG_SVD: /* plus an exponential */
     default:
@@ -120,8 +123,8 @@ void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                     : (float)row[d];
 }
 
-/* Sets REBUILT to ROWS rebuilt from one of the fits that the run time can
- * draw. */
+/* Fits to ROWS a model that the run time can draw, and sets REBUILT to the rows
+ * of that fit. */
 static enum glint_status rebuild_rows_by_runtime_fit(
     struct glint_scatter_rows *rows, const struct glint_scatter_candidate *o,
     const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
@@ -172,7 +175,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the squared error of the row of texel X. Adds its negative
+/* Returns the squared error of the row of texel X. Adds its number of negative
  * entries, its asymmetry and its sum to J and ONE_WAY. */
 static double measure_row_errors(const struct glint_scatter_rows *rows,
                                  const struct glint_scatter_rows *rebuilt,
@@ -206,7 +209,8 @@ static double measure_row_errors(const struct glint_scatter_rows *rows,
     return square;
 }
 
-/* Returns the number of entries of all rows that lie inside the square. */
+/* Returns the total number of row entries, three channels, whose texels lie
+ * inside the square of the medium. */
 static double count_entries_in_square(const struct glint_scatter_rows *rows)
 {
     double n = 0;
@@ -226,7 +230,7 @@ static double compute_psnr_db(double square, double peak)
                                   : NO_ERROR_DB;
 }
 
-/* Sets the fields of J that measure errors of row entries. SORTED[texels] is
+/* Sets the fields of J that measure the errors of rows. SORTED[texels] is
  * scratch memory. */
 static void measure_entry_errors(const struct glint_scatter_rows *rows,
                                  const struct glint_scatter_rows *rebuilt,

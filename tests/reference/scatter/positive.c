@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Non-negative factorisation of rows, and of rows relative to a mean row, with
- * weights [Peers06].
+ * Fits non-negative factors to the rows of a scattering matrix, or to the rows
+ * divided by the mean row of their cluster [Peers06].
  */
 #include "reference/scatter/rebuild.h"
 
@@ -11,11 +11,11 @@
 
 enum {
     ROUNDS = 30,
-    SWEEPS = 2,         /* passes over all terms per round */
+    SWEEPS = 2,         /* updates of each term per round */
     CLUSTER_ROUNDS = 20 /* rounds of k-means */
 };
 
-/* Sets ROW to row X of the factorisation: the sum of its terms. */
+/* Sets ROW to row X as the factorisation models it: the sum of its terms. */
 static void sum_row_terms(const struct glint_positive *p, int x, double *row)
 {
     memset(row, 0, (size_t)p->m * sizeof *row);
@@ -28,13 +28,13 @@ static void sum_row_terms(const struct glint_positive *p, int x, double *row)
     }
 }
 
-/* Sums for one update of h: [terms][m] of weights times values,
- * [terms][terms][m] of weights, and three rows of scratch. */
+/* Sums for one update of the kernels h: [terms][m] weighted values,
+ * [terms][terms][m] weights, and three scratch rows. */
 struct sums {
     double *up, *gram, *value, *weight, *left;
 };
 
-/* Fits the factors of row X by least squares, one after the other, clamped
+/* Fits the factors of row X by least squares, one term after the other, clamped
  * to 0. */
 static void fit_row_factors(const struct glint_positive *p, int x,
                             const struct sums *s)
@@ -79,8 +79,8 @@ static void add_row_to_sums(const struct glint_positive *p, int x,
     }
 }
 
-/* Fits the kernels h by least squares, one term after the other, clamped to
- * 0. */
+/* Fits the kernels h of all terms by least squares, one term after the other,
+ * clamped to 0. */
 static void fit_kernels_h(const struct glint_positive *p, const struct sums *s)
 {
     const size_t m = (size_t)p->m, terms = (size_t)p->terms;
@@ -102,8 +102,8 @@ static void fit_kernels_h(const struct glint_positive *p, const struct sums *s)
     }
 }
 
-/* Sets initial factors from two different sequences, so that the terms
- * differ. */
+/* Sets the initial factors from two different sequences, as equal terms would
+ * stay equal. */
 static void set_initial_factors(const struct glint_positive *p)
 {
     for (int i = 0; i < p->terms * p->n; i++)
@@ -138,14 +138,14 @@ enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
     return status;
 }
 
-/* Rows relative to the mean row of their cluster; if PLAIN, the rows
- * themselves. */
+/* Rows divided by the mean row of their cluster; if PLAIN, the unchanged
+ * rows. */
 struct over {
     const struct glint_scatter_rows *rows;
     int c, clusters;
     bool plain;
-    double *mean; /* [clusters][kernel * kernel]: mean rows of the channel */
-    int *cluster; /* [texels]: index of the cluster */
+    double *mean; /* [clusters][kernel * kernel]: mean rows of one channel */
+    int *cluster; /* [texels]: cluster index of each row */
 };
 
 static void read_relative_row(const void *ctx, int x, double *value,
@@ -192,8 +192,8 @@ static void set_cluster_means(struct over *p)
             p->mean[(size_t)i * k2 + d] /= n[i];
 }
 
-/* Clusters the rows by k-means. Initial clusters are consecutive ranges of
- * texels. */
+/* Clusters the rows by k-means. The initial clusters are consecutive ranges of
+ * rows. */
 static void cluster_rows(struct over *p)
 {
     const int texels = p->rows->side * p->rows->side;

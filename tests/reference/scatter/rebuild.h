@@ -3,9 +3,9 @@
  * Published models of subsurface scattering. Each function fits a model to the
  * rows of a scattering matrix and rebuilds the rows from it.
  *
- * Entries outside the square are 0. As in the publications, all models fit them
- * like other entries, except the profiles of [Song09]. Rebuilt entries outside
- * the square are dropped.
+ * Row entries whose texels lie outside the square of the medium are 0. As in
+ * the publications, all models except the profiles of [Song09] fit these
+ * zeros, too. In rebuilt rows such entries are set to 0.
  */
 #ifndef REFERENCE_SCATTER_REBUILD_H
 #define REFERENCE_SCATTER_REBUILD_H
@@ -13,9 +13,9 @@
 #include "bake/translucent/rows.h"
 #include "reference/scatter/translucent_report.h"
 
-/* Fits the model with the parameters O to ROWS and sets REBUILT, which is
- * open and 0, to the rebuilt rows. May return GLINT_E_MEMORY or
- * GLINT_E_CLOSED. */
+/* Fits the model with the parameters O to ROWS. Sets REBUILT, which the caller
+ * has opened and cleared, to the rows of the model. May return GLINT_E_MEMORY
+ * or GLINT_E_CLOSED. */
 typedef enum glint_status glint_rebuild_fn(
     const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
     const struct glint_watch *watch, struct glint_scatter_rows *rebuilt);
@@ -23,20 +23,21 @@ typedef enum glint_status glint_rebuild_fn(
 glint_rebuild_fn glint_rebuild_svd, glint_rebuild_log_svd, glint_rebuild_tucker,
     glint_rebuild_als, glint_rebuild_peers, glint_rebuild_subedit;
 
-/* Returns the largest entry. */
+/* Returns the largest entry of ROWS. */
 double glint_scatter_peak(const struct glint_scatter_rows *rows);
 
-/* Sets channel C of the row of texel X of REBUILT to ROW, with 0 outside the
- * square. */
+/* Stores ROW as channel C of the row of texel X in REBUILT; entries outside the
+ * square become 0. */
 void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
                        const double *row);
 
-/* Sets F[n] and H[k2] to the Tucker(1, 1) fit of LEFT[n][k2] and subtracts
- * it from LEFT. Returns the square of its singular value. */
+/* Fits one Tucker(1, 1) term f h' to the matrix LEFT[n][k2], sets F[n] and
+ * H[k2], and subtracts the term from LEFT. Returns the square of its singular
+ * value. */
 double glint_tucker_term(float *left, int n, int k2, double *f, double *h);
 
-/* Non-negative factors F[terms][n] and H[terms][m] of V, n rows of m
- * entries, by alternating least squares, one term after the other, clamped
+/* Factorises V, n rows of m entries, into non-negative F[terms][n] and
+ * H[terms][m] by alternating least squares, one term after the other, clamped
  * to 0 [Cichocki09]. No round increases the weighted error. */
 struct glint_positive {
     int n, m, terms;

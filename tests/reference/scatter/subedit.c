@@ -3,8 +3,8 @@
  * Models scattering as the geometric mean of two radial profiles [Song09].
  *
  * Logarithms make it a sum: ln R'(i, o) = (ln P_i(r) + ln P_o(r)) / 2. In each
- * round every profile is solved for with all others fixed, and moved half of
- * the way to the solution. Profiles are interpolated linearly in r.
+ * round, every profile is solved with all others fixed, then moved half of the
+ * way to its solution. Profiles are interpolated linearly in r.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -14,15 +14,17 @@
 
 enum { VALUES = 12, ROUNDS = 8 };
 
-/* smallest argument of a logarithm, as a fraction of the peak */
+/* min argument of a logarithm, as a fraction of the largest entry */
 #define FLOOR 1e-7
 
 struct subedit {
     const struct glint_scatter_rows *rows;
     int c;
     double floor;
-    double *profile, *next; /* [texels][VALUES]: logarithms of the profiles */
-    /* [kernel * kernel]: radius of each entry, 0 .. VALUES - 1 */
+    /* [texels][VALUES]: logarithms of the profiles in this and the next
+     * round */
+    double *profile, *next;
+    /* [kernel * kernel]: radius of each kernel entry, 0 .. VALUES - 1 */
     double *radius;
 };
 
@@ -34,7 +36,8 @@ static double interpolate_profile(const double *profile, double radius)
     return (1 - t) * profile[low] + t * profile[low + 1];
 }
 
-/* Sets the radius of each entry: 0 at the centre, VALUES - 1 in the corners. */
+/* Sets the radius of each kernel entry: 0 at the centre, VALUES - 1 at the
+ * corners. */
 static void set_entry_radii(const struct subedit *p)
 {
     const int n = p->rows->kernel, half = n / 2;
@@ -47,8 +50,9 @@ static void set_entry_radii(const struct subedit *p)
     }
 }
 
-/* Sets the next profile of X to the mean, per radius, of the values that its
- * row and the other profiles require. ALONE: ignores the other profiles. */
+/* Solves the next profile of texel X: for each radius, the mean of the values
+ * that the row of X requires, given the profiles of the other texels. ALONE:
+ * ignores the other profiles. */
 static void solve_radial_profile(const struct subedit *p, int x, bool alone)
 {
     const float *row = glint_scatter_get_row(p->rows, x, p->c);
@@ -141,7 +145,7 @@ enum glint_status glint_rebuild_subedit(const struct glint_scatter_rows *rows,
     (void)o;
     if (!(p.floor > 0)) {
         free(memory);
-        return GLINT_OK; /* the model of a black medium is 0 */
+        return GLINT_OK; /* a black medium: the rebuilt rows stay 0 */
     }
     if (memory) {
         p.profile = memory;

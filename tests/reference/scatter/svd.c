@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models rows by truncated singular value decompositions, of their values or of
- * their logarithms [Kurt14].
+ * Models the rows of a scattering matrix by truncated singular value
+ * decompositions of their values, or of their logarithms [Kurt14].
  */
 #include "reference/scatter/rebuild.h"
 
@@ -10,12 +10,15 @@
 
 #include "bake/translucent/linear.h"
 
-enum { SEARCHED = 256 /* number of sample rows for the search for a and b */ };
+enum {
+    /* number of rows on which the parameters a and b are searched */
+    SEARCHED = 256
+};
 
 struct channel {
     const struct glint_scatter_rows *rows;
-    int c, step; /* stride between the rows that are used */
-    bool logs;   /* true: decomposes ln(R' / a + b) */
+    int c, step; /* c: channel; step: stride between the rows that are used */
+    bool logs;   /* true: decomposes ln(R' / a + b) instead of R' */
     double a, b;
 };
 
@@ -103,7 +106,8 @@ enum glint_status glint_rebuild_svd(const struct glint_scatter_rows *rows,
     return rebuild_channels(&p, o->terms, watch, rebuilt);
 }
 
-/* Sets SQUARE to the squared error of the sampled rows of the green channel. */
+/* Sets SQUARE to the squared error of the fit of logarithms to the sampled rows
+ * of the green channel. */
 static bool measure_log_fit_error(const struct channel *p, int n,
                                   double *square)
 {
@@ -128,7 +132,7 @@ static bool measure_log_fit_error(const struct channel *p, int n,
     return true;
 }
 
-/* Sets A and B of O to the best values of a grid. */
+/* Sets a and b of O to the values of a search grid with the smallest error. */
 static enum glint_status
 search_parameters(const struct glint_scatter_rows *rows,
                   struct glint_scatter_candidate *o,
@@ -175,7 +179,7 @@ enum glint_status glint_rebuild_log_svd(const struct glint_scatter_rows *rows,
     enum glint_status status = GLINT_OK;
 
     if (!(peak > 0))
-        return GLINT_OK; /* the model of a black medium is 0 */
+        return GLINT_OK; /* a black medium: the rebuilt rows stay 0 */
     if (!(o->a > 0))
         status = search_parameters(rows, o, &early);
     p.a = o->a * peak;

@@ -15,7 +15,7 @@
 
 enum { SIDE = 24, KERNEL = 11, K2 = KERNEL * KERNEL, TEXELS = SIDE * SIDE };
 
-/* Scattering rows of two media, used by all tests. */
+/* Scattering rows of the two media that all tests use. */
 static struct glint_scatter_rows stone[2]; /* checkerboard, veins */
 
 TEST_OPEN
@@ -51,7 +51,7 @@ make_candidate(enum glint_scatter_candidate_kind kind, int terms)
     return o;
 }
 
-/* Returns the judgement of candidate O for ROWS, without its maps. */
+/* Returns the errors of candidate O on ROWS and frees their maps. */
 static struct glint_scatter_judgement
 judge_rows(struct glint_scatter_rows *rows,
            const struct glint_scatter_candidate *o)
@@ -73,8 +73,9 @@ static double compute_row_rmse(struct glint_scatter_rows *rows,
     return judge_rows(rows, &o).rmse;
 }
 
-/* C1: violations of physics. Checks that non-negative models have no negative
- * entries; only profiles are reciprocal; no model creates energy. */
+/* C1: physical plausibility. Checks that non-negative models have no negative
+ * entries, that only the model of radial profiles is reciprocal, and that no
+ * model creates energy. */
 TEST(c1_physics)
 {
     for (int i = 0; i < 2; i++)
@@ -96,10 +97,10 @@ TEST(c1_physics)
         }
 }
 
-/* C3: checks that one term cannot fit rows of which 30 % are shifted by a
- * texel, unless rows are rotated to begin with their maximum. Rotation hardly
- * changes the error of clean rows. A second term fits shifted rows without
- * rotation. */
+/* C3: checks that one term fits badly if 30 % of the rows are shifted by a
+ * texel, unless rows are rotated to begin with their maximum; that rotation
+ * hardly changes the error of unshifted rows; and that a second term fits
+ * shifted rows without rotation. */
 TEST(c3_turned)
 {
     struct glint_scatter_rows off;
@@ -146,8 +147,8 @@ static void read_green_row(const void *ctx, int i, double *to)
         to[d] = (double)glint_scatter_get_row(g->rows, i, 1)[d];
 }
 
-/* C4: checks that rank-1 fits of the running error equal the truncated singular
- * value decomposition to five digits. */
+/* C4: checks that successive rank-1 fits of the residual equal the truncated
+ * singular value decomposition to five digits. */
 TEST(c4_tucker)
 {
     const struct greens g = {&stone[1]};
@@ -168,8 +169,9 @@ TEST(c4_tucker)
     glint_terms_free(&terms);
 }
 
-/* C5: checks that the error decreases with the degree, and with the number of
- * terms. The size is T + 3 (P + 1) numbers per texel, plus T rows. */
+/* C5: checks that the error decreases with the degree P of the polynomials and
+ * with the number of terms T. The model's size is T + 3 (P + 1) numbers per
+ * texel, plus T rows. */
 TEST(c5_polynomials)
 {
     double by_degree[5];
@@ -190,10 +192,10 @@ TEST(c5_polynomials)
                 0.6 * compute_row_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
 }
 
-/* C6: checks that with large a the logarithm is linear and its fit equals the
- * linear one, which is the optimum. With small a and b = 1 negative entries
- * occur, so the claim "never negative" is wrong. The search is at least as good
- * as both. */
+/* C6: checks that for large a the logarithm is nearly linear, so that its fit
+ * equals the linear fit, which is optimal. For small a and b = 1 negative
+ * entries occur: the published claim "never negative" is wrong. The parameters
+ * found by search are at least as good as both. */
 TEST(c6_logarithms)
 {
     const double linear = compute_row_rmse(&stone[0], GLINT_CANDIDATE_SVD, 3);
@@ -212,9 +214,9 @@ TEST(c6_logarithms)
     assert_true(found.rmse < 1.05 * linear && found.rmse < j.rmse);
 }
 
-/* C7: checks that models that are clamped to 0 or use logarithms have at least
- * the error of the linear model, except for the small error that it spends on
- * entries outside the square. */
+/* C7: checks that models with entries clamped to 0, or of logarithms, have at
+ * least the error of the linear model. The linear model may lose a little by
+ * fitting entries outside the square. */
 TEST(c7_held)
 {
     for (int i = 0; i < 2; i++)
@@ -231,9 +233,9 @@ TEST(c7_held)
         }
 }
 
-/* C8: checks that sizes equal those that the source prints, in MiB; squares of
- * 110 and 260 texels match two printed sizes each. 3.60 MiB corresponds to 39
- * numbers per texel. */
+/* C8: checks that model sizes equal the sizes printed in the source, MiB. Media
+ * of 110 x 110 and 260 x 260 texels match two printed sizes each; 3.60 MiB
+ * corresponds to 39 numbers per texel. */
 TEST(c8_sizes)
 {
     static const struct {
@@ -260,8 +262,8 @@ TEST(c8_sizes)
     assert_string_equal(text, "3.60");
 }
 
-/* C9: checks that with ten terms the decomposition has a smaller error than
- * profiles, with less memory. */
+/* C9: checks that the decomposition with ten terms has a smaller error than
+ * radial profiles and needs less memory. */
 TEST(c9_profiles)
 {
     for (int i = 0; i < 2; i++)
@@ -269,8 +271,8 @@ TEST(c9_profiles)
                     compute_row_rmse(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
 }
 
-/* C10: checks that at equal size, ten or more terms have a smaller error than
- * clusters with as many non-negative terms. */
+/* C10: checks that at equal size a decomposition of ten or more terms has a
+ * smaller error than clusters with as many non-negative terms. */
 TEST(c10_clusters)
 {
     for (int i = 0; i < 2; i++) {
@@ -288,8 +290,8 @@ TEST(c10_clusters)
     }
 }
 
-/* C11: checks that row sums computed from stored sums of h equal the sums of
- * all entries, with 800 times fewer multiplications. */
+/* C11: checks that the sums of rows computed from stored sums of h equal the
+ * sums of all entries, with 800 times fewer multiplications. */
 TEST(c11_albedo)
 {
     const struct glint_scatter_candidate o =
@@ -319,8 +321,8 @@ TEST(c11_albedo)
     glint_terms_free(&terms);
 }
 
-/* C13: checks that the error map sums to the total error, and the percentiles
- * are those of the map. */
+/* C13: checks that the squares in the error map sum to the total error, and
+ * that the reported percentiles are those of the map. */
 TEST(c13_spread)
 {
     struct glint_scatter_candidate o = make_candidate(GLINT_CANDIDATE_SVD, 3);
@@ -342,7 +344,7 @@ TEST(c13_spread)
 }
 
 /* Checks that all models give finite results for a black medium and for a
- * medium of one texel. Parameters out of range are rejected. */
+ * medium of one texel, and that parameters out of range are rejected. */
 TEST(extremes)
 {
     struct glint_scatter_rows black, one;

@@ -18,21 +18,23 @@ extern "C" {
 #endif
 
 enum glint_scatter_candidate_kind {
-    /* CLUSTERED, FACTORED and ALBEDO: models of glint_scatter_fit() */
+    /* CLUSTERED, FACTORED and ALBEDO: the models of glint_scatter_fit() */
     GLINT_CANDIDATE_CLUSTERED,
     GLINT_CANDIDATE_FACTORED,
     GLINT_CANDIDATE_ALBEDO,
-    GLINT_CANDIDATE_SVD,     /* R' = sum of f_j h_j, per channel */
-    GLINT_CANDIDATE_LOG_SVD, /* ln(R' / a + b) = sum of f_j h_j [Kurt14] */
-    /* mean of R, G, B by successive rank-1 fits of the residual, and a
-     * polynomial of it per row and channel [Kurt14] */
+    /* singular value decomposition per channel: row R' = sum of f_j h_j */
+    GLINT_CANDIDATE_SVD,
+    /* decomposition of logarithms: ln(R' / a + b) = sum of f_j h_j [Kurt14] */
+    GLINT_CANDIDATE_LOG_SVD,
+    /* mean of R, G, B by successive rank-1 fits of the residual; each row and
+     * channel by a polynomial of that mean [Kurt14] */
     GLINT_CANDIDATE_TUCKER,
     GLINT_CANDIDATE_ALS, /* like SVD, with f and h non-negative */
     /* R' = G sum of f_j h_j, with G the mean row of a cluster, f and h
      * non-negative, weighted by G^2 [Peers06] */
     GLINT_CANDIDATE_PEERS,
-    /* R' = sqrt(P_i(r) P_o(r)), with a profile P of 12 values per texel and
-     * channel [Song09] */
+    /* R' = sqrt(P_i(r) P_o(r)): radial profiles P of the texels where light
+     * enters and leaves, 12 values per texel and channel [Song09] */
     GLINT_CANDIDATE_SUBEDIT,
     GLINT_CANDIDATES
 };
@@ -42,27 +44,27 @@ struct glint_scatter_candidate {
     int terms;  /* terms or kernels, 1 .. GLINT_SCATTER_MAX_TERMS */
     int rank;   /* rank of FACTORED, 1 .. GLINT_SCATTER_MAX_RANK */
     int degree; /* degree P of TUCKER's polynomial, 0 .. 5 */
-    /* TUCKER: rows are rotated to begin with their maximum, and divided by
-     * it */
+    /* TUCKER: each row is rotated to begin with its largest entry, and divided
+     * by it */
     bool turned;
     int clusters; /* PEERS: clusters, 1 .. GLINT_SCATTER_MAX_TERMS */
-    /* parameters of LOG_SVD, both > 0; a is relative to the largest entry. a =
-     * 0: both are searched for and set */
+    /* parameters a and b of LOG_SVD, both > 0; a is relative to the largest
+     * entry. a = 0: the fit searches for both and sets them */
     double a, b;
 };
 
-/* Sets CANDIDATE to KIND with 5 terms, rank 3, degree 4, one cluster. */
+/* Sets CANDIDATE to model KIND with 5 terms, rank 3, degree 4, one cluster. */
 void glint_scatter_candidate_defaults(struct glint_scatter_candidate *candidate,
                                       enum glint_scatter_candidate_kind kind);
 
-/* Returns the size of CANDIDATE in bytes, for TEXELS rows of ENTRIES each in
- * three channels. */
+/* Returns the size in bytes of the model CANDIDATE for TEXELS rows of ENTRIES
+ * entries each, three channels. */
 double
 glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
                               double texels, double entries);
 
-/* Returns the number of multiplications, or roots and exponentials, for the
- * sums of all rows. KEPT: uses stored sums of h if the model is linear. */
+/* Returns the number of multiplications (or roots and exponentials) for summing
+ * all rows. KEPT: linear models use stored sums of h. */
 double
 glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
                              double texels, double entries, bool kept);
@@ -70,25 +72,30 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
 /* Errors of a model. Owns ERROR and LIGHT. Fractions refer to all entries
  * inside the square; the largest entry of the data is 1. */
 struct glint_scatter_judgement {
-    /* the candidate, with the parameters that were searched for */
+    /* the candidate, with a and b if the fit searched for them */
     struct glint_scatter_candidate candidate;
-    /* size in bytes; size of the rows (8 bytes per number) / BYTES */
+    /* model size in bytes; size of the rows (8 bytes per number) divided by
+     * it */
     double bytes, compression;
     double seconds; /* processor time of the fit */
     double rmse, entry_db, light_db;
-    double p50, p95, largest; /* percentiles and max of ERROR */
-    double negative;          /* fraction of entries below 0 */
-    double one_way;           /* RMS of R'(x, y) - R'(y, x) */
-    double energy;            /* largest sum of a row */
-    double *error;            /* [side * side]: RMS error of each row */
+    /* percentiles 50 and 95, and max, of the error map */
+    double p50, p95, largest;
+    double negative; /* fraction of entries that are negative */
+    double one_way;  /* asymmetry: RMS of R'(x, y) - R'(y, x) */
+    /* largest sum of a row; above 1 the model creates energy */
+    double energy;
+    /* [side * side]: RMS error of the row of each texel */
+    double *error;
     /* [side * side][3] radiosity under glint_scatter_test_light() */
     double *light;
 };
 
-/* Rebuilds ROWS by CANDIDATE and measures the errors. Needs as much memory
- * as ROWS, and half as much more for Tucker. ROWS are unchanged afterwards.
- * Returns GLINT_E_ARGUMENT if CANDIDATE is out of range; may return
- * GLINT_E_MEMORY or GLINT_E_CLOSED; JUDGEMENT is then empty. */
+/* Fits CANDIDATE to ROWS, rebuilds the rows from the fit and measures their
+ * errors. Needs as much memory as ROWS, and half as much more for Tucker.
+ * ROWS are unchanged afterwards. Returns GLINT_E_ARGUMENT if CANDIDATE is
+ * out of range; may return GLINT_E_MEMORY or GLINT_E_CLOSED; JUDGEMENT is
+ * then empty. */
 enum glint_status
 glint_scatter_judge(struct glint_scatter_rows *rows,
                     const struct glint_scatter_candidate *candidate,

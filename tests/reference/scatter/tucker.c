@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models the mean of R, G, B by a Tucker factorisation, term by term, and each
- * row and channel by a polynomial of the model [Kurt14].
+ * Models the mean of the R, G, B rows by a Tucker factorisation, term by term,
+ * and each row of each channel by a polynomial of the modelled mean [Kurt14].
  *
  * A Tucker(1, 1) fit of a matrix is one term f h', found by alternating least
  * squares. The next term fits the residual.
@@ -18,17 +18,19 @@ enum {
     COEFFICIENTS = 6
 };
 
-/* relative change of a term's square at which iteration stops */
+/* Iteration stops when the square of a term changes by less than this
+ * fraction. */
 #define STILL 1e-11
 
 struct tucker {
     const struct glint_scatter_rows *rows;
     int n, k2;
     float *left;   /* [n][k2]: residual */
-    double *f, *h; /* [n], [k2]: factors of a term */
-    float *model;  /* [n][k2] sum of the terms */
-    int *first;    /* [n]: index of each row's max entry */
-    double *most;  /* [n]: max entry of each row; 1 if rows are not rotated */
+    double *f, *h; /* [n] and [k2]: weights f and kernel h of one term */
+    float *model;  /* [n][k2]: sum of the terms so far */
+    int *first;    /* [n]: index of the largest entry of each row */
+    /* [n]: largest entry of each row; 1 if rows are not rotated */
+    double *most;
 };
 
 static float *residual_row(const struct tucker *p, float *all, int x)
@@ -36,8 +38,8 @@ static float *residual_row(const struct tucker *p, float *all, int x)
     return all + (size_t)x * (size_t)p->k2;
 }
 
-/* Sets the residual to the mean of R, G, B. TURNED: each row is rotated to
- * begin with its max entry and divided by it. */
+/* Sets the residual to the mean of the R, G, B rows. TURNED: rotates each row
+ * to begin with its largest entry, and divides it by that entry. */
 static void compute_residual_rows(const struct tucker *p, bool turned)
 {
     for (int x = 0; x < p->n; x++) {
@@ -59,7 +61,8 @@ static void compute_residual_rows(const struct tucker *p, bool turned)
     }
 }
 
-/* Sets F to left H / |H|^2. */
+/* Sets the weights F to the least-squares solution LEFT H / |H|^2 for a fixed
+ * kernel H. */
 static void fit_weights_f(const float *left, int n, int k2, double *f,
                           const double *h)
 {
@@ -77,7 +80,8 @@ static void fit_weights_f(const float *left, int n, int k2, double *f,
     }
 }
 
-/* Sets H to left' F / |F|^2. Returns the square of the term. */
+/* Sets the kernel H to the least-squares solution LEFT' F / |F|^2 for fixed
+ * weights F. Returns |F|^2 |H|^2, the square of the term's norm. */
 static double fit_kernel_h(const float *left, int n, int k2, const double *f,
                            double *h)
 {
@@ -117,7 +121,7 @@ double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
     return square;
 }
 
-/* Fits one term of the residual and subtracts it. */
+/* Fits one term to the residual and subtracts it. */
 static void fit_and_subtract_term(const struct tucker *p)
 {
     glint_tucker_term(p->left, p->n, p->k2, p->f, p->h);
@@ -129,8 +133,8 @@ static void fit_and_subtract_term(const struct tucker *p)
     }
 }
 
-/* Sets COEF to the polynomial in MEAN that fits the row of channel C best,
- * over entries inside the square. */
+/* Sets COEF to the polynomial of MEAN that best fits the row of texel X in
+ * channel C, over the entries inside the square. */
 static void fit_row_polynomial(const struct tucker *p, int x, int c, int degree,
                                const double *mean, double *coef)
 {
@@ -156,7 +160,7 @@ static void fit_row_polynomial(const struct tucker *p, int x, int c, int degree,
     glint_solve_symmetric_system(gram, n, coef);
 }
 
-/* Sets MEAN[k2] to the sum of the terms for row X, rotated back. */
+/* Sets MEAN[k2] to the row of texel X as the terms model it, rotated back. */
 static void set_mean_row(const struct tucker *p, int x, double *mean)
 {
     const float *model = residual_row(p, p->model, x);
@@ -216,7 +220,7 @@ enum glint_status glint_rebuild_tucker(const struct glint_scatter_rows *rows,
 
     p.left = malloc(2 * n * k2 * sizeof *p.left);
     p.model = p.left + n * k2;
-    /* f also serves as scratch for a row */
+    /* the weights f also serve as scratch memory for a row */
     p.f = malloc((2 * n + 2 * k2) * sizeof *p.f);
     p.h = p.f + n + k2;
     p.most = p.h + k2;

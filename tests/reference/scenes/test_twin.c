@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the reference renderer of scenes: requirements A1 to A15 of scenes,
- * with expected values computed by hand.
+ * Tests the reference renderer of scenes: requirements A1 to A15
+ * (src/README.md), with expected values computed by hand.
  */
 #include <math.h>
 #include <stdint.h>
@@ -90,7 +90,8 @@ TEST(a1_length)
     assert_vec_near(a, 0, .6, .8, 1e-15);
 }
 
-/* A2, A3: normal of the tutorial's triangle, and where a ray hits it. */
+/* A2, A3: checks the normal of the tutorial's triangle, and where a ray hits
+ * it. */
 TEST(a2_a3_triangle)
 {
     struct stage *s = open_reference_for_text(
@@ -190,8 +191,8 @@ TEST(a6_corners)
     close_reference(s);
 }
 
-/* Returns the pixel that a ray from (X, Y, Z) along (DX, DY, DZ) sees in the
- * scene of TEXT. */
+/* Returns what a ray from (X, Y, Z) along (DX, DY, DZ) sees in the scene of
+ * TEXT. */
 static struct twin_pixel trace_ray_in_text(const char *text, double x, double y,
                                            double z, double dx, double dy,
                                            double dz)
@@ -212,8 +213,9 @@ static void assert_rgb_light(struct twin_pixel p, double r, double g, double b)
     assert_vec_near(rgb, r, g, b, 1e-6);
 }
 
-/* A7: diffuse light at (0, 0, 30) of a floor under a lamp at (0, 40, 0): .8,
- * code 204 of 255. The lamp's irradiance at its distance of 50 is 1. */
+/* A7: checks the diffuse light of a floor at (0, 0, 30) under a lamp at (0, 40,
+ * 0), at a distance of 50 where its irradiance is 1. The cosine is .8, so the
+ * code is 204 of 255. */
 TEST(a7_diffuse)
 {
     const struct twin_pixel p =
@@ -226,30 +228,30 @@ TEST(a7_diffuse)
     assert_int_equal((int)(255 * (double)p.rgb[0] + .5), 204);
 }
 
-/* A8: seen along the normal, all of Phong's terms are at their max: .1 + .6
- * times the material's colour, .3 times the light's colour. Away from it the
- * specular term decreases with its power. */
+/* A8: checks that along the normal all of Phong's terms have their max: .1 + .6
+ * times the material's colour, and .3 times the light's colour. Away from the
+ * normal the specular term decreases with its exponent. */
 TEST(a8_phong)
 {
     static const char text[] =
         "hand left\nmaterial m phong .1 .6 .3 colour 1 .5 0 power 2\n"
-        "light sun direction 0 1 0 colour 1 1 2 radius 30\n" /* radius 30
-                                                                degrees:
-                                                                irradiance is
-                                                                colour x .25 */
+        /* angular radius 30 degrees: irradiance is colour x sin^2(30) = .25
+         * colour */
+        "light sun direction 0 1 0 colour 1 1 2 radius 30\n"
         "plane floor at 0 0 0 normal 0 1 0 material m\n";
 
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 0),
                      .1 + .15 + .075, .05 + .075 + .075, .15);
-    /* at 45 degrees (R.V)^2 is 1/2 */
+    /* at 45 degrees, the squared cosine between mirrored light and view is
+     * 1/2 */
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 1),
                      .1 + .15 + .0375, .05 + .075 + .0375, .075);
     /* from below only ambient light is visible */
     assert_rgb_light(trace_ray_in_text(text, 0, -1, 0, 0, 1, 0), .1, .05, 0);
 }
 
-/* A9: checks that mirroring twice is the identity, and that a mirror shows
- * objects in the mirrored direction. */
+/* A9: checks that mirroring a direction twice gives the same direction, and
+ * that a mirror shows objects in the mirrored direction. */
 TEST(a9_mirror)
 {
     static const char text[] = "hand left\nmaterial m phong 0 0 0 reflect .5\n"
@@ -258,8 +260,8 @@ TEST(a9_mirror)
                                "sphere ball at 0 8 9 radius .01 material w\n";
 
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 1), .1, .2, .4);
-    /* the mirrored direction has no object, and mirrors do not show the
-     * picture behind */
+    /* no object lies in the mirrored direction, and mirrors do not show the
+     * background picture */
     assert_true(trace_ray_in_text(text, 0, 1, 0, 0, -1, -1).cover == 1);
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
 }
@@ -319,9 +321,10 @@ TEST(a10_acne)
     "material w phong 1 0 0 colour .2 .4 .8\n"                \
     "sphere b at 0 0 0 radius 1 material g\n"
 
-/* A11: checks that an object behind a transparent ball of index 1 is visible
- * straight through it, scaled by the transmitted fraction, bit-identical with
- * and without "refract 1". Elsewhere the picture is visible. */
+/* A11: checks that an object is visible straight through a transparent ball of
+ * index 1, scaled by the transmitted fraction, and that the image is
+ * bit-identical with and without "refract 1". Elsewhere the background picture
+ * is visible. */
 TEST(a11_pass)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
@@ -335,7 +338,8 @@ TEST(a11_pass)
             trace_ray_in_text(plain, 0, 0, -5, k * .005, 0, 1);
         const struct twin_pixel b =
             trace_ray_in_text(one, 0, 0, -5, k * .005, 0, 1);
-        /* the ray hits the ball behind if it passes (1, 6) within .5 */
+        /* the ray hits the ball behind if it passes the point (1, 6) within
+         * .5 */
         const double off = fabs(11 * (k * .005) - 1) / hypot(k * .005, 1);
 
         assert_memory_equal(&a, &b, sizeof a);
@@ -347,22 +351,24 @@ TEST(a11_pass)
     assert_true(seen > 10 && seen < 35);
 }
 
-/* A12: a ray half a radius off the centre of a ball of index 1.5 enters at
- * 30 degrees and continues at asin(1/3) = 19.4712 degrees. It is deflected
- * by twice the difference and crosses the axis .8949 behind the ball. */
+/* A12: checks the refraction of a ray half a radius off the centre of a ball of
+ * index 1.5. It enters at 30 degrees, continues at asin(1/3) = 19.4712 degrees,
+ * is deflected by twice the difference, and crosses the axis .8949 behind the
+ * ball. */
 TEST(a12_refract)
 {
     struct stage *s = open_reference_for_text(
         GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
     const struct twin_ray ray = make_ray(.5, 0, -5, 0, 0, 1);
     const double a = asin(.5), b = asin(.5 / 1.5);
-    /* leaves the ball at the angle ROUND from the axis, at TURN degrees to
-     * the axis */
+    /* The ray leaves the ball at the angle ROUND from the axis and then runs at
+     * TURN degrees to the axis. */
     const double round = 2 * b - a, turn = 2 * (a - b);
     const double cross = cos(round) + sin(round) / tan(turn);
     struct glint_described_object *w = &s->scene.object[1];
 
-    /* A small ball at the crossing is visible; a ball next to it is not. */
+    /* A small ball where the ray crosses the axis is visible; a ball next to
+     * that point is not. */
     w->kind = GLINT_DESCRIBED_SPHERE;
     w->radius = 1e-6;
     w->at[0] = 0;
@@ -371,7 +377,8 @@ TEST(a12_refract)
     w->at[0] = 2e-6;
     assert_rgb_light(reference_trace_ray(&s->twin, &ray), 0, 0, 0);
     close_reference(s);
-    /* Inside, beyond the critical angle of 41.8 degrees, no light leaves. */
+    /* Inside the ball, light that arrives beyond the critical angle of 41.8
+     * degrees does not leave it. */
     assert_rgb_light(
         trace_ray_in_text(
             GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
@@ -386,20 +393,20 @@ TEST(a12_refract)
         .1, .2, .4);
 }
 
-/* A12: checks that a ball of lower index reflects all light beyond an incidence
- * of 14.48 degrees. */
+/* A12: checks that a ball of lower index than its surroundings reflects all
+ * light beyond an angle of incidence of 14.48 degrees. */
 TEST(a12_outside)
 {
     static const char text[] =
         GLASS("refract .25") "sphere w at 4 0 -5 radius .5 material w\n";
     int seen = 0;
 
-    /* Total reflection at the ball's outside: the normal at X bisects the
-     * directions back to the camera and to the other ball. */
+    /* Total reflection outside the ball: its normal at X bisects the directions
+     * to the camera and to the other ball. */
     for (int i = 0; i < 200; i++) {
         const double x = .3 + i * .003, z = -sqrt(1 - x * x);
         const double d[3] = {2 * x * -z, 0, -(1 - 2 * x * x)};
-        /* distance of the mirrored ray from the centre of W */
+        /* distance of the mirrored ray from the centre of the ball W */
         const double a[3] = {4 - x, 0, -5 - z};
         const double along = a[0] * d[0] + a[2] * d[2];
         const double off = fabs(a[0] * d[2] - a[2] * d[0]);
@@ -414,9 +421,9 @@ TEST(a12_outside)
     assert_in_range(seen, 20, 180);
 }
 
-/* A13: checks that the corners of a triangle show their texels. Between texel
- * centres light is interpolated linearly; outside the picture the texture
- * repeats. */
+/* A13: checks that each corner of a triangle shows its texel, that light is
+ * interpolated linearly between texel centres, and that the texture repeats
+ * outside 0 .. 1. */
 TEST(a13_texture)
 {
     static const char text[] =
@@ -432,8 +439,8 @@ TEST(a13_texture)
     assert_rgb_light(trace_ray_in_text(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
 }
 
-/* A14: checks that a ray misses a triangle without area, and an object in whose
- * plane it lies. */
+/* A14: checks that a ray misses a triangle without area, and misses an object
+ * if the ray lies in the object's plane. */
 TEST(a14_misses)
 {
     static const struct {
@@ -464,7 +471,7 @@ TEST(a14_misses)
 }
 
 /* A15: checks that a ray finds both intersections with a ball, from outside and
- * from inside; a grazing ray. */
+ * from inside, and that a grazing ray finds its single one. */
 TEST(a15_sphere)
 {
     struct stage *s =
@@ -488,8 +495,8 @@ TEST(a15_sphere)
     close_reference(s);
 }
 
-/* Checks that a shadow catcher of strength .6 darkens the picture by .6 of the
- * light that is occluded, and leaves it unchanged where no light is. */
+/* Checks that a shadow catcher of strength .6 removes .6 of the occluded light
+ * from the picture, and leaves the picture unchanged where no light arrives. */
 TEST(catcher)
 {
     static const char text[] =
@@ -503,8 +510,9 @@ TEST(catcher)
     assert_true(trace_ray_in_text(text, 3, 1, 0, 0, -1, 0).cover == 0);
 }
 
-/* Checks that rays intersect a closed mesh by its tree like rays that are
- * tested against all triangles. Triangles share edges and corners. */
+/* Checks that the tree of bounding boxes finds the same intersections with a
+ * closed mesh as testing all triangles. The triangles share edges and
+ * corners. */
 TEST(tree_matches_brute_force)
 {
     char text[16000] = "hand left\nmaterial m phong 1 0 0\n";

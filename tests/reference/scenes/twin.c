@@ -68,8 +68,9 @@ void reference_close(struct twin *twin)
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets TOWARD to the direction from PLACE to LIGHT, and RGB to the light
- * that a white surface facing it reflects. Returns the distance. */
+/* Computes the light of LIGHT at PLACE. Sets TOWARD to its direction and RGB to
+ * the light that a white surface facing it reflects. Returns the distance of
+ * LIGHT. */
 static double compute_light_at_place(const struct glint_described_light *light,
                                      const double place[3], double toward[3],
                                      double rgb[3])
@@ -104,7 +105,7 @@ compute_light_sine_radius(const struct glint_described_light *light,
                : fmin(light->radius / vec_normalise(off), .5);
 }
 
-/* Points on the disc of a light to which shadow rays are traced; the same as
+/* Points on the disc of a light, the targets of shadow rays; the same points as
  * in the run time. */
 static const double four[4][2] = {
     {.66446, .24185}, {-.24185, .66446}, {-.66446, -.24185}, {.24185, -.66446}};
@@ -116,9 +117,9 @@ static const double sixteen[16][2] = {
     {-.76474, -.44318}, {.89713, -.19724},  {-.54752, .77878},
     {-.12650, -.97610}};
 
-/* Changes TOWARD, the direction to the centre of a light at DISTANCE, to
- * point I of N of its disc. The axes of the disc are those of the run time,
- * whose z points into the picture. */
+/* Changes TOWARD from the direction of the centre of a light at DISTANCE to the
+ * direction of point I of N points of the light's disc. The axes of the disc
+ * are those of the run time, whose z axis points into the picture. */
 static void aim_at_light_disc(const struct glint_description *scene,
                               const struct glint_described_light *light,
                               double toward[3], double distance, int i, int n)
@@ -199,7 +200,8 @@ static void interpolate_texels(const struct twin_texels *t, const double uv[2],
     for (int k = 0; k < 4; k++) {
         const double share =
             (k & 1 ? x - left : 1 - x + left) * (k & 2 ? y - top : 1 - y + top);
-        /* sides are powers of two; the texture repeats outside 0 .. 1 */
+        /* texture sizes are powers of two; the texture repeats outside 0 ..
+         * 1 */
         const int i = (int)fmod(left + (k & 1), t->width);
         const int j = (int)fmod(top + (k >> 1), t->height);
         const float *texel =
@@ -211,7 +213,8 @@ static void interpolate_texels(const struct twin_texels *t, const double uv[2],
     }
 }
 
-/* Sets RGB to Phong's terms at HIT, seen along TOWARD (A7, A8). */
+/* Sets RGB to the light at HIT by Phong's model, seen from direction TOWARD
+ * (A7, A8). */
 static void compute_phong_terms(const struct twin *twin,
                                 const struct twin_hit *hit,
                                 const double toward[3], double rgb[3])
@@ -234,7 +237,7 @@ static void compute_phong_terms(const struct twin *twin,
 
         if (facing <= 0)
             continue;
-        /* R.V, where R = 2 (N.L) N - L, and V points back along the ray */
+        /* cosine between the mirrored light R = 2 (N.L) N - L and the viewer */
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
         if (m->is_metal)
@@ -252,9 +255,9 @@ static void compute_phong_terms(const struct twin *twin,
 
 /* -------------------------------------------- transmitted and mirrored rays */
 
-/* Refracts D at a surface by Snell's law (A12). The normal N points to the
- * ray's origin; ETA is the index before / the index behind. Returns false at
- * total reflection. */
+/* Refracts direction D at a surface by Snell's law (A12). The normal N points
+ * to the ray's origin; ETA is the index before the surface divided by the index
+ * behind it. Returns false at total reflection. */
 static bool refract_direction(const double d[3], const double n[3], double eta,
                               double to[3])
 {
@@ -269,18 +272,19 @@ static bool refract_direction(const double d[3], const double n[3], double eta,
     return true;
 }
 
-/* Mirrors D at a surface with normal N: D - 2 (D.N) N (A9). */
+/* Mirrors direction D at a surface with normal N: D - 2 (D.N) N (A9). */
 static void reflect_direction(const double d[3], const double n[3],
                               double to[3])
 {
     vec_add_scaled(d, -2 * vec_dot(d, n), n, to);
 }
 
-/* A ray that passes through transparent objects. */
+/* A ray on its way through transparent objects. */
 struct passing {
     struct twin_ray ray;
-    double weight; /* weight of the light of the next object */
-    bool is_bent;  /* true: refraction has changed the ray's direction */
+    /* fraction of the next object's light that reaches the viewer */
+    double weight;
+    bool is_bent; /* true: refraction has changed the ray's direction */
 };
 
 /* Refracts RAY at a surface, or mirrors it at total reflection. Returns
@@ -296,7 +300,7 @@ static bool refract_or_reflect(struct twin_ray *ray, const double normal[3],
     return true;
 }
 
-/* Moves P, which enters a ball at HIT, to the point where it leaves the
+/* Moves P from HIT, where it enters a ball, to the point where it leaves the
  * ball. */
 static void move_to_ball_exit(const struct twin *twin,
                               const struct twin_hit *hit, double index,
@@ -314,8 +318,8 @@ static void move_to_ball_exit(const struct twin *twin,
         refract_or_reflect(&p->ray, back, index);
 }
 
-/* Moves P through the surface at HIT. In a ball, P continues to its exit point
- * (A11); in other objects each surface is passed separately. */
+/* Moves P through the surface at HIT: through a ball to its exit point (A11),
+ * in other objects through this surface only. */
 static void pass_through_surface(const struct twin *twin,
                                  const struct twin_hit *hit, struct passing *p)
 {
@@ -333,7 +337,7 @@ static void pass_through_surface(const struct twin *twin,
     p->ray.skip_triangle = hit->triangle;
     if (twin->scene->object[hit->object].kind != GLINT_DESCRIBED_SPHERE)
         return;
-    /* light that is totally reflected inside a ball never leaves the ball */
+    /* light that is totally reflected inside a ball never leaves it */
     if (is_mirrored && hit->inside)
         p->weight = 0;
     else if (!is_mirrored && !hit->inside)
@@ -347,8 +351,8 @@ static void add_light_source(struct twin_pixel *pixel, double share,
         pixel->rgb[c] += (float)(share * rgb[c]);
 }
 
-/* Adds the mirrored light at HIT. Mirrors do not show the picture behind the
- * scene, as it does not contain the mirrored direction. */
+/* Adds the light that the mirror at HIT reflects. Mirrors do not show the
+ * background picture, as it does not contain the mirrored direction. */
 static void add_mirrored_light(const struct twin *twin,
                                const struct twin_ray *ray,
                                const struct twin_hit *hit,
@@ -402,8 +406,8 @@ static void add_transmitted_light(const struct twin *twin,
 
 /* ---------------------------------------------------------- primary rays */
 
-/* Returns the fraction of the light that objects occlude at HIT, on a shadow
- * catcher. */
+/* Returns the fraction of the light at HIT, a point of a shadow catcher, that
+ * objects occlude. */
 static double compute_catcher_shadow(const struct twin *twin,
                                      const struct twin_hit *hit)
 {
@@ -483,7 +487,7 @@ static void render_row(void *ctx, int y, int worker)
 {
     const struct drawing *d = ctx;
     const int n = d->view->samples;
-    /* for GLINT_DESCRIBED_CORNERS, rays pass through pixel corners */
+    /* with `camera corners`, rays pass through pixel corners */
     const double first =
         d->twin->scene->camera.field == GLINT_DESCRIBED_CORNERS ? -0.5 : 0;
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reference renderer of scenes, in double precision. It follows the same light
- * paths as the integer renderer, ray by ray, and serves as its reference.
+ * paths as the integer renderer, ray by ray; tests compare the integer
+ * renderer with it.
  *
  *     reference_open(&twin, &scene);
  *     reference_render_image(&twin, &view, workers, pixels);
@@ -38,33 +39,35 @@ struct twin_texels {
 
 struct twin {
     const struct glint_description *scene;
-    int shadow_points; /* rays per light: 1, 4 or 16; reference_open() sets 1 */
-    /* Samples of a Ward lobe. 1 to 32: the samples of the run time;
-     * reference_open() sets 8. More: this number of samples of the whole lobe
-     * from the finest mipmap level, shifted for each ray. */
+    /* shadow rays per light: 1, 4 or 16; reference_open() sets 1 */
+    int shadow_points;
+    /* Samples of a Ward lobe. 1 to 32: the same samples as in the run time;
+     * reference_open() sets 8. More than 32: this number of samples of the
+     * whole lobe from the finest mipmap level, different for each ray. */
     int ward_samples;
-    /* tangent of the angle of a pixel; reference_render_image() sets it */
+    /* tangent of the angle that a pixel subtends; set by
+     * reference_render_image() */
     double pixel_tan;
     struct glint_environment around;
     struct twin_texels texels[GLINT_DESCRIPTION_MAX_TEXTURES];
-    /* Trees of bounding boxes over the triangles of each object,
-     * consecutively. */
+    /* Trees of bounding boxes over the triangles of each object, one after the
+     * other. */
     struct twin_node *node;
     int *root;  /* root node of each object; -1: it has no triangles */
-    int *order; /* indices of triangles, in the order of the leaves */
-    /* [n_objects]: light maps of translucent objects; NULL: no object is
-     * translucent */
+    int *order; /* triangle indices in the order of the leaves of the trees */
+    /* [n_objects]: light maps of translucent objects; NULL: the scene has no
+     * translucent object */
     struct twin_map *map;
-    /* [n_stones]: scattering rows for meshes, used instead of the baked
-     * fits, at the same resolution. NULL, set by reference_open(): uses the
-     * baked fits. */
+    /* [n_stones]: exact scattering rows for meshes, of the same resolution as
+     * the baked fits, which they replace. NULL, as reference_open() sets: the
+     * baked fits are used. */
     const struct glint_scatter_rows *rows;
 };
 
 struct twin_ray {
     double from[3], toward[3]; /* unit vector */
-    /* index of an object to skip, -1: none; of a mesh only skip_triangle is
-     * skipped */
+    /* object that the ray skips, -1: none; if it is a mesh, the ray skips only
+     * skip_triangle */
     int skip_object;
     int skip_triangle;
 };
@@ -73,10 +76,12 @@ struct twin_ray {
 struct twin_hit {
     double t;
     double place[3];
-    double normal[3];  /* unit vector, on the side of the ray's origin */
-    double shading[3]; /* normal interpolated from the vertices of a mesh */
-    double uv[2];      /* texture coordinates; V points up */
-    /* indices; triangle and material may be -1 */
+    /* geometric normal, unit vector, on the side of the ray's origin */
+    double normal[3];
+    /* shading normal, interpolated from the vertices of a mesh */
+    double shading[3];
+    double uv[2]; /* texture coordinates; V points up */
+    /* indices; triangle and material are -1 if there is none */
     int object, triangle, material;
     bool inside; /* true: the ray hits a sphere or mesh from inside */
 };
@@ -90,7 +95,7 @@ struct twin_view {
     int width, height;
     /* focal length in pixels of a camera with the lens's field of view */
     double focal_px;
-    int samples; /* rays per pixel along each side, 1 .. 64 */
+    int samples; /* rays per pixel are samples x samples; 1 .. 64 */
 };
 
 /* Prepares SCENE, which must outlive TWIN. May return GLINT_E_MEMORY. */
@@ -122,26 +127,28 @@ bool reference_intersect_object(const struct twin *twin, int object,
                                 const struct twin_ray *ray, double most,
                                 struct twin_hit *hit);
 
-/* Completes HIT on object O. On entry the triangle is set, and uv contains the
- * barycentric coordinates of the triangle's second and third corner. */
+/* Completes HIT on object O. On entry, HIT contains the triangle, and uv the
+ * barycentric coordinates of its second and third corner. */
 void reference_finish_triangle_hit(const struct twin *twin,
                                    const struct glint_described_object *o,
                                    struct twin_hit *hit);
 
-/* Sets TOWARD to the direction from HIT to LIGHT, RGB to the light that a
- * white surface facing it would reflect, SHARE to the visible fraction of
- * LIGHT. Returns the cosine between TOWARD and the shading normal. */
+/* Computes the light of LIGHT at HIT. Sets TOWARD to its direction, RGB to
+ * the light that a white surface facing it would reflect, SHARE to the
+ * visible fraction of LIGHT. Returns the cosine between TOWARD and the
+ * shading normal. */
 double reference_light_at_hit(const struct twin *twin,
                               const struct twin_hit *hit,
                               const struct glint_described_light *light,
                               double toward[3], double rgb[3], double *share);
 
-/* Returns the light that the primary ray RAY sees. Requires the maps of
+/* Returns the light that the primary ray RAY sees. Requires the light maps of
  * translucent objects, which reference_render_image() computes. */
 struct twin_pixel reference_trace_ray(const struct twin *twin,
                                       const struct twin_ray *ray);
 
-/* Sets the pixel size of TWIN from VIEW, as reference_render_image() does. */
+/* Sets the pixel size of TWIN from VIEW; reference_render_image() does this
+ * itself. */
 void reference_aim_camera(struct twin *twin, const struct twin_view *view);
 
 /* Draws PIXELS[height][width]. */

@@ -2,8 +2,8 @@
  *
  * Environment light in the reference renderer: lookups in the baked
  * environment, and Ward's lobe under the environment and under lights, in
- * double precision, along the same paths as the run time. Directions are in the
- * axes of baked scenes, whose z points away from the viewer.
+ * double precision, along the same light paths as the run time. Directions are
+ * in the axes of baked scenes, whose z points away from the viewer.
  */
 #include "reference/scenes/twin_around.h"
 
@@ -33,7 +33,7 @@ static double decode_texel(const struct glint_environment *e, int level, int i,
     return decode_rgb9e5(e, ((const uint32_t *)e->texel[level])[i], c);
 }
 
-/* Sets PLACE to the position of TOWARD in the octahedron map, each
+/* Sets PLACE to the position of direction TOWARD in the octahedron map, each
  * coordinate 0 .. 1. */
 static void compute_octahedron_position(const double toward[3], double place[2])
 {
@@ -50,8 +50,9 @@ static void compute_octahedron_position(const double toward[3], double place[2])
     place[1] = .5 + .5 * (toward[2] < 0 ? -q : q);
 }
 
-/* Returns the index of texel (X, Y) of a square of SIDE texels. Texels
- * outside the square are replaced by their neighbours on the octahedron. */
+/* Returns the index of texel (X, Y) in the octahedron map of SIDE x SIDE
+ * texels. A texel outside the map is replaced by its neighbour on the
+ * octahedron. */
 static int wrap_texel_index(int x, int y, int side)
 {
     if (x < 0 || x >= side) {
@@ -65,8 +66,8 @@ static int wrap_texel_index(int x, int y, int side)
     return y * side + x;
 }
 
-/* Interpolates RGB from the texels of LEVEL in direction TOWARD; LEVEL -1 is
- * the irradiance map. */
+/* Sets RGB to the light in direction TOWARD, interpolated bilinearly from the
+ * texels of mipmap LEVEL; LEVEL -1 is the irradiance map. */
 static void interpolate_level(const struct glint_environment *e, int level,
                               const double toward[3], double rgb[3])
 {
@@ -90,8 +91,9 @@ static void interpolate_level(const struct glint_environment *e, int level,
     }
 }
 
-/* Sets RGB to the light at a fractional LEVEL, by blending two levels such
- * that the variances, whose ratio is 4, are interpolated. */
+/* Sets RGB to the light at a fractional mipmap LEVEL. The weights of the two
+ * nearest levels interpolate the variance of their blur, which is 4 times as
+ * large for the coarser level. */
 static void interpolate_levels(const struct glint_environment *e,
                                const double toward[3], double level,
                                double rgb[3])
@@ -109,8 +111,8 @@ static void interpolate_levels(const struct glint_environment *e,
         rgb[c] += (pow(4, held - k) - 1) / 3 * (next[c] - rgb[c]);
 }
 
-/* Rotates direction V of the text to the axes of the environment. TO may be
- * V. */
+/* Rotates direction V from the axes of the scene text to those of the
+ * environment. TO may be V. */
 static void rotate_to_environment(const struct twin *twin, const double v[3],
                                   double to[3])
 {
@@ -125,8 +127,8 @@ static void rotate_to_environment(const struct twin *twin, const double v[3],
 
 /* -------------------------------------------------------------------- metal */
 
-/* Returns the curvature of the normals at HIT, radians per unit of the
- * scene. */
+/* Returns the curvature of the surface at HIT: change of its normal per unit of
+ * the scene, radians. */
 static double compute_normal_curvature(const struct twin *twin,
                                        const struct twin_hit *hit)
 {
@@ -194,8 +196,8 @@ void reference_metal_frame(const struct twin *twin, const struct twin_hit *hit,
     vec_cross(frame[2], frame[0], frame[1]);
 }
 
-/* Returns the factor of a direction that the norm of the material's lobe gives,
- * before division by the sampling density. */
+/* Returns the weight of a lobe sample: the normalisation of the material's lobe
+ * (1992 or later), not divided by the sampling density. */
 static double compute_lobe_weight(const struct glint_described_material *m,
                                   double ho, double hn, double ni, double no)
 {
@@ -241,8 +243,8 @@ double reference_metal_reflection(const struct twin *twin,
            (area * vec_dot(h, o) * hn * hn * hn);
 }
 
-/* Returns the footprint factor of N samples, as in
- * scene/ward/ward_lobe.c. */
+/* Returns the factor from the spacing of N lobe samples to the blur of each, as
+ * in scene/ward/ward_lobe.c. */
 static double compute_footprint_factor(int n)
 {
     static const int at[5] = {1, 4, 8, 16, 32};
@@ -256,8 +258,8 @@ static double compute_footprint_factor(int n)
            n;
 }
 
-/* Returns the first N bits of I in reversed order, as a fraction (radical
- * inverse). */
+/* Returns the N lowest bits of I in reversed order, as a fraction 0 .. 1
+ * (radical inverse). */
 static double radical_inverse(unsigned i, int n)
 {
     double v = 0;
@@ -267,8 +269,8 @@ static double radical_inverse(unsigned i, int n)
     return v;
 }
 
-/* Draws N slopes for alpha 1 whose mean squares along both axes are SPREAD /
- * 2. */
+/* Computes N half-vector slopes, which sample the lobe of alpha 1. Their mean
+ * square along each axis is SPREAD / 2. */
 static void draw_lobe_slopes(int n, const double spread[2],
                              double slope[GLINT_WARD_SAMPLES][2])
 {
@@ -293,8 +295,9 @@ static void draw_lobe_slopes(int n, const double spread[2],
     }
 }
 
-/* Adds the light of one of N lobe samples, with half-vector slope SLOPE, from
- * mipmap LEVEL, corrected by the angle between half vector and view. */
+/* Adds the light of one of N lobe samples, whose half-vector has slope SLOPE,
+ * looked up in mipmap LEVEL and corrected by the angle between half-vector and
+ * view. */
 static void add_lobe_sample(const struct twin *twin, const double slope[2],
                             const struct glint_described_material *m,
                             const double frame[3][3], const double out[3],
@@ -317,8 +320,8 @@ static void add_lobe_sample(const struct twin *twin, const double slope[2],
         rgb[c] += weight * light[c];
 }
 
-/* Adds N samples of the whole lobe from the finest level. The direction
- * TOWARD shifts the samples, so that rays of one pixel use different ones. */
+/* Adds N samples of the whole lobe from the finest mipmap level. TOWARD selects
+ * an offset of the samples, so that the rays of a pixel use different ones. */
 static void add_lobe_by_samples(const struct twin *twin, const double toward[3],
                                 const struct glint_described_material *m,
                                 const double frame[3][3], const double out[3],
@@ -366,7 +369,8 @@ static void add_metal_reflection(const struct twin *twin,
     reference_metal_frame(twin, hit, frame);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(frame[k], back);
-        frame[k][2] *= hand; /* to the axes of the scene text */
+        /* from the axes of baked scenes to those of the scene text */
+        frame[k][2] *= hand;
         rotate_to_environment(twin, frame[k], frame[k]);
     }
     if (is_whole && out[2] > 0)

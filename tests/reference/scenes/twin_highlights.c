@@ -6,10 +6,10 @@
 #include <stdlib.h>
 
 #define SIDE 8
-#define NEAR 12 /* merge distance of highlights, pixels */
+#define NEAR 12 /* min distance of distinct highlights, pixels */
 
-/* Sums over a square of pixels, or over a highlight: light, light times
- * position, light times squared position. */
+/* Sums over a square of pixels, or over the squares of a highlight: light,
+ * light times position, light times squared position. */
 struct sums {
     double flux, at[2], square, rgb[3];
     int n;
@@ -36,8 +36,7 @@ static void add_highlight_sums(struct sums *to, const struct sums *from)
         to->rgb[c] += from->rgb[c];
 }
 
-/* Adds the light of the object that RAY hits, with weight SHARE, to pixel (X,
- * Y). */
+/* Adds the light of the object that RAY hits, times SHARE, to pixel (X, Y). */
 static void add_ray_light(const struct twin *twin, const struct twin_ray *ray,
                           int x, int y, double share, struct sums *to)
 {
@@ -112,8 +111,9 @@ static int compare_highlight_flux(const void *a, const void *b)
     return p < q ? 1 : p > q ? -1 : 0;
 }
 
-/* Merges highlights of S[N] that are nearer than NEAR into the brighter one. S
- * is sorted by descending brightness. Returns the new number. */
+/* Merges each of the highlights S[N] that is nearer than NEAR to a brighter one
+ * into it. S is sorted by descending brightness. Returns the number of
+ * remaining highlights. */
 static int merge_near_highlights(struct sums *s, int n)
 {
     for (int i = 0; i < n; i++)

@@ -11,11 +11,12 @@
 enum { TWIN_HIGHLIGHTS = 64 };
 
 struct twin_highlight {
-    double x, y;     /* pixels from the top left corner */
-    double power;    /* luminance, in units of white times pixels */
-    double rgb[3];   /* colour, of luminance 1 */
-    double variance; /* sum of the variances along both axes, pixels^2 */
-    int n;           /* number of squares of 8 x 8 pixels */
+    double x, y;   /* position, pixels from the top left corner */
+    double power;  /* luminance, in units of white times pixels */
+    double rgb[3]; /* colour, scaled to luminance 1 */
+    /* sum of the variances of the light along x and y, pixels^2 */
+    double variance;
+    int n; /* number of squares of 8 x 8 pixels in the highlight */
 };
 
 /* Sets FOUND[TWIN_HIGHLIGHTS] to the highlights in VIEW, sorted by

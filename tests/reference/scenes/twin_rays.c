@@ -7,15 +7,14 @@
 #include "glint/view.h"
 #include "reference/scenes/vec.h"
 
-/* Min distance, relative to the length of the ray so far, from a triangle of
- * a mesh to another triangle of the same mesh; avoids hits at shared
- * corners. */
+/* Min distance between two triangles of a mesh along a ray, as a fraction of
+ * the ray's length; prevents a second hit at a shared corner. */
 #define ACNE 1e-9
 
 /* ------------------------------------------------------ spheres and planes */
 
-/* A15: L is the vector from the ray's origin to the centre, s = L.d; the ray
- * hits if |L - s d|^2 <= r^2. */
+/* A15: with L the vector from the ray's origin to the centre, d the ray's
+ * direction and s = L.d, the ray hits if |L - s d|^2 <= r^2. */
 static bool intersect_sphere(const struct glint_described_object *o,
                              const struct twin_ray *ray, double most,
                              struct twin_hit *hit)
@@ -39,9 +38,9 @@ static bool intersect_sphere(const struct glint_described_object *o,
     return true;
 }
 
-/* Sets texture coordinates on a ball: U is the longitude about the y axis,
- * 1/2 at the point facing a camera that is not rotated; V is the latitude,
- * from the lowest point upwards. */
+/* Sets the texture coordinates on a ball. u is the longitude about the y axis,
+ * 1/2 at the point that faces an unrotated camera; v is the latitude, upwards
+ * from the lowest point. */
 static void set_ball_uv(const struct glint_description *scene,
                         const struct glint_described_object *o,
                         struct twin_hit *hit)
@@ -54,8 +53,8 @@ static void set_ball_uv(const struct glint_description *scene,
     hit->uv[1] = 1 - acos(fmax(-1, fmin(1, n[1]))) / GLINT_PI;
 }
 
-/* Sets texture coordinates on a plane: U and V are in units of the scene,
- * along x and away from the viewer when the plane lies flat. */
+/* Sets the texture coordinates on a plane. u and v are lengths in units of the
+ * scene: on a horizontal plane, u along x and v away from the viewer. */
 static void set_plane_uv(const struct glint_description *scene,
                          const struct glint_described_object *o,
                          struct twin_hit *hit)
@@ -112,8 +111,8 @@ void reference_finish_triangle_hit(const struct twin *twin,
         for (int i = 0; t->has_uv && i < 2; i++)
             hit->uv[i] += share[k] * t->uv[k][i];
     }
-    /* the normals in the file, not the order of corners, determine the
-     * outside */
+    /* the normals in the file determine which side is outside, not the order of
+     * the corners */
     if (!t->has_normals || !(vec_normalise(smooth) > 0))
         for (int i = 0; i < 3; i++)
             smooth[i] = n[i];

@@ -13,13 +13,14 @@ enum { CHANNELS = 3 };
 struct twin_map {
     /* index of the translucent material; -1: the object is not translucent */
     int material;
-    int of; /* index of the translucent medium in the scene */
+    int of; /* index of the medium among the translucent media of the scene */
     bool is_ball;
     int width, height;
     struct glint_translucent stone;
-    /* meshes: [height][width] indices of triangles of the scene, or -1 */
+    /* meshes: [height][width] scene triangle of each texel; -1: no triangle */
     int *triangle;
-    /* [height][width][3]: light that enters, then light that leaves */
+    /* [height][width][3]: incident light, later replaced by the light that
+     * leaves */
     double *light;
     double *work; /* [3][height][width]: scratch */
 };
@@ -39,8 +40,8 @@ static int find_medium_material(const struct glint_description *s,
     return -1;
 }
 
-/* Returns twice the signed area of the texture-space triangle of (U, V) and the
- * corners I and J of T. */
+/* Returns twice the signed area of the triangle between the texture point (U,
+ * V) and the corners I and J of T. */
 static double compute_edge_area(const struct glint_described_triangle *t, int i,
                                 int j, double u, double v)
 {
@@ -48,8 +49,8 @@ static double compute_edge_area(const struct glint_described_triangle *t, int i,
            (t->uv[i][1] - v) * (t->uv[j][0] - u);
 }
 
-/* Sets SHARE to the barycentric coordinates of texel (X, Y) in T. Returns
- * whether the texel's centre is inside. */
+/* Sets SHARE to the barycentric coordinates of the centre of texel (X, Y) in T.
+ * Returns whether the centre is inside T. */
 static bool compute_barycentric(const struct twin_map *m,
                                 const struct glint_described_triangle *t, int x,
                                 int y, double share[3])
@@ -73,8 +74,8 @@ static bool compute_barycentric(const struct twin_map *m,
     return inside;
 }
 
-/* Assigns each texel the triangle that covers it; texels just outside a chart
- * get the triangle of a neighbour. */
+/* Assigns each texel the triangle that covers it; a texel just outside a chart
+ * gets the triangle of a neighbour texel. */
 static void assign_triangles_to_texels(const struct glint_description *s,
                                        const struct glint_described_object *o,
                                        struct twin_map *m)
@@ -165,8 +166,9 @@ void reference_free_media_maps(struct twin *twin)
 
 /* -------------------------------------------------------------------- light */
 
-/* Returns the fraction of light that the surface transmits at COSINE
- * (Fresnel); 1 if the material has no Fresnel reflection. */
+/* Returns the fraction of light that the surface transmits at an angle of
+ * incidence of COSINE (Fresnel); 1 if the material has no Fresnel
+ * reflection. */
 static double
 compute_surface_transmittance(const struct glint_described_material *m,
                               const struct twin_map *map, double cosine)
@@ -181,8 +183,8 @@ compute_surface_transmittance(const struct glint_described_material *m,
     return cosine > 0 ? 1 - (across * across + along * along) / 2 : 0;
 }
 
-/* Sets HIT to the surface point of texel (X, Y). Returns false if the texel
- * is outside the object. */
+/* Sets HIT to the surface point of texel (X, Y). Returns false if no surface
+ * has this texel. */
 static bool compute_texel_hit(const struct twin *twin, int object, int x, int y,
                               struct twin_hit *hit)
 {
@@ -223,7 +225,8 @@ static bool compute_texel_hit(const struct twin *twin, int object, int x, int y,
     return true;
 }
 
-/* Returns the cosine-weighted mean transmittance over all directions. */
+/* Returns the mean transmittance of the surface over all directions, weighted
+ * by the cosine. */
 static double
 compute_mean_transmittance(const struct glint_described_material *m,
                            const struct twin_map *map)
@@ -281,8 +284,8 @@ static double read_stream_code(const struct twin_map *m, int table, int x)
     return is_signed ? (int8_t)code / 128. : code / 256.;
 }
 
-/* Returns the index of the texel ACROSS columns and DOWN rows from texel
- * FROM; -1 outside the map. */
+/* Returns the index of the texel that is ACROSS columns right of and DOWN rows
+ * below texel FROM; -1 outside the map. */
 static int find_neighbour_texel(const struct twin_map *m, int from, int across,
                                 int down)
 {
@@ -299,8 +302,8 @@ static int find_neighbour_texel(const struct twin_map *m, int from, int across,
                                                              : y * m->width + x;
 }
 
-/* Adds SCALE times FROM, convolved with the taps TAP along rows or columns, to
- * TO. */
+/* Convolves FROM with the taps TAP along rows or columns, and adds SCALE times
+ * the result to TO. */
 static void convolve_map(const struct twin_map *m, const double *from,
                          const int16_t *tap, bool down, double scale,
                          double *to)
@@ -317,8 +320,8 @@ static void convolve_map(const struct twin_map *m, const double *from,
         }
 }
 
-/* Adds the contribution of plane P, channel C, of the light in WORK[0] to
- * OUT. */
+/* Scatters the light in WORK[0] by term P (a "plane" of the baked fit) and adds
+ * the result to channel C of OUT. */
 static void add_plane_contribution(struct twin_map *m, int c, int p,
                                    double *out)
 {
@@ -397,9 +400,10 @@ void reference_compute_media_maps(const struct twin *twin)
 /* ------------------------------------------------------------------- showing
  */
 
-/* Returns the reflectance of the coat / its reflectance at normal incidence,
- * for the transmittance PASSED. Light that is not transmitted is reflected; the
- * result is limited such that no channel reflects more than 1. */
+/* Returns the reflectance of the coat divided by its reflectance at normal
+ * incidence, from the transmittance PASSED. All light that is not
+ * transmitted is reflected. The ratio is limited such that no channel
+ * reflects more than 1. */
 static double compute_coat_reflectance(const struct glint_described_material *m,
                                        const struct twin_map *map,
                                        double passed)

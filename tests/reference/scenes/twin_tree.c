@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Trees of bounding boxes over the triangles of each object, halved at the
- * middle of the longest side, and ray intersections with them.
+ * Builds trees of bounding boxes over the triangles of each object, and
+ * intersects rays with them. Boxes are split at the middle of their longest
+ * side.
  */
 #include "reference/scenes/twin.h"
 
@@ -13,8 +14,8 @@ enum { LEAF = 4, DEPTH = 64 };
 
 struct twin_node {
     double low[3], high[3];
-    int first, n;    /* leaf: triangles order[first .. first + n - 1] */
-    int left, right; /* inner node: indices of its halves; n is 0 */
+    int first, n;    /* leaf: its triangles are order[first .. first + n - 1] */
+    int left, right; /* inner node: indices of its two children; n is 0 */
 };
 
 static void compute_node_bounds(const struct twin *twin, struct twin_node *node)
@@ -35,7 +36,7 @@ static void compute_node_bounds(const struct twin *twin, struct twin_node *node)
     }
 }
 
-/* Moves the triangles of NODE whose centre is below AT along AXIS to the
+/* Moves the triangles of NODE whose centre along AXIS is below AT to the
  * beginning of the node's list. Returns their number. */
 static int partition_triangles(const struct twin *twin,
                                const struct twin_node *node, int axis,
@@ -59,7 +60,8 @@ static int partition_triangles(const struct twin *twin,
     return n;
 }
 
-/* Halves node I recursively. *N_NODES is the number of nodes in use. */
+/* Splits node I and its children recursively. *N_NODES is the number of nodes
+ * in use. */
 static void split_node(struct twin *twin, int i, int *n_nodes, int depth)
 {
     struct twin_node *const node = &twin->node[i];
@@ -113,7 +115,7 @@ enum glint_status reference_build_tree(struct twin *twin)
     return GLINT_OK;
 }
 
-/* Returns whether RAY passes the box of NODE before the distance MOST. */
+/* Returns whether RAY enters the box of NODE before the distance MOST. */
 static bool ray_passes_box(const struct twin_node *node,
                            const struct twin_ray *ray, double most)
 {
@@ -132,8 +134,9 @@ static bool ray_passes_box(const struct twin_node *node,
     return from <= to * (1 + 1e-9);
 }
 
-/* Finds the intersection of RAY with triangle I before hit->t, by
- * [Moller97]. The point is V0 + u (V1 - V0) + v (V2 - V0) (A13). */
+/* Finds the intersection of RAY with triangle I nearer than hit->t, by
+ * [Moller97]. V0, V1, V2 are the corners; the point is V0 + u (V1 - V0) + v (V2
+ * - V0) (A13). */
 static bool intersect_triangle(const struct twin *twin, int i,
                                const struct twin_ray *ray, struct twin_hit *hit)
 {
@@ -154,8 +157,8 @@ static bool intersect_triangle(const struct twin *twin, int i,
         v = -v;
         t = -t;
     }
-    /* A14: for a ray in the plane, or a triangle without area, all terms are
-     * 0 */
+    /* A14: if the ray lies in the triangle's plane, or the triangle has no
+     * area, det, u, v and t are 0 */
     if (!(fabs(det) > 0) || u < 0 || v < 0 || u + v > fabs(det) || t <= 0 ||
         t >= hit->t * fabs(det))
         return false;

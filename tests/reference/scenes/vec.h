@@ -21,7 +21,7 @@ static inline void vec_cross(const double a[3], const double b[3], double c[3])
     c[1] = y;
 }
 
-/* Sets C to A + S B. */
+/* Sets C to the sum of A and S times B. */
 static inline void vec_add_scaled(const double a[3], double s,
                                   const double b[3], double c[3])
 {
@@ -39,8 +39,8 @@ static inline double vec_normalise(double a[3])
     return length;
 }
 
-/* Sets B to A rotated by the unit quaternion Q, or by its inverse if SIGN is
- * -1. */
+/* Sets B to A rotated by the unit quaternion Q (SIGN 1), or by its inverse
+ * (SIGN -1). */
 static inline void vec_rotate(const double q[4], double sign, const double a[3],
                               double b[3])
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_check.h - steps shared by the tests of the V4L2 source. Each test ends
- * with must_close_camera(), which checks that nothing remains open, mapped or
- * allocated.
+ * camera_check.h - steps shared by the tests of the V4L2 source. Each test
+ * ends with must_close_camera(), which checks that no file, buffer mapping or
+ * heap block remains.
  */
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
 #define GLINT_SUPPORT_CAMERA_CHECK_H
@@ -44,8 +44,8 @@ static inline void must_open_camera(const struct glint_v4l2_config *wish)
         fail_msg("%s", said.text);
 }
 
-/* Checks that the camera is closed, unmapped and freed, and that no rule of the
- * driver was violated. */
+/* Checks that the camera is closed, that no buffer is mapped or allocated, and
+ * that the code under test violated no rule of the driver. */
 static inline void must_be_closed_camera(void)
 {
     assert_int_equal(v4l2.source.fd, -1);
@@ -101,9 +101,9 @@ static inline void must_get_no_frame(void)
     done();
 }
 
-/* Gets a frame every 10 ms for MS milliseconds of the fake clock. Returns
- * the first status other than GLINT_OK, or GLINT_OK at the end. Sets
- * *FAILED_MS to the time of the last attempt. */
+/* Gets a frame every 10 ms until MS milliseconds of the fake clock have passed
+ * or a status differs from GLINT_OK. Returns the last status. Sets *FAILED_MS
+ * to the time of the last attempt. */
 static inline enum glint_status get_frames_during_ms(int ms, int *failed_ms)
 {
     const int64_t start = fake_camera_time_us();

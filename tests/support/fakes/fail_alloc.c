@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * A library for LD_PRELOAD that makes one allocation of a program fail, number
- * $FAIL_AT; with $FAIL_ON all from there on. If $FAIL_COUNT names a file, the
- * number of allocations is written to it at exit. With $FAIL_SIGNAL, a number,
- * the allocation succeeds, and the signal is raised before it. For glibc, whose
- * own allocations are counted as well.
+ * A library for LD_PRELOAD that makes allocation number $FAIL_AT of a program
+ * fail; if $FAIL_ON is set, also all later ones. If $FAIL_COUNT names a file,
+ * the number of allocations is written to it at exit. With $FAIL_SIGNAL, a
+ * number, the allocation succeeds, and the signal is raised before it. For
+ * glibc, whose own allocations are counted as well.
  */
 #define _GNU_SOURCE
 #include <errno.h>

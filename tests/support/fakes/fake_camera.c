@@ -71,7 +71,7 @@ static bool is_request_refused(unsigned long request, const void *arg)
     const struct v4l2_requestbuffers *r = arg;
 
     if (refusal.request != request || refusal.times == 0 ||
-        /* Requests that free buffers never fail. */
+        /* Requests to free the buffers never fail. */
         (request == VIDIOC_REQBUFS && r->count == 0))
         return false;
     if (refusal.times > 0)
@@ -252,8 +252,9 @@ static int answer_set_format(struct v4l2_format *f)
     return answer_get_format(f);
 }
 
-/* Returns mode number INDEX among the modes that WITHIN accepts for KEY,
- * ignoring modes that LIKE an earlier one; NULL if there are fewer. */
+/* Returns the mode with index INDEX among the modes that WITHIN accepts for
+ * KEY. Of modes that LIKE calls equal, only the first counts. NULL: there are
+ * fewer modes. */
 static const struct fake_mode *
 find_mode(uint32_t index,
           bool (*like)(const struct fake_mode *a, const struct fake_mode *b),
@@ -667,7 +668,8 @@ int __wrap_ioctl(int fd, unsigned long request, ...)
     if (fd != camera.fd || fd < 0)
         return __real_ioctl(fd, request, arg);
     if (request == VIDIOC_STREAMOFF || camera.is_gone)
-        camera.streams = false; /* also if the request fails below */
+        /* the stream stops even if the request is made to fail below */
+        camera.streams = false;
     if (must_fail_this_call() || is_request_refused(request, arg))
         return -1;
     return camera.is_gone ? set_errno_and_fail(ENODEV)
@@ -730,7 +732,8 @@ ssize_t __wrap_read(int fd, void *dst, size_t bytes)
         return -1;
     if (camera.is_gone || camera.read_errno)
         return set_errno_and_fail(camera.is_gone ? ENODEV : camera.read_errno);
-    camera.streams = true; /* read() streams until the device is closed. */
+    /* read() starts the stream, which runs until the device is closed */
+    camera.streams = true;
     camera.n_buffers = 1;
     if (camera.n_frames == 0)
         return set_errno_and_fail(EAGAIN);
@@ -848,7 +851,7 @@ void __wrap_free(void *mem);
 void __wrap_free(void *mem)
 {
     n_blocks -= mem != NULL;
-    if (mem) /* makes reads of freed memory visible */
+    if (mem) /* overwrites the block to reveal reads of freed memory */
         memset(mem, 0xdd, malloc_usable_size(mem));
     __real_free(mem);
 }

@@ -5,9 +5,9 @@
  *
  * The fake driver is as strict as the kernel: a buffer may be queued only once,
  * no format may be set while there are buffers, and no buffers may be freed
- * while they are mapped. The member breaches counts violations that the kernel
- * would not report at once. Any call to the kernel or the heap can be made to
- * fail.
+ * while they are mapped. The member `breaches` counts violations of these
+ * rules that the kernel would not report at once. Any call to the kernel or
+ * the heap can be made to fail.
  */
 #ifndef GLINT_SUPPORT_FAKE_CAMERA_H
 #define GLINT_SUPPORT_FAKE_CAMERA_H
@@ -29,24 +29,26 @@ struct fake_mode {
 
 struct fake_frame {
     uint32_t sequence;
-    int code; /* value of every byte, 0 .. 255 */
-    /* image data of bytesused[0] bytes, instead of CODE; NULL: none */
+    int code; /* value of every byte of the frame, 0 .. 255 */
+    /* image data, bytesused[0] bytes, in place of CODE; NULL: none */
     const void *data;
     uint32_t flags;
-    /* bytes used per block; 0: the whole frame, unless is_odd */
+    /* bytes used in each block; 0: the whole frame, unless is_odd */
     uint32_t bytesused[3];
     uint32_t data_offset[3];
     int64_t time_us;
-    /* the driver does not report the clock of its time stamps */
+    /* the driver does not report which clock its time stamps use */
     bool unknown_clock;
-    bool is_odd; /* a bytesused of 0 means 0 bytes */
-    int error;   /* errno of DQBUF; 0: no error */
+    bool is_odd; /* in bytesused, 0 means 0 bytes */
+    /* errno that the request DQBUF sets for this frame; 0: no error */
+    int error;
 };
 
 struct fake_buffer {
     uint32_t bytes[3];
-    uint8_t *map[3];      /* NULL: this block is not mapped */
-    unsigned long own[3]; /* address of the caller's memory; 0: none */
+    uint8_t *map[3]; /* addresses of the mapped blocks; NULL: not mapped */
+    /* addresses of blocks in the caller's memory; 0: none */
+    unsigned long own[3];
     bool queued;
 };
 
@@ -56,21 +58,24 @@ struct fake_camera {
     bool multiplanar, has_dv, has_no_sizes, is_stepwise;
     uint32_t n_inputs;
     struct fake_mode mode[FAKE_MODES];
-    uint32_t stride_more; /* padding per row, bytes */
-    /* bytes by which a buffer is shorter than sizeimage */
+    uint32_t stride_more; /* padding at the end of each row, bytes */
+    /* number of bytes by which buffers are shorter than sizeimage */
     uint32_t length_less;
-    /* sizeimage that the driver reports, bytes; 0: the right value */
+    /* sizeimage that the driver reports, bytes; 0: the true value */
     uint32_t sizeimage;
-    bool reports_no_stride; /* the driver reports a bytesperline of 0 */
-    bool rounds;            /* sizes are rounded to multiples of 16 */
-    bool ignores_fourcc;    /* S_FMT always sets the fourcc of the first mode */
-    bool lacks_mmap;        /* REQBUFS rejects MMAP */
-    uint32_t max_buffers;   /* max number of buffers from REQBUFS */
-    /* frame interval that G_PARM reports; 0/x: that of the mode */
+    bool reports_no_stride; /* the driver reports 0 as bytesperline */
+    bool rounds;            /* the driver rounds sizes to multiples of 16 */
+    /* the request S_FMT always sets the fourcc of the first mode */
+    bool ignores_fourcc;
+    bool lacks_mmap; /* REQBUFS rejects MMAP */
+    /* max number of buffers that the request REQBUFS allocates */
+    uint32_t max_buffers;
+    /* frame interval that the request G_PARM reports; numerator 0: that of the
+     * mode */
     struct v4l2_fract rate;
     uint32_t quantization, ycbcr_enc, colorspace;
 
-    /* Present settings, and the signal on the cable: */
+    /* Present settings of the device, and the signal on the cable: */
     struct fake_mode now;
     uint32_t input;
     struct v4l2_bt_timings timings, received;
@@ -87,14 +92,15 @@ struct fake_camera {
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
     int read_errno; /* errno of read(); 0: no error */
-    /* called at the beginning of each DQBUF request, unless NULL */
+    /* called at the start of each DQBUF request, unless NULL */
     void (*on_dequeue)(void);
-    /* called at the beginning of each STREAMON request, unless NULL */
+    /* called at the start of each STREAMON request, unless NULL */
     void (*on_stream)(void);
-    /* index that DQBUF returns, plus 1; 0: the true index */
+    /* 1 + the wrong buffer index that DQBUF returns; 0: returns the true
+     * index */
     int returned_index;
 
-    /* Numbers of calls and of violations: */
+    /* Counts of calls, and of violations (breaches): */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;
     int n_s_dv_timings;
 };
@@ -104,18 +110,17 @@ extern struct fake_camera camera;
 /* Resets the camera to YUYV of 64 x 48 at 30 fps, without failures. */
 void fake_camera_reset(void);
 
-/* Appends a frame to the pending ones: all bytes CODE, time stamp now. The
- * caller may change the returned frame. */
+/* Appends a frame to the frames that the camera will deliver: all bytes CODE,
+ * time stamp now. The caller may change the returned frame. */
 struct fake_frame *fake_camera_add_frame(uint32_t sequence, int code);
 
-/* Makes the next TIMES requests REQUEST fail with errno NUMBER; TIMES -1:
- * all. */
+/* Makes the next TIMES requests of type REQUEST fail with errno NUMBER; TIMES
+ * -1: all later ones. */
 void fake_camera_fail_request(unsigned long request, int number, int times);
 
 /* Makes the Nth call from now fail with errno NUMBER, and all later calls as
- * well if FOREVER; N 0: no call fails. Counts system calls for the camera
- * and allocations. Returns the number of calls since this function was last
- * called. */
+ * well if FOREVER; N 0: none. System calls for the camera and allocations count
+ * as calls. Returns the number of calls since this function was last called. */
 int fake_camera_fail_call(int n, int number, bool forever);
 
 /* Returns the number of heap blocks that the code under test has not freed. */
@@ -124,7 +129,7 @@ int fake_camera_count_leaks(void);
 /* Returns the number of allocations since the program began. */
 int fake_camera_count_allocations(void);
 
-/* Advances the fake clock by US microseconds. Otherwise only sleeping
+/* Advances the fake clock by US microseconds. Apart from this, only sleeping
  * advances it. */
 void fake_camera_advance_clock(int64_t us);
 int64_t fake_camera_time_us(void);

@@ -43,7 +43,8 @@ int __wrap_open64(const char *path, int flags, ...)
     if (must_fail_this_call())
         return set_errno_and_fail(EMFILE);
     if (!strcmp(path, "/dev/tty"))
-        return set_errno_and_fail(ENXIO); /* a daemon has no terminal */
+        /* open() fails: a daemon has no terminal */
+        return set_errno_and_fail(ENXIO);
     if (is_tty)
         return fake_fb->tty_errno ? set_errno_and_fail(fake_fb->tty_errno)
                                   : __real_open64(fake_tty_path, flags);
@@ -82,7 +83,7 @@ static int answer_framebuffer_ioctl(unsigned long request, void *arg)
         return fake_fb->vsync_errno ? set_errno_and_fail(fake_fb->vsync_errno)
                                     : 0;
     }
-    fail_msg("ioctl %lx", request); /* glint must never set the mode */
+    fail_msg("ioctl %lx", request); /* glint must never set the display mode */
     return -1;
 }
 

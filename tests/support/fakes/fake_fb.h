@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * fake_fb.h - a fake framebuffer and console: files, and an ioctl() that
- * answers for them. Tests link it with
+ * fake_fb.h - a fake framebuffer and console: two files, and an ioctl() that
+ * answers requests for them. Tests link it with
  * --wrap=open64,ioctl,mmap64,munmap,malloc.
  */
 #ifndef GLINT_SUPPORT_FAKE_FB_H
@@ -22,15 +22,15 @@ struct fake_fb {
     bool gone, can_pan;
     int open_errno, vsync_errno, n_vsync, n_pan;
     int tty_errno, tty_mode, tty_switching;
-    /* var.yoffset at the time when text mode was restored, rows */
+    /* var.yoffset when text mode was restored, rows */
     uint32_t yoffset_at_text;
 };
 /* set by the test; shared with forked processes */
 extern struct fake_fb *fake_fb;
 
-/* number of calls so far that fake_fb_fail_at can make fail */
+/* number of calls so far that could be made to fail */
 extern int fake_fb_calls;
-/* number of the call that fails, counted from 1; 0: none */
+/* which of these calls fails, counted from 1; 0: none */
 extern int fake_fb_fail_at;
 extern int fake_fb_maps;
 

@@ -49,8 +49,8 @@ void drawn_draw_image(struct drawn *d, int width, int height,
     assert_ok(scene_frame_draw(&d->frame, &image));
 }
 
-/* Returns whether pixel I of the reference shows the same object as its
- * neighbours. */
+/* Returns whether the reference shows the same object at pixel I and at all of
+ * its neighbours. */
 static int is_inside_object(const struct twin_pixel *p, int i)
 {
     const int x = i % WIDTH, y = i / WIDTH;

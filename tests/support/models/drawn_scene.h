@@ -28,9 +28,10 @@ void drawn_close_scene(struct drawn *d);
 void drawn_draw_image(struct drawn *d, int width, int height,
                       int32_t *light_q20);
 
-/* Returns the PSNR, dB, of TEXT against the reference renderer, drawn with
- * one sample per pixel, light clamped to 1. Only pixels whose neighbours
- * show the same object count; they must be a third of the 160 x 90 pixels. */
+/* Returns the PSNR, dB, of TEXT drawn by the integer renderer against the
+ * reference renderer, one sample per pixel, light clamped to 1. Compares only
+ * pixels whose neighbours show the same object; checks that these are at least
+ * a third of the 160 x 90 pixels. */
 double drawn_psnr_to_reference(const char *text,
                                const struct glint_description_files *files);
 

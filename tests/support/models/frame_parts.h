@@ -8,20 +8,21 @@
 
 #include "glint/flare.h"
 
-/* Sets WAVE to the ends of the model's range: red, then green. */
+/* Sets WAVE to the two ends of the model's wavelength range: red, then
+ * green. */
 void set_frame_wavelengths(struct glint_wave wave[2]);
 
 /* Returns a white light of power 1000 on the axis. */
 struct glint_light make_axial_light(void);
 
-/* Returns the frame's rays for all ghosts of LENS in the colours of WAVE, at
- * 64 pixels per mm. */
+/* Returns the rays of a frame: all ghosts of LENS in the colours of WAVE, at 64
+ * pixels per mm. */
 struct glint_flare_frame make_frame_rays(const struct glint_lens *lens,
                                          const struct glint_wave wave[2],
                                          int fineness);
 
-/* Returns a flare configuration for images of WIDTH x HEIGHT. The caller sets
- * its capacities for bundles, primitives and cells, which are 0. */
+/* Returns a flare configuration for images of WIDTH x HEIGHT. Its capacities
+ * for bundles, primitives and cells are 0; the caller sets them. */
 struct glint_flare_config make_frame_config(int width, int height,
                                             int tile_log2);
 

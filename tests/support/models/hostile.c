@@ -33,8 +33,8 @@ struct polynomial {
     double u[POWERS], v[POWERS], w;
 };
 
-/* Adds to POWER the Chebyshev polynomial of degree N, which swings between -1
- * and 1, times SIZE. */
+/* Adds SIZE times the Chebyshev polynomial of degree N, whose values are -1 ..
+ * 1, to the coefficients POWER. */
 static void add_chebyshev_polynomial(double *power, int n, double size)
 {
     double last[POWERS] = {1}, here[POWERS] = {0, 1};
@@ -50,7 +50,8 @@ static void add_chebyshev_polynomial(double *power, int n, double size)
         power[i] += size * (n ? here[i] : i == 0);
 }
 
-/* Writes P as output KIND, with coefficients in units of 2^EXPONENT. */
+/* Writes polynomial P to M as output KIND, with coefficients in units of
+ * 2^EXPONENT. */
 static struct glint_model_output append_output(struct model_image *m, int kind,
                                                const struct polynomial *p,
                                                int exponent)
@@ -78,8 +79,8 @@ static struct glint_model_output append_output(struct model_image *m, int kind,
     return o;
 }
 
-/* Returns the exponent E for which the magnitudes of P's coefficients sum to
- * 2^28 .. 2^29 units of 2^E; 0 if P is 0. */
+/* Returns the exponent E such that the magnitudes of the coefficients of P, in
+ * units of 2^E, sum to 2^28 .. 2^29; 0 if P is 0. */
 static int find_unit_exponent(const struct polynomial *p)
 {
     double sum = fabs(p->w);
@@ -91,14 +92,15 @@ static int find_unit_exponent(const struct polynomial *p)
     return sum > 0 ? exponent - 29 : 0;
 }
 
-/* Writes P[N] as outputs of the first N kinds. Returns their offset in M. */
+/* Writes the polynomials P[N] to M as the first N kinds of output. Returns
+ * their offset in M. */
 static uint32_t append_outputs(struct model_image *m,
                                const struct polynomial *p, int n)
 {
     struct glint_model_output o[GLINT_OUT_KINDS];
 
     for (int k = 0; k < n; k++) {
-        /* x and y share the larger exponent of the two */
+        /* The outputs x and y share the larger exponent of the two. */
         const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
         const int a = find_unit_exponent(&p[k]),
                   b = find_unit_exponent(&p[pair]);
@@ -110,8 +112,8 @@ static uint32_t append_outputs(struct model_image *m,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* Sets P to the outputs of a ghost as large as the frame, whose pupil box fills
- * the stop. */
+/* Sets P to the outputs of a ghost as large as the frame; its pupil box is as
+ * large as the stop. */
 static void set_frame_filling_ghost(struct polynomial p[GLINT_OUT_KINDS],
                                     uint32_t *seed)
 {
@@ -162,8 +164,8 @@ make_system_of_outputs(const struct model_image *m, uint32_t outputs,
                                        .box_terms = 1};
 }
 
-/* Writes a ghost for each pair of SURFACES, the max number of a lens. The
- * ghosts share VARIANTS different shapes. */
+/* Writes a ghost for each pair of SURFACES, the max number of surfaces of a
+ * lens. VARIANTS: number of different ghost shapes. */
 static void append_ghost_per_pair(struct model_image *m,
                                   enum hostile_family family, uint32_t *seed)
 {
@@ -198,10 +200,10 @@ static void append_ghost_per_pair(struct model_image *m,
     model_append_ghosts(m, ghost, PAIRS, of, PAIRS);
 }
 
-/* Writes ghosts with invalid rays, selected by NUMBER modulo 3. 0: all rays
- * have negative energy. 1: stripes of rays have negative energy. 2: some rays
- * land far off-screen. From NUMBER 5 on there are as many ghosts as a lens can
- * have. */
+/* Writes ghosts with invalid rays. NUMBER modulo 3 selects the variant: 0: all
+ * rays have negative energy; 1: stripes of rays have negative energy; 2: some
+ * rays land far off-screen. From NUMBER 5 on, there are as many ghosts as a
+ * lens can have. */
 static void append_ghosts_of_invalid_rays(struct model_image *m, int number,
                                           uint32_t *seed)
 {
@@ -230,7 +232,7 @@ static void append_ghosts_of_invalid_rays(struct model_image *m, int number,
 
 /* Writes one ghost, or two from NUMBER 5 on, with 10000 polynomial systems,
  * each for a narrow band of wavelengths and a small range of angles. All
- * systems share outputs and box, which keeps the file small. */
+ * systems refer to the same outputs and box, which keeps the file small. */
 static void append_ghost_of_many_systems(struct model_image *m, int number,
                                          uint32_t *seed)
 {
@@ -259,9 +261,9 @@ static void append_ghost_of_many_systems(struct model_image *m, int number,
     model_append_ghosts(m, ghost, 2, of, N);
 }
 
-/* Writes an output with the max number of coefficients to M and returns it.
- * Their terms have different powers of u and s and the power V of v; at
- * fractional s each term is rounded, and all round up. The magnitudes of the
+/* Writes an output with the max number of coefficients to M and returns it. Its
+ * terms have different powers of u and s, and the power V of v. At fractional s
+ * the run time rounds each term; all round up. The magnitudes of the
  * coefficients sum to 2^30 - 1, the max that the validity check accepts. */
 static struct glint_model_output
 append_largest_output(struct model_image *m, int kind, int exponent, int v)
@@ -285,9 +287,9 @@ append_largest_output(struct model_image *m, int kind, int exponent, int v)
     return o;
 }
 
-/* Writes a ghost whose outputs have the max number of coefficients: all
- * outputs, or some of them, selected by NUMBER. Barrels have exponents of which
- * 2^30 is 1 after a shift by 31. */
+/* Writes a ghost whose outputs have the max number of coefficients; NUMBER
+ * selects which of its outputs. The exponents of its barrels make 2^30 equal to
+ * 1 after a shift by 31. */
 static void append_ghost_of_largest_outputs(struct model_image *m, int number)
 {
     static const struct glint_model_ghost ghost[] = {{0, 1, 0, 1}};
@@ -314,14 +316,14 @@ static void append_ghost_of_largest_outputs(struct model_image *m, int number)
 
 /* ------------------------------------------------------------------ editing */
 
-/* Returns the address of OFFSET in M. Baked models are edited in place. */
+/* Returns the address of OFFSET in M, for editing a baked model in place. */
 static void *model_bytes_at(const struct model_image *m, uint32_t offset)
 {
     return m->data + offset;
 }
 
-/* Sets the coefficients of output O at random; their magnitudes add up to just
- * below 2^30. */
+/* Sets the coefficients of output O to random values whose magnitudes sum to
+ * just below 2^30. */
 static void randomise_output_coefficients(const struct model_image *m,
                                           struct glint_model_output *o,
                                           uint32_t *seed)
@@ -386,9 +388,9 @@ static void randomise_pupil_box(const struct model_image *m,
                           : s->box_exponent;
 }
 
-/* Changes the stop positions of S, selected by NUMBER modulo 3. 0: all rays
- * pass the middle of the stop. 1: only the first coefficient remains, which
- * grows with NUMBER, so that all rays may miss the stop. 2: positions get the
+/* Changes the stop positions of S. NUMBER modulo 3 selects how: 0: all rays
+ * pass the middle of the stop; 1: only the first coefficient remains, which
+ * grows with NUMBER, so that all rays may miss the stop; 2: positions get the
  * exponent 2 NUMBER - 20, so that hardly any ray passes the stop. */
 static void randomise_stop_positions(const struct model_image *m,
                                      struct glint_model_system *s, int number)
@@ -431,7 +433,7 @@ static void randomise_header(struct glint_model_header *h, uint32_t *seed)
         h->n_parts = h->n_ghosts;
 }
 
-/* Sets the name in H to an invalid one, selected by NUMBER. */
+/* Sets the name in header H to an invalid name, selected by NUMBER. */
 static void set_invalid_name(struct glint_model_header *h, int number)
 {
     static const char *const name[HOSTILE_EACH] = {"evil\xc2\x9b"
@@ -484,8 +486,8 @@ static void edit_all_systems(struct model_image *m,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Returns the number of pixel rows that an edge of FLARE crosses, summed over
- * all edges. */
+/* Returns the sum, over all edges of FLARE, of the pixel rows that the edge
+ * crosses. */
 static double count_crossed_rows(const struct glint_flare *flare)
 {
     double rows = 0;
@@ -503,8 +505,8 @@ static double count_crossed_rows(const struct glint_flare *flare)
 }
 
 /* Returns the estimated cost of the frame, millions of instructions: a weighted
- * sum of the objects that its plans examined, the vertices and edges of each
- * binning, and the rows and pixels drawn. */
+ * sum of the items that its plans examined, the vertices and edges that were
+ * binned, and the rows and pixels drawn. */
 static double estimate_frame_instructions(const struct glint_frame *f,
                                           const struct glint_engine_report *r)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Models with valid checksums whose contents would cost too much work or
- * memory, or overflow. Each is drawn at random from its family; those that
- * glint_lens_open() accepts must be drawn within bounds of work and memory.
+ * memory, or overflow. Each belongs to a family and is otherwise random.
+ * Frames of models that glint_lens_open() accepts must be drawn within the
+ * limits of work and memory.
  *
  *     hostile_make_scene(&scene, HOSTILE_FOLDS, 3, &baked);
  *     glint_lens_open(&lens, scene.model.data, scene.model.bytes, &reason);
@@ -19,18 +20,19 @@ enum hostile_family {
     /* 2016 ghosts that fold across the frame up to nine times in x and y,
      * clipped by barrels */
     HOSTILE_FOLDS,
-    /* all rays or stripes of rays invalid; or more cells than an int counts */
+    /* rays that are all invalid, or in stripes; or more grid cells than an int
+     * can count */
     HOSTILE_LOST,
     HOSTILE_SYSTEMS, /* a ghost with thousands of polynomial systems */
-    /* coefficients with the largest valid sums, any exponents */
+    /* coefficients with the largest valid sums and with any exponents */
     HOSTILE_NUMBERS,
     HOSTILE_POINTS,  /* pupil boxes of size 0 */
-    HOSTILE_HUGE,    /* pupil boxes of the largest size, any exponents */
+    HOSTILE_HUGE,    /* pupil boxes of the largest size, with any exponents */
     HOSTILE_WINDOWS, /* stop positions whose pupil window is empty or tiny */
-    HOSTILE_HEADERS, /* numbers of the header at the ends of their ranges */
-    /* outlines whose position differs much between wavelengths */
+    HOSTILE_HEADERS, /* header fields at the ends of their ranges */
+    /* ghost outlines whose position differs much between wavelengths */
     HOSTILE_COLOURS,
-    HOSTILE_SUMS, /* rounding carries sums of coefficients past 2^30 - 1 */
+    HOSTILE_SUMS, /* coefficients whose sums exceed 2^30 - 1 after rounding */
     /* names with terminal control bytes, or without a terminating 0 */
     HOSTILE_TEXTS,
     HOSTILE_FAMILIES
@@ -47,10 +49,10 @@ extern const char *const hostile_name[HOSTILE_FAMILIES];
 
 struct hostile_scene {
     struct model_image model;
-    double opening; /* stop radius / stop radius of the model */
+    double opening; /* stop radius divided by the stop radius of the model */
     struct glint_lamp lamp[HOSTILE_LAMPS];
     int n_lamps;
-    bool linear; /* draws in linear light, not in codes */
+    bool linear; /* true: draws in linear light; false: in codes */
 };
 
 /* Outcome of drawing a hostile scene. */
@@ -58,8 +60,9 @@ enum hostile_outcome {
     HOSTILE_REFUSED, /* model rejected by the validity check or by setup */
     HOSTILE_EMPTY,   /* frame without light */
     HOSTILE_DRAWN,
-    HOSTILE_COARSER, /* drawn coarser to stay within the work limit */
-    /* drawn without some bundles to stay within the memory limit */
+    /* drawn with coarser grids to stay within the work limit */
+    HOSTILE_COARSER,
+    /* drawn without some ghosts to stay within the memory limit */
     HOSTILE_LESS,
     HOSTILE_OUTCOMES
 };
@@ -68,19 +71,19 @@ struct hostile_result {
     enum hostile_outcome outcome;
     /* estimated work and its limit, millions of instructions */
     double minsn, most_minsn;
-    /* memory used for drawing, and its limit, bytes */
+    /* memory used for drawing and its limit, bytes */
     double bytes, most_bytes;
     int plans;
     const char *reason; /* reason of HOSTILE_REFUSED */
 };
 
-/* Draws SCENE in 640x360 with the default bounds and sets RESULT. Returns false
- * if drawing failed, which no model may cause. */
+/* Draws SCENE at 640x360 with the default limits and sets RESULT. Returns false
+ * if drawing failed, which must not happen for any model. */
 bool hostile_draw_scene(const struct hostile_scene *scene,
                         struct hostile_result *result);
 
-/* Makes SCENE with model NUMBER, 0 to HOSTILE_EACH - 1, of FAMILY. Some
- * families are edited copies of BAKED. The caller frees scene->model.data. */
+/* Sets SCENE to model NUMBER, 0 .. HOSTILE_EACH - 1, of FAMILY. Some families
+ * are edited copies of the model BAKED. The caller frees scene->model.data. */
 void hostile_make_scene(struct hostile_scene *scene, enum hostile_family family,
                         int number, const struct glint_lens *baked);
 

@@ -23,7 +23,8 @@ void scene_begin_header(struct scene_file *s)
     s->tables = sizeof s->header;
 }
 
-/* Appends FROM[BYTES] to the data before the tables. Returns its offset. */
+/* Appends FROM[BYTES] to the data section, which precedes the tables. Returns
+ * its offset. */
 static uint32_t append_scene_data(struct scene_file *s, const void *from,
                                   size_t bytes)
 {
@@ -121,7 +122,7 @@ uint32_t scene_add_lamp(struct scene_file *s, const int32_t at[3],
 
 /* ------------------------------------------------------------------ meshes */
 
-/* Sets LO and HI to the bounding box of triangle T, or of all vertices if T
+/* Sets LO and HI to the bounding box of triangle T, or of all N vertices if T
  * is NULL. */
 static void compute_bounding_box(const int32_t (*at)[3], int n,
                                  const uint32_t *t, int32_t lo[3],
@@ -299,7 +300,7 @@ void scene_seal_checksum(struct scene_file *s)
     append_table(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
     append_table(s, &h->stone_at, s->stone, h->n_stones * sizeof *s->stone);
     append_table(s, &h->skin_at, s->skin, h->n_skins * sizeof *s->skin);
-    /* no environment; the offset is the end of the file */
+    /* no environment: its offset is the end of the file */
     h->environment_at = (uint32_t)s->bytes;
     memcpy(s->data, h, sizeof *h);
     glint_blob_set_size_and_checksum(s->data, s->bytes);
@@ -360,7 +361,8 @@ struct glint_scene *scene_init_renderer(struct scene_file *file,
     assert_int_equal(glint_scene_init(&s, cfg, &model, mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_null(s);
-    memset(mem, 0xa5, bytes); /* dirty memory reveals what is left unset */
+    /* filled memory reveals members that remain unset */
+    memset(mem, 0xa5, bytes);
     assert_ok(glint_scene_init(&s, cfg, &model, mem, bytes));
     glint_scene_begin(s, stats ? stats : &unread);
     return s;

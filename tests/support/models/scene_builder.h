@@ -29,16 +29,17 @@ struct scene_file {
     struct glint_scene_ward ward[4];
     struct glint_scene_stone stone[4];
     struct glint_scene_skin skin[4];
-    size_t tables; /* offset at which the six tables begin, bytes */
+    size_t tables; /* offset of the first of the six tables, bytes */
     size_t bytes;
     uint32_t data[SCENE_BYTES / 4];
 };
 
-/* Makes an empty scene. The camera is at the origin, looks along z, is 90
- * degrees wide, and draws onto an image. One unit is 2^16 steps. */
+/* Makes an empty scene. The camera is at the origin, looks along z, and has a
+ * field of view of 90 degrees; the scene is drawn onto an image. One unit is
+ * 2^16 steps. */
 void scene_begin_header(struct scene_file *s);
 
-/* Adds a white material that returns its colour times the light. */
+/* Adds a white material whose light is its colour times the incident light. */
 uint32_t scene_add_material(struct scene_file *s, const char *name);
 uint32_t scene_add_sphere(struct scene_file *s, const char *name,
                           uint32_t material, int32_t x, int32_t y, int32_t z,
@@ -48,12 +49,13 @@ uint32_t scene_add_sphere(struct scene_file *s, const char *name,
 uint32_t scene_add_plane(struct scene_file *s, const char *name,
                          uint32_t material, int32_t y);
 
-/* Add a light of RGB 1 (for a lamp at a distance of DISTANCE steps). */
+/* Add a light of RGB 1; that of a lamp refers to the distance DISTANCE,
+ * steps. */
 uint32_t scene_add_sun(struct scene_file *s, const int32_t toward_q30[3]);
 uint32_t scene_add_lamp(struct scene_file *s, const int32_t at[3],
                         int32_t distance);
 
-/* Adds a mesh and its grid. UV_Q16 and NORMAL_Q30 may be NULL. */
+/* Adds a mesh and its triangle grid. UV_Q16 and NORMAL_Q30 may be NULL. */
 uint32_t scene_add_mesh(struct scene_file *s, const int32_t (*at)[3],
                         const int32_t (*uv_q16)[2],
                         const int32_t (*normal_q30)[3], int n_vertices,
@@ -61,7 +63,7 @@ uint32_t scene_add_mesh(struct scene_file *s, const int32_t (*at)[3],
 uint32_t scene_add_object(struct scene_file *s, const char *name,
                           uint32_t material, uint32_t mesh);
 
-/* Adds a texture of 2^W_LOG2 x 2^H_LOG2 texels; mipmap levels are means of
+/* Adds a texture of 2^W_LOG2 x 2^H_LOG2 texels. Its mipmap levels are means of
  * codes. */
 uint32_t scene_add_texture(struct scene_file *s, const uint8_t *rgb,
                            uint32_t w_log2, uint32_t h_log2);
@@ -81,9 +83,9 @@ struct glint_scene *scene_init_renderer(struct scene_file *s,
                                         const struct glint_scene_config *cfg,
                                         struct glint_scene_stats *stats);
 
-/* Writes the triangles of a ball, left-handed, to CORNERS. Vertices are
- * RINGS rings of SIDES points, then the pole before the first ring and the
- * pole after the last. Returns the number of triangles, 2 RINGS SIDES. */
+/* Writes the triangles of a ball, in left-handed order, to CORNERS. The
+ * vertices are RINGS rings of SIDES points, then the poles before the first and
+ * after the last ring. Returns the number of triangles, 2 RINGS SIDES. */
 int scene_make_ball(int rings, int sides, uint32_t (*corners)[3]);
 
 #endif

@@ -16,10 +16,10 @@ struct built_stone {
     struct glint_translucent stone;
 };
 
-/* Builds a translucent medium of SIDE x SIDE texels with a kernel of KERNEL
- * texels: Gaussians, wider in red than in blue, that scatter the fraction
- * ALBEDO of the light; the albedo varies on a chessboard of 8 x 8 fields.
- * Factored models have a second term that is negative in places. */
+/* Builds a translucent medium of SIDE x SIDE texels with a kernel of KERNEL x
+ * KERNEL texels: Gaussians, wider in red than in blue, that scatter the
+ * fraction ALBEDO of the light. The albedo varies on a chessboard of 8 x 8
+ * fields. Factored models get a second term, which is negative in places. */
 void build_translucent_model(struct built_stone *b,
                              enum glint_scatter_model model, int side,
                              int kernel, double albedo);

@@ -9,9 +9,9 @@
 
 #include "support/stage.h"
 
-/* Positions as fractions of the image, powers and colours: the lamps that
- * glint finds in bridge_night, lights_water, esplanade_lamps and night_town
- * of the test photographs. */
+/* Positions (fractions of the image size), powers and colours of the lamps that
+ * glint finds in four test photographs: bridge_night, lights_water,
+ * esplanade_lamps and night_town. */
 static const struct street_light {
     double x, y, power, rgb[3];
 } street[] = {
@@ -82,8 +82,8 @@ static const struct street_light {
 
 enum { STREET = sizeof street / sizeof *street };
 
-/* Sets LAMPS to N lights in STAGE's view: those above, then the same
- * mirrored horizontally, then vertically. */
+/* Sets LAMPS to N lights in the view of STAGE: first those of the table above,
+ * then the same mirrored horizontally, then vertically. */
 static inline void street_lamps(const struct stage *stage,
                                 struct glint_lamp *lamps, int n)
 {

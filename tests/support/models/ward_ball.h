@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * A brushed metal ball under an environment map, 32 pixels wide, viewed along
- * z, brushed about y; drawn by exact sums over all texels, and by the lookups
- * of the run time.
+ * z, brushed about the y axis. It is drawn by exact sums over all texels of
+ * the map, and by the lookups of the run time.
  */
 #ifndef GLINT_TESTS_WARD_BALL_H
 #define GLINT_TESTS_WARD_BALL_H
@@ -14,30 +14,31 @@ enum { WARD_BALL = 32, WARD_PIXELS = WARD_BALL * WARD_BALL };
 
 typedef double ward_picture[WARD_PIXELS][3];
 
-/* Sets FRAME to tangent, bitangent and normal at pixel I. Returns 0 off the
- * ball and at its rim, where the normal is within 6 degrees of perpendicular
- * to the view. */
+/* Sets FRAME to the tangent, bitangent and normal of the ball at pixel I.
+ * Returns 0 off the ball, and at its rim where the normal is within 6 degrees
+ * of perpendicular to the view. */
 int ward_build_frame(int i, double frame[3][3]);
 
-/* Returns Ward's lobe towards IN as seen from VIEW, times n . in. NORM: the
- * bounded norm or that of 1992. As in the run time, the lobe is limited to 8
- * times its density. */
+/* Returns Ward's lobe for light from IN seen from VIEW, times the cosine n .
+ * in. NORM: the bounded normalisation or that of 1992. As in the run time, the
+ * lobe is limited to 8 times its sampling density. */
 double ward_evaluate_lobe(const double frame[3][3], const double view[3],
                           const double alpha[2], int norm, const double in[3]);
 
-/* Sets TO to the image of the ball under S by sums over all texels, with the
- * bounded norm. */
+/* Sets TO to the image of the ball in the environment S by sums over all
+ * texels, with the bounded normalisation. */
 void ward_sum_texels(const struct glint_sphere *s, const double alpha[2],
                      ward_picture to);
 
-/* Sets TO to the image of the ball by lookups in E. */
+/* Sets TO to the image of the ball by lookups in the baked environment E. */
 void ward_lookup_picture(const struct glint_environment *e,
                          const struct glint_ward_material *material,
                          const struct glint_ward_options *options,
                          ward_picture to);
 
-/* Return the PSNR of GOT, dB, exposed so that the median of WANT is 1/4 of
- * white, clamped to white: in linear light, or in sRGB codes. */
+/* Return the PSNR of GOT against WANT, dB, in linear light or in sRGB codes.
+ * Both are exposed so that the median of WANT is 1/4 of white, and clamped to
+ * white. */
 double ward_compute_psnr(ward_picture want, ward_picture got);
 double ward_compute_psnr_of_codes(ward_picture want, ward_picture got);
 

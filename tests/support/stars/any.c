@@ -22,14 +22,15 @@ static int32_t clamp_weight_q30(int64_t x)
     return (int32_t)(x > most ? most : x < -most ? -most : x);
 }
 
-/* Sets the direction of LINE, and its border to the next line, half a step of N
- * lines further. Returns whether the border is at 180 degrees or more. */
+/* Sets the direction of LINE, and the direction of its border to the next line,
+ * which is half a step of N lines further. Returns whether the border is at 180
+ * degrees or more. */
 static int set_line_direction(struct glint_star_line *line, int32_t c_q30,
                               int32_t s_q30, int n)
 {
     const int64_t sine = s_q30 > 1 << 18 ? s_q30 : 1 << 18;
-    /* The direction of half a step is that of 1 + the step (as complex
-     * numbers). */
+    /* As complex numbers, 1 + the direction of a step has the direction of half
+     * a step. */
     const int64_t hc = ((int64_t)1 << 30) + step_q30[n - 1][0];
     const int64_t hs = step_q30[n - 1][1];
     const int64_t c = n > 1 ? (hc * c_q30 - hs * s_q30) >> 31 : -s_q30 / 2;
@@ -123,8 +124,9 @@ void star_make_random(struct star_any *to, uint32_t *seed)
     set_random_core(t, seed);
 }
 
-/* Returns a coordinate, Q8: inside 0 .. SIDE, half of the time at a pixel's
- * corner or on the border, or up to 1000 pixels outside. */
+/* Returns a coordinate, Q8. Half of the time it is at a pixel corner or on
+ * the border of the image, otherwise inside 0 .. SIDE or up to 1000 pixels
+ * outside. */
 static int32_t random_coordinate_q8(int side, uint32_t *seed)
 {
     switch (rng_int_below(seed, 6)) {

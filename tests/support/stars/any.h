@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Random tables of a starburst, made with integers only so that they are the
- * same on every machine: valid, but not of a real stop.
+ * same on every machine: They are valid, but no real stop has them.
  */
 #ifndef GLINT_TESTS_STARS_ANY_H
 #define GLINT_TESTS_STARS_ANY_H

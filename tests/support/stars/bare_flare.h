@@ -18,7 +18,7 @@ struct bare_flare {
 };
 
 /* Opens BARE for WIDTH x HEIGHT pixels in tiles of 2^TILE_LOG2 pixels, with
- * N_WORKERS workers; ORDER seeds the order of jobs. */
+ * N_WORKERS workers. ORDER: seed of the random order in which jobs run. */
 void bare_flare_open(struct bare_flare *bare, int width, int height,
                      int tile_log2, int n_workers, uint32_t order);
 void bare_flare_close(struct bare_flare *bare);

@@ -19,33 +19,33 @@ struct star_canvas {
     void *mem; /* memory of the starburst renderer */
 };
 
-/* Makes a canvas of WIDTH x HEIGHT pixels in tiles of 2^TILE_LOG2 pixels,
- * with N_WORKERS workers; ORDER seeds the order of jobs. Checks that one
- * byte of memory less is rejected. */
+/* Makes a canvas of WIDTH x HEIGHT pixels in tiles of 2^TILE_LOG2 pixels, with
+ * N_WORKERS workers. ORDER: seed of the random order in which jobs run. Checks
+ * that one byte of memory less is rejected. */
 void star_canvas_open(struct star_canvas *canvas, int width, int height,
                       int tile_log2, int n_workers, uint32_t order);
 void star_canvas_close(struct star_canvas *canvas);
 
-/* Draws the stars of N lights, down to a light of FAINTEST, onto black into
- * MEM, an image of FORMAT. Returns the reported number of lit pixels. */
+/* Draws the stars of N lights, down to light FAINTEST, onto a black image of
+ * FORMAT in MEM. Returns the reported number of lit pixels. */
 int64_t star_canvas_draw_light(struct star_canvas *canvas,
                                const struct glint_star_tables *tables,
                                const struct glint_star_light *lights, int n,
                                struct glint_real faintest,
                                enum glint_pixel_format format, void *mem);
 
-/* Returns the star tables of a stop; AIRY_PX is wavelength times f-number in
+/* Returns the star tables of a stop. AIRY_PX: wavelength times f-number,
  * pixels. */
 struct glint_star_tables *
 star_canvas_make_tables(int n_blades, double rotation_deg, double airy_px);
 
-/* Returns a white light of power 2^POWER_LOG2 at (X, Y), pixels, including
- * its core. */
+/* Returns a white light of power 2^POWER_LOG2 at (X, Y), pixels; the power
+ * includes its core. */
 struct glint_star_light star_canvas_make_light(double x, double y,
                                                double power_log2);
 
-/* Returns the green light of LINEAR_Q20, an image WIDTH pixels wide, at (X,
- * Y), interpolated between pixels. */
+/* Returns the green light of LINEAR_Q20, an image of WIDTH pixels per row, at
+ * (X, Y), interpolated between pixels. */
 static inline double star_canvas_green(const int32_t *linear_q20, int width,
                                        double x, double y)
 {

@@ -10,17 +10,17 @@
 #include "support/test.h"
 #include "support/tracks/tracks.h"
 
-/* The motion that a scene text uses: a recorded track, or food positions at
- * rest. */
+/* The recorded motion that a scene text uses: the track of a moving body, or
+ * resting foods (landmarks of the recording). */
 static struct {
     struct track_options track;
-    /* [n_foods]: positions of foods at rest; NULL: the track is used */
+    /* [n_foods]: positions of the resting foods; NULL: the track is used */
     double (*food)[3];
     int n_foods;
     double angle_deg;
 } recorded;
 
-/* Sensors look in both directions of each axis. */
+/* Each axis of the body has two sensors, one for each direction. */
 const struct glint_motion_body moving_body = {
     .size = .5,
     .n_sensors = MOVING_SENSORS,

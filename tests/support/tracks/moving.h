@@ -15,10 +15,10 @@ enum {
     MOVING_WIDTH = 96,
     MOVING_HEIGHT = 64,
     MOVING_FOODS = 5,
-    MOVING_SENSORS = 6 /* sensors that look in both directions of each axis */
+    MOVING_SENSORS = 6 /* two sensors per axis, one for each direction */
 };
 
-/* The recorded body, without the angle of view of its sensors. */
+/* The body of the recording; the field of view of its sensors is not set. */
 extern const struct glint_motion_body moving_body;
 
 struct moving {
@@ -30,13 +30,13 @@ struct moving {
 };
 
 /* Set the motion that the line "motion run" of a scene text loads: a track of
- * type MOTION (tracks.h), or N food positions at rest; sensors see food within
- * ANGLE_DEG. */
+ * type MOTION (tracks.h), or N resting foods. Sensors detect food within
+ * ANGLE_DEG degrees of their axis. */
 void moving_bake_track(int motion, int n_frames, double angle_deg);
 void moving_bake_foods(double (*food)[3], int n, double angle_deg);
 double moving_food_angle_deg(void);
 
-/* Functions fail the test if TEXT cannot be drawn. */
+/* These functions fail the test if TEXT cannot be drawn. */
 struct moving *moving_open_scene(const char *text, int tile_log2, int samples);
 void moving_draw_frame(struct moving *d);
 void moving_close_scene(struct moving *d);

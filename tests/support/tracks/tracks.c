@@ -37,7 +37,7 @@ static void set_rotation_quaternion(double x, double y, double z, double angle,
     q[3] = s * z;
 }
 
-/* Sets TO to V rotated by the inverse of Q, or by Q if FORTH. */
+/* Sets TO to V rotated by Q if FORTH, otherwise by the inverse of Q. */
 static void rotate_vector(const double q[4], const double v[3], bool forth,
                           double to[3])
 {
@@ -58,7 +58,7 @@ static double random_signed(struct track *t)
     return 2 * rng_unit(&t->rng) - 1;
 }
 
-/* Moves the body one step ahead; it turns back at the walls. */
+/* Moves the body one step ahead. At a wall, it turns back. */
 static void step_ahead_or_turn(struct track *t, double step)
 {
     for (int k = 0; k < 3; k++) {
@@ -191,7 +191,7 @@ void track_begin_motion(struct track *track,
     memcpy(t->first_turn, t->turn, sizeof t->turn);
 }
 
-/* Sets POSE to the true pose, in the axes of frame 0. */
+/* Sets POSE to the true pose of the body, in the axes of frame 0. */
 static void set_true_pose(const struct track *t, struct glint_rigid *pose)
 {
     const double back[4] = {t->first_turn[0], -t->first_turn[1],

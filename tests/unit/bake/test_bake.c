@@ -74,8 +74,8 @@ static bool count_work_up_to_limit(void *ctx, int more)
     return __atomic_add_fetch(&w->sum, more, __ATOMIC_RELAXED) <= w->most;
 }
 
-/* Bakes with a limit of MOST polynomial fits on N workers, and checks the
- * status WANT. Returns the number of fits. */
+/* Bakes on N workers with a limit of MOST polynomial fits, and checks that the
+ * status is WANT. Returns the number of fits. */
 static int bake_with_work_limit(int most, int n, enum glint_status want)
 {
     struct glint_bake_options o = options;
@@ -97,7 +97,7 @@ static int bake_with_work_limit(int most, int n, enum glint_status want)
 }
 
 /* Checks that the number of fits of a bake does not depend on the number of
- * workers, and that a bake that needs one fit more than its limit fails. */
+ * workers, and that the bake fails if it needs one fit more than its limit. */
 TEST(work_is_limited)
 {
     const int all = bake_with_work_limit(1 << 30, 1, GLINT_OK);
@@ -116,7 +116,7 @@ static void parse_lens(struct glint_prescription *lens, const char *text)
         fail_msg("%s", error.text);
 }
 
-/* Parses a lens with one pair of surfaces. */
+/* Parses a lens of one element, which has one pair of surfaces. */
 static void parse_singlet(struct glint_prescription *lens)
 {
     parse_lens(lens, "name singlet\n"
@@ -137,7 +137,7 @@ static void parse_singlet(struct glint_prescription *lens)
     "surface flat 2 17 air\n"         \
     "stop 46 17\n"
 
-/* Bakes the lens of TEXT, or LENS if TEXT is NULL. */
+/* Parses and bakes the lens of TEXT; if TEXT is NULL, bakes LENS. */
 static void parse_and_bake_lens(struct baked *b,
                                 struct glint_prescription *lens,
                                 const char *text, double tolerance,
@@ -229,8 +229,8 @@ TEST(header_describes_the_lens)
     }
 }
 
-/* Checks that the polynomial of the direct image's flux deviates from traced
- * flux by at most 5e-5. */
+/* Checks that the polynomial of the direct image's flux deviates from the
+ * traced flux by at most 5e-5 of it. */
 TEST(flux_polynomial_matches_traced_flux)
 {
     static const double nm[] = {400, 450, 532, 650, 700};
@@ -292,8 +292,8 @@ TEST(every_found_ghost_is_in_the_model)
 
 /* -------------------------------------------------------------------- parts */
 
-/* Sets UV to the coordinates of a ray in the box of part T. Returns whether
- * the part contains the ray. */
+/* Sets UV to the coordinates of a ray in the box of pupil part T. Returns
+ * whether the part contains the ray. */
 static bool is_ray_in_part(const struct glint_transfer *t, double x_mm,
                            double y_mm, double uv[2])
 {
@@ -305,8 +305,8 @@ static bool is_ray_in_part(const struct glint_transfer *t, double x_mm,
            fabs(uv[1]) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Returns the number of N parts that contain the ray from (X, Y). Sets *OFF
- * to the distance, mm, between the sensor position from the last of them and
+/* Returns how many of the N pupil parts contain the ray from (X, Y). Sets *OFF
+ * to the distance, mm, from the sensor position that the last of them gives to
  * that of RAY. */
 static int count_parts_of_ray(const struct glint_transfer *part, int n,
                               double x_mm, double y_mm,
@@ -333,8 +333,8 @@ static int count_parts_of_ray(const struct glint_transfer *part, int n,
     return found;
 }
 
-/* In the stop plane the rays of a triplet's ghost (surfaces 0 and 3) fold,
- * so its pupil is divided into parts. Checks that each unblocked ray lies in
+/* The pupil of a triplet's ghost (surfaces 0 and 3) is divided into parts,
+ * as its rays fold in the stop plane. Checks that each unblocked ray lies in
  * exactly one part, except on borders between parts, and that no part is
  * empty. */
 TEST(each_ray_lies_in_one_pupil_part)
@@ -391,8 +391,8 @@ TEST(each_ray_lies_in_one_pupil_part)
     free(b.data);
 }
 
-/* The outlines of two barrels that clip this ghost are 0.0008 stop radii apart.
- * The second barrel is used only at a smaller tolerance. */
+/* Two barrels clip this ghost, with outlines only 0.0008 stop radii apart. The
+ * model needs the second barrel only at a smaller tolerance. */
 TEST(near_second_barrel_needs_a_small_tolerance)
 {
     static const double band_nm[2] = {400, 700};
@@ -419,8 +419,8 @@ TEST(near_second_barrel_needs_a_small_tolerance)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-/* Checks that a zone that is restricted to a part has the same pupil box, in
- * the coordinates of the part. */
+/* Checks that a zone that is restricted to a pupil part has the same pupil box,
+ * in the coordinates of the part. */
 TEST(cut_zone_keeps_its_box)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
@@ -454,8 +454,8 @@ TEST(cut_zone_keeps_its_box)
     }
 }
 
-/* Checks that cropping a zone that is wider than its ghost, in position and
- * wavelength, removes only invisible regions. */
+/* Checks that cropping a zone that is larger than its ghost, in pupil position
+ * and wavelength, removes only regions without light. */
 TEST(cropping_removes_only_invisible_regions)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
@@ -560,9 +560,9 @@ static void add_ray_errors(struct tally *tally, const struct glint_transfer *t,
     }
 }
 
-/* Sets RMS to the root mean square errors of SYSTEM of GHOST, in the units
- * of the file, measured without functions of src/bake/measure_model.c.
- * Returns the number of rays measured. */
+/* Sets RMS to the root mean square errors of SYSTEM of GHOST, in the units of
+ * the model file. Measures independently of src/bake/measure_model.c. Returns
+ * the number of rays measured. */
 static long measure_system_errors(const struct glint_lens *lens, int ghost,
                                   int system, double rms[TRIED])
 {
@@ -614,8 +614,8 @@ static double decode_stated_error(uint16_t stored)
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-/* Checks that the errors that a model states are within 30 % of those measured
- * here. */
+/* Checks that the errors stated in a model are within 30 % of those measured by
+ * measure_system_errors(). */
 TEST(stated_errors_match_measured_errors)
 {
     for (int g = 0; g < setup.n_ghosts; g++)
@@ -640,7 +640,8 @@ TEST(stated_errors_match_measured_errors)
         }
 }
 
-/* Checks that the errors of a model are at most 1.6 times its tolerances. */
+/* Checks that the errors of a model are at most 1.6 times the tolerances with
+ * which it was baked. */
 TEST(errors_stay_near_the_tolerances)
 {
     static const double aim[TRIED] = {0.08, 0.08, 4.5e-4, 4.5e-4, 1.2e-2};
@@ -657,8 +658,8 @@ TEST(errors_stay_near_the_tolerances)
     }
 }
 
-/* Checks that near the axis, where light folds into rings, errors decrease with
- * the square of the tolerance. */
+/* Checks that the errors of lights near the axis, whose ghosts fold into rings,
+ * decrease with the square of the tolerance. */
 TEST(errors_near_the_axis_fall_with_squared_tolerance)
 {
     const double tolerance = 0.25, aim_px = 0.04;
@@ -673,8 +674,8 @@ TEST(errors_near_the_axis_fall_with_squared_tolerance)
     free(b.data);
 }
 
-/* A film with this index reflects nothing at its wavelength, so the energy
- * of a ghost has a zero there, which the fit follows. */
+/* A film with this index reflects nothing at its design wavelength. Checks that
+ * the fit follows the resulting zero of the ghost's energy. */
 TEST(fit_follows_a_zero_of_the_energy)
 {
     struct glint_prescription lens;
@@ -690,7 +691,7 @@ TEST(fit_follows_a_zero_of_the_energy)
     free(b.data);
 }
 
-/* Checks that both measurements of errors detect a wrong coefficient, that is,
+/* Checks that both error measurements detect a wrong coefficient, which shows
  * that the tests above can fail. */
 TEST(wrong_coefficient_is_detected)
 {
@@ -723,7 +724,8 @@ TEST(wrong_coefficient_is_detected)
     assert_true(after.of[0].rms > 50 * before.of[0].rms);
     assert_true(after.of[0].max > 50 * before.of[0].max);
     assert_true(rms[0] > 50 * before.of[0].rms);
-    /* only sensor x is wrong, so the error of y is unchanged */
+    /* only the polynomial of sensor x is wrong, so the error of y is
+     * unchanged */
     assert_near(after.of[1].rms, before.of[1].rms, 0);
     free(b.data);
 }
@@ -774,7 +776,7 @@ TEST(key_depends_on_every_parameter)
         *of_options[k] = nextafter(*of_options[k], 1000);
         check_key_differs(&lens, &o);
     }
-    /* the key does not depend on fields that never change the model */
+    /* fields that never change the model do not change its key */
     o = options;
     o.workers = (void *)&lens;
     o.progress_ctx = &lens;
@@ -828,7 +830,7 @@ TEST(lens_without_ghosts_gives_an_empty_model)
     free(b.data);
 }
 
-/* Checks that with the loosest tolerance each polynomial still has at least one
+/* Checks that with the loosest tolerance each polynomial has at least one
  * term. */
 TEST(loosest_tolerance_keeps_a_term)
 {
@@ -845,8 +847,8 @@ TEST(loosest_tolerance_keeps_a_term)
     free(b.data);
 }
 
-/* Checks that each range of angles has a width even in a field of only 1e-3 mm,
- * in which a ghost may be visible at angle 0 only. */
+/* Checks that no range of angles is empty in a field of only 1e-3 mm, where a
+ * ghost may be visible at angle 0 only. */
 TEST(ranges_of_a_tiny_field_have_width)
 {
     static const double band_nm[2] = {400, 700};
@@ -869,7 +871,7 @@ TEST(ranges_of_a_tiny_field_have_width)
 }
 
 /* Checks ghosts whose light enters the front element through a spot of 1/20 mm:
- * their ranges of angles extend to where the ghosts vanish. */
+ * their ranges of angles extend to the angles at which the ghosts vanish. */
 TEST(ranges_of_spots_extend_to_where_ghosts_vanish)
 {
     static const struct {

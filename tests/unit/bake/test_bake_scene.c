@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests baked scenes: the run time accepts them, and they contain the values of
- * the text, quantised to steps.
+ * Tests baked scenes: the run time accepts them, and they contain the values
+ * of the scene text, rounded to steps of the scene's unit.
  */
 #include <math.h>
 #include <stdint.h>
@@ -53,7 +53,7 @@ struct baked {
     struct glint_scene_model model;
 };
 
-/* Bakes the scene of TEXT. On failure ERROR states the reason. */
+/* Bakes the scene of TEXT. On failure sets ERROR to the reason. */
 static enum glint_status bake_scene_text(struct baked *b, const char *text,
                                          struct glint_error *error)
 {
@@ -111,8 +111,8 @@ static void check_scaled_vector(const int32_t *v, double x, double y, double z,
     "triangle t 0 0 1 1 0 1 0 1 1 material glass\n"                   \
     "shadow on\nflare lights highlights 3\n"
 
-/* Checks header, lights, materials and objects of a right-handed scene, whose z
- * is mirrored. */
+/* Checks the header, lights, materials and objects of a right-handed scene; the
+ * bake mirrors its z axis. */
 TEST(right_handed_scene_is_mirrored)
 {
     struct baked b;
@@ -124,7 +124,8 @@ TEST(right_handed_scene_is_mirrored)
     unit = ldexp(1, h->unit_log2);
     assert_string_equal(h->name, "ashop");
     assert_true(h->key[0] == 0x23456789 && h->key[1] == 1);
-    /* with a plane, the camera's distance of 4 is less than 2^28 steps / 64 */
+    /* the plane limits the unit: the camera's distance of 4 must be less than
+     * 2^28 / 64 steps */
     assert_int_equal(h->unit_log2, 19);
     assert_true(b.report.step == ldexp(1, -19) && b.report.reach == 4);
     assert_true(h->shadow == 1 && h->flare == 1 && h->highlights == 3);
@@ -143,7 +144,7 @@ TEST(right_handed_scene_is_mirrored)
     check_scaled_vector(b.model.light[1].at, 1, 2, -3, unit);
     assert_int_equal(b.model.light[1].radius, 1 << 17);
     assert_true(glint_real_value(b.model.light[1].rgb[1]) == 7);
-    /* .1, .7 and .2 are rounded up, but their sum stays 1 */
+    /* .1, .7 and .2 are each rounded up, yet their sum must stay 1 */
     assert_int_equal(b.model.material[0].ambient_q15, 3277);
     assert_int_equal(b.model.material[0].diffuse_q15, 22937);
     assert_int_equal(b.model.material[0].specular_q15, 6554);
@@ -153,8 +154,8 @@ TEST(right_handed_scene_is_mirrored)
     assert_int_equal(b.model.object[0].kind, GLINT_OBJECT_SPHERE);
     check_scaled_vector(b.model.object[0].at, 0, .5, -1, unit);
     assert_int_equal(b.model.object[0].radius, 1 << 18);
-    /* rotates y to +z of the text, which is -z in the baked scene: -90 degrees
-     * about x */
+    /* This rotation takes y to +z in the text, which is -z in the baked scene:
+     * -90 degrees about x. */
     check_scaled_vector(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0,
                         0x1p30);
     assert_int_equal(b.model.object[2].catcher_q15, 16384);
@@ -164,8 +165,8 @@ TEST(right_handed_scene_is_mirrored)
 
 /* Corners are clockwise seen from outside for both hands; left-handed
  * coordinates are unchanged. */
-/* Checks that transparent objects of index 1 are baked as such, and drawn
- * without refraction (A11); other indices are not. */
+/* A12: checks that transparent objects of index 1 are baked without refraction
+ * and drawn like that (A11), and that objects of other indices are not. */
 TEST(a12_index_1_is_not_refracted)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
@@ -221,7 +222,8 @@ TEST(both_handednesses_give_the_same_mesh)
 }
 
 /* Checks that textures have mipmap levels down to one texel, averaged in linear
- * light. V points down; the integer part of large U and V is removed. */
+ * light; that V points down in baked textures; and that the integer part of
+ * large U and V is removed. */
 TEST(textures_have_averaged_mipmaps)
 {
     struct baked b;
@@ -243,20 +245,20 @@ TEST(textures_have_averaged_mipmaps)
     assert_true(texel[0] == 0 && texel[5] == 0 && texel[6] == 255);
     texel += 3 * 4; /* mipmap level of 2 x 1 texels */
     assert_true(texel[0] == 0 && texel[5] == 255);
-    texel += 3 * 2; /* code 188: half of the light */
+    texel += 3 * 2; /* code 188 is half of the light */
     assert_true(texel[0] == 188 && texel[2] == 188);
     uv = baked_table_at(&b, b.model.mesh[0].uv_at);
     tri = baked_table_at(&b, b.model.mesh[0].triangle_at);
     assert_int_equal(uv[2 * tri->vertex[0]], 0);
     assert_int_equal(uv[2 * tri->vertex[0] + 1], 1 << 16);
-    /* the bake swaps the second and third corner */
+    /* the bake swaps the second and third corner of each triangle */
     assert_int_equal(uv[2 * tri->vertex[2]], 1 << 15);
     assert_int_equal(uv[2 * tri->vertex[1] + 1], 1 << 15);
     free(b.data);
 }
 
-/* Writes a bumpy sheet of N x N quads as an OBJ file, with a repeated corner
- * and a triangle without area. */
+/* Writes a bumpy sheet of N x N quads as an OBJ file, with one repeated corner
+ * and one triangle without area. */
 static void write_bumpy_sheet(int n)
 {
     char *at = mesh_text;
@@ -273,8 +275,8 @@ static void write_bumpy_sheet(int n)
     sprintf(at, "f 1 2 1\n");
 }
 
-/* Checks that every triangle of the first mesh is listed in exactly those
- * cells that its bounding box touches, with the margin. */
+/* Checks that every triangle of the first mesh is listed in exactly those grid
+ * cells that its bounding box, enlarged by the margin, touches. */
 static void check_triangle_lists_of_cells(const struct baked *b)
 {
     const struct glint_scene_mesh *m = b->model.mesh;
@@ -317,7 +319,7 @@ static void check_triangle_lists_of_cells(const struct baked *b)
     }
 }
 
-/* Checks that each vertex is stored once, and triangles without area are
+/* Checks that each vertex is stored once, and that triangles without area are
  * omitted. */
 TEST(vertices_are_stored_once)
 {
@@ -339,9 +341,9 @@ TEST(vertices_are_stored_once)
     free(b.data);
 }
 
-/* Checks triangles in a grid whose origin is chosen such that vertices lie 10
- * steps inside or outside the sides of cells. Triangles are listed in all cells
- * that they touch with the margin. */
+/* Checks triangles whose vertices lie 10 steps inside or outside the sides of
+ * grid cells. Triangles must be listed in all cells that they touch when
+ * enlarged by the margin. */
 TEST(triangles_are_listed_in_all_cells_they_touch)
 {
     for (int k = -10; k <= 10; k += 20) {
@@ -362,8 +364,8 @@ TEST(triangles_are_listed_in_all_cells_they_touch)
     }
 }
 
-/* Checks that the same text gives the same bytes, that objects too small for
- * the scene's extent are reported, and that extreme scenes can be opened. */
+/* Checks that equal texts give equal bytes, that objects too small for the
+ * extent of the scene are reported, and that extreme scenes can be opened. */
 TEST(extreme_scenes_can_be_opened)
 {
     static const char *const texts[] = {

@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* A cemented doublet and a single lens: surface 1 is cemented; surfaces 0,
- * 2, 3 and 4 are in air. */
+/* A cemented doublet and a single lens: surface 1 is the cemented one; surfaces
+ * 0, 2, 3 and 4 are in air. */
 static const char table[] = "name films\n"
                             "f-number 10\n"
                             "film 36 24\n"
@@ -173,7 +173,8 @@ TEST(rejects_too_many_coatings)
                         "the text of a coating has at most 200 characters");
 }
 
-/* Parses TEXT as one coating and compares its films, {index, quarters}. */
+/* Parses TEXT as one coating and checks that its films, pairs of index and
+ * number of quarter waves, are as given. */
 static void check_films_of_coating(const char *text, double nm, int n,
                                    const double film[][2])
 {
@@ -206,7 +207,7 @@ TEST(coatings_have_their_films)
     check_films_of_coating("broadband-3", 520, 3, b3);
     check_films_of_coating("broadband-4/510", 510, 4, b4);
     check_films_of_coating("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
-    /* In a table the same words are separated by blanks. */
+    /* In a lens table the same words are separated by spaces. */
     parse_valid_table_with_line(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
     parse_valid_table_with_line(&other, "");
     apply_coatings(&other, "510/1.46/2.3:.25/1.46:1.5");
@@ -232,9 +233,10 @@ static double compute_reflectance(const struct glint_prescription *lens, int k,
                              glint_coating_at(&s->coating, nm, film));
 }
 
-/* Checks that a quarter-wave film reflects least at its own wavelength
- * (surfaces 0, 2 and 4). A half-wave film for 550 nm (surface 3) has no effect
- * at 550 nm, and reduces the reflectance on either side. */
+/* Checks that a quarter-wave film reflects least at its design wavelength
+ * (surfaces 0, 2 and 4), and that a half-wave film for 550 nm (surface 3) has
+ * no effect at 550 nm but reduces the reflectance at shorter and longer
+ * wavelengths. */
 TEST(quarter_wave_film_reflects_least_at_its_wavelength)
 {
     static struct glint_prescription lens, bare;
@@ -242,7 +244,8 @@ TEST(quarter_wave_film_reflects_least_at_its_wavelength)
     parse_valid_table_with_line(&lens, "");
     bare = lens;
     apply_coatings(&bare, "none");
-    apply_coatings(&lens, "450,650,1100,550"); /* nm, for surfaces 0, 2, 3, 4 */
+    /* design wavelengths for surfaces 0, 2, 3 and 4, nm */
+    apply_coatings(&lens, "450,650,1100,550");
     assert_true(compute_reflectance(&lens, 0, 650) >
                 1.2 * compute_reflectance(&lens, 0, 450));
     assert_true(compute_reflectance(&lens, 2, 450) >

@@ -62,7 +62,7 @@ static enum glint_status read_scene_file(void *ctx, const char *name,
 }
 
 /* Returns a picture of 6 x 2 pixels, a third of them black, the others white;
- * for big.ppm a black picture of the largest texture size. */
+ * for the name big.ppm, a black picture of the largest texture size. */
 static enum glint_status make_scene_picture(void *ctx, const char *name,
                                             struct glint_image *image,
                                             struct glint_error *error)
@@ -91,8 +91,8 @@ static enum glint_status make_scene_picture(void *ctx, const char *name,
 static const struct glint_description_files files = {
     NULL, read_scene_file, make_scene_picture, NULL, NULL, NULL};
 
-/* Parses the valid text, with LINE in place of line NUMBER (from 1; 0: no
- * replacement). */
+/* Parses the valid text with its line NUMBER (from 1) replaced by LINE; NUMBER
+ * 0: no replacement. */
 static enum glint_status parse_text_with_line(struct glint_description *scene,
                                               int number, const char *line,
                                               struct glint_error *error)
@@ -105,8 +105,8 @@ static enum glint_status parse_text_with_line(struct glint_description *scene,
         strcat(text, i + 1 == number ? line : good[i]);
         strcat(text, "\n");
     }
-    /* The copy has the exact size of the text, so that the address sanitizer
-     * detects reads beyond its end. */
+    /* The copy has exactly the size of the text, so that ASan detects
+     * overreads. */
     bytes = strlen(text);
     copy = malloc(bytes);
     assert_non_null(copy);
@@ -156,8 +156,8 @@ TEST(parses_every_line)
     free(s);
 }
 
-/* Checks that a quad becomes two triangles, scaled by 1/2, and that the
- * material "oak" in the mesh file is that of the scene. */
+/* Checks that a quad becomes two triangles, scaled by 1/2, and that the name
+ * "oak" in the mesh file refers to the material "oak" of the scene. */
 TEST(quad_becomes_two_scaled_triangles)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -182,7 +182,7 @@ TEST(quad_becomes_two_scaled_triangles)
     free(s);
 }
 
-/* Checks that a texture of six texels is resampled to eight, the power of two
+/* Checks that a texture of six columns is resampled to eight, the power of two
  * with the nearest ratio, and that its mean light is preserved. */
 TEST(texture_is_resampled_to_a_power_of_two)
 {
@@ -196,7 +196,8 @@ TEST(texture_is_resampled_to_a_power_of_two)
     assert_int_equal(s->texture[0].image.height, 2);
     row = s->texture[0].image.plane[0];
     assert_int_equal(row[3 * 1], 0);
-    assert_int_equal(row[3 * 2], 156); /* code 156: a third of the light */
+    /* code 156 is a third of the light of white */
+    assert_int_equal(row[3 * 2], 156);
     assert_int_equal(row[3 * 3], 255);
     glint_description_free(s);
     free(s);
@@ -359,7 +360,7 @@ TEST(rejects_wrong_lines)
     free(s);
 }
 
-/* Checks that the same numbers with the other handedness describe a mirrored
+/* Checks that the same numbers with the other handedness describe the mirrored
  * scene: the x axis of the camera is reversed. */
 TEST(handedness_mirrors_the_camera)
 {
@@ -374,7 +375,7 @@ TEST(handedness_mirrors_the_camera)
     assert_ok(parse_text_with_line(
         s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error));
     check_vector_is_near(s->camera.at, 2, 1, 0);
-    /* x points right, z away from the viewer */
+    /* here x points right and z away from the viewer */
     check_vector_is_near(s->camera.right, 0, 0, 1);
     glint_description_free(s);
     assert_ok(parse_text_with_line(s, 2, "camera corners", &error));
@@ -445,8 +446,8 @@ TEST(parses_or_rejects_mesh_texts)
     free(mesh);
 }
 
-/* Checks that the parser warns of a sun too faint for any code, and of weights
- * that leave objects dark; but not of usual values. */
+/* Checks that the parser warns of a sun that is too faint for any code, and of
+ * weights that make objects dark, but not of usual values. */
 TEST(warns_of_invisible_settings)
 {
     static const struct {

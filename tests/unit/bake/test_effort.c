@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that progress reports of a bake predict the remaining time, with
- * ghosts of known work and a simulated clock.
+ * Checks that progress reports of a bake predict the remaining time, by ghosts
+ * of known work and a simulated clock.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,8 @@
 #include "support/lens_check.h"
 #include "support/rng.h"
 
-enum { HEAD = 32 }; /* work before the first ghost, in fits; see effort.c */
+/* work before the first ghost, in units of one polynomial fit; see effort.c */
+enum { HEAD = 32 };
 
 /* Simulates the bake of N ghosts of WORK[] fits each on one worker. EXPECTED:
  * work passed to glint_effort_set_estimates(), fits; 0: the function is not
@@ -47,7 +48,7 @@ static void simulate_bake_progress(const double *work, int n, bool wide,
 }
 
 /* Checks, for ghosts of equal work, that the reported remaining time is within
- * 25 % of the true one. */
+ * 25 % of the true time. */
 TEST(equal_ghosts_are_estimated_within_25_percent)
 {
     double work[100], said[3];
@@ -59,9 +60,10 @@ TEST(equal_ghosts_are_estimated_within_25_percent)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
 
-/* Checks, for ghosts whose work differs by factors up to 100, in any order,
- * that the estimate at half time is nearly always within a factor of three. An
- * estimate by number of ghosts was wrong by a factor of ten. */
+/* Checks, for ghosts whose work differs by factors of up to 100, in any order,
+ * that the estimate at half time is nearly always within a factor of three of
+ * the true time. An estimate from the number of ghosts alone was wrong by a
+ * factor of ten. */
 TEST(random_ghosts_are_estimated_within_a_factor_of_3)
 {
     uint32_t seed = 7;
@@ -78,8 +80,8 @@ TEST(random_ghosts_are_estimated_within_a_factor_of_3)
     assert_in_range(off, 0, 10);
 }
 
-/* Checks that the angles within the last ghost are used for the estimate if
- * this ghost takes most of the time. */
+/* Checks that the estimate uses the progress within the last ghost, its angles,
+ * if that ghost takes most of the time. */
 TEST(long_last_ghost_is_estimated_by_its_angles)
 {
     double work[20], said[3];
@@ -91,8 +93,8 @@ TEST(long_last_ghost_is_estimated_by_its_angles)
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
 
-/* Checks that the estimate divides ghosts that were not begun among the
- * workers, but not a ghost in progress. */
+/* Checks that the estimate distributes ghosts that were not begun among the
+ * workers, but does not distribute a ghost in progress. */
 TEST(workers_share_ghosts)
 {
     double done[2];

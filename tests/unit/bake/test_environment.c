@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks baked environment maps: directions map to the octahedron and back,
- * negative and non-finite samples are clamped and counted, blurs equal sums
- * over all texels, known lights are found, and invalid files are rejected.
+ * negative and non-finite samples are clamped and counted, blurred levels
+ * equal sums over all texels, known lights are found, and invalid files are
+ * rejected.
  */
 #include <math.h>
 #include <stdint.h>
@@ -61,8 +62,8 @@ TEST(octahedral_mapping_inverts)
     assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
 }
 
-/* Checks that texels outside an edge of the map are replaced by neighbours, on
- * the sphere, of the texels inside. */
+/* Checks that a texel beyond an edge of the map is replaced by one that is its
+ * neighbour on the sphere. */
 TEST(texels_outside_an_edge_map_to_neighbours)
 {
     struct glint_sphere s;
@@ -81,7 +82,7 @@ TEST(texels_outside_an_edge_map_to_neighbours)
                 glint_sphere_get_texel_index(SIDE, across[e][2], across[e][3]);
 
             assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
-            /* distance of at most the diagonal of the largest texels */
+            /* at most the diagonal of the largest texels */
             assert_true(
                 compute_dot_product(s.texel[a].toward, s.texel[b].toward) >
                 cos(2 * sqrt(6) / SIDE));
@@ -102,8 +103,8 @@ struct baked {
 static float picture[HEIGHT][WIDTH][3];
 static const struct glint_float_image image = {WIDTH, HEIGHT, (float *)picture};
 
-/* Fills the picture with LIGHT(direction); R, G and B are 1, 1/2 and 1/4 of
- * it. */
+/* Fills the picture with LIGHT(direction) in R, half of it in G, and a quarter
+ * of it in B. */
 static void paint_panorama(double (*light)(const double d[3]))
 {
     for (int y = 0; y < HEIGHT; y++)
@@ -149,7 +150,7 @@ static double decode_rgb9e5(const struct glint_environment *e, uint32_t word,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
 }
 
-/* Returns channel C of texel I of level K. */
+/* Returns channel C of texel I of mipmap level K. */
 static double decode_texel(const struct glint_environment *e, int k, size_t i,
                            int c)
 {
@@ -191,8 +192,9 @@ static double linear_environment_light(const double d[3])
     return 1 + d[1];
 }
 
-/* Irradiance of light 1 + y on a white surface is 1 + 2/3 y. Rotation by 90
- * degrees to the right moves the light that was ahead to the right. */
+/* For incident light 1 + y, the irradiance of a white surface is proportional
+ * to 1 + 2/3 y. Rotating the environment by 90 degrees to the right moves the
+ * light from the front to the right. */
 static double forward_environment_light(const double d[3])
 {
     return 1 + d[2];
@@ -235,8 +237,8 @@ static double patchy_environment_light(const double d[3])
            (d[0] > .3 && d[1] > .2 ? 5 : 0);
 }
 
-/* Checks that every Gaussian level equals the sum over all texels, except for
- * the weight outside four sigma, where the bake skips blocks. */
+/* Checks that every Gaussian level equals the weighted sum over all texels,
+ * except for the weight beyond four sigma, where the bake skips blocks. */
 TEST(levels_equal_sums_over_all_texels)
 {
     struct glint_environment_options o = make_environment_options();
@@ -280,7 +282,7 @@ TEST(levels_equal_sums_over_all_texels)
     free(b.data);
 }
 
-/* B5: checks the numbers of texels for a side of 256; the side of a Gaussian
+/* B5: checks the numbers of texels of a map of side 256; the side of a Gaussian
  * level is twice that of a mipmap level. */
 TEST(b5_levels_have_the_published_sizes)
 {
@@ -334,13 +336,14 @@ static double sky_and_sun_light(const double d[3])
            1 + .5 * d[1];
 }
 
-/* Checks that a disc of 4 degrees is found with its direction, light and size;
- * the hole is filled with the surrounding light. */
+/* Checks that a light that is a disc of 4 degrees is found with its direction,
+ * light and size, and that its hole in the map is filled with the surrounding
+ * light. */
 TEST(disc_light_is_extracted)
 {
     struct glint_environment_options o = make_environment_options();
     const struct glint_environment_light *l;
-    double solid = 0; /* solid angle of the pixels of the disc */
+    double solid = 0; /* solid angle of the pixels of the disc, steradians */
     struct baked b;
     double d[3], power, u, v;
 
@@ -374,7 +377,8 @@ TEST(disc_light_is_extracted)
                                       SIDE, (int)(SIDE * u), (int)(SIDE * v)),
                                   0) -
                      1.3) < .08);
-    /* map levels and extracted lights together have the picture's light */
+    /* the map levels and the extracted lights together have the light of the
+     * picture */
     assert_true(fabs(b.report.light_share -
                      (power * 4000 * solid) /
                          (power * 4000 * solid + 4 * GLINT_PI)) < .002);
@@ -391,8 +395,8 @@ static double bright_window_light(const double d[3])
     return (d[2] > .9 ? 500 : 0) + 1;
 }
 
-/* Checks that wide lights are not extracted from the map, and that two touching
- * discs lose no light. */
+/* Checks that wide lights stay in the map, and that two discs that touch lose
+ * no light. */
 TEST(wide_and_touching_lights_lose_no_light)
 {
     const struct glint_environment_options o = make_environment_options();
@@ -446,7 +450,7 @@ TEST(clamps_invalid_samples)
 }
 
 /* Checks that the six faces of a cube map, each of a different light, appear in
- * their directions. */
+ * the right directions. */
 TEST(cube_faces_have_their_directions)
 {
     static const double middle[6][3] = {{1, 0, 0},  {0, 1, 0},  {0, 0, 1},

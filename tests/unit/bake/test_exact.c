@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the exact reference picture with an independent program, a finer
- * grid and mirrored input; then compares the integer engine with exact rays
- * with the exact picture.
+ * Compares exact reference pictures with those of an independent program, of a
+ * finer grid and of mirrored input. Then compares pictures of the integer
+ * engine, with exactly traced rays, with the exact pictures.
  */
 #include <math.h>
 #include <stdio.h>
@@ -83,8 +83,8 @@ struct golden {
     int grid;
 };
 
-/* Loads the picture NAME, rendered by an independent program, from ../shared
- * or from the folder in GLINT_SHARED. Returns whether the file exists. */
+/* Loads the picture NAME, rendered by an independent program, from ../shared or
+ * from the folder that GLINT_SHARED names. Returns whether the file exists. */
 static bool load_golden_picture(const char *name,
                                 struct glint_float_image *image)
 {
@@ -168,8 +168,8 @@ TEST(light_on_axis_gives_a_symmetric_picture)
                 peak = fmax(peak, v);
             }
     assert_true(peak > 0);
-    /* Up and down are equal to the last bits, left and right as far as the
-     * grid allows. */
+    /* Up and down are mirror images to the last bits, left and right as closely
+     * as the grid allows. */
     assert_true(worst < 2e-3 * peak);
 }
 
@@ -212,8 +212,8 @@ TEST(doubling_the_grid_changes_little)
     assert_true(db > 60);
 }
 
-/* 13 pairs of surfaces reflect at most 5 % at each reflection, so all ghosts
- * together have less than 13 * 0.05^2 of the light that enters the front. */
+/* 13 pairs of surfaces reflect at most 5 % at each reflection. So all ghosts
+ * together have less than 13 * 0.05^2 of the light that enters the lens. */
 TEST(flux_is_bounded)
 {
     const struct glint_view view = {
@@ -297,8 +297,8 @@ TEST(integer_renderer_matches_exact_renderer)
 }
 
 /* Checks that a frame whose ray fields and edges exceed the memory limit is
- * drawn in several passes, bit-identical. Uses one thread, as each thread has
- * its own memory. */
+ * drawn in several passes, with bit-identical result. One thread, as each
+ * thread has its own memory. */
 TEST(picture_does_not_depend_on_memory)
 {
     const struct glint_view view = {
@@ -329,8 +329,9 @@ TEST(picture_does_not_depend_on_memory)
 }
 
 /* Checks that a lamp whose green is a hundredth of its power gives the same
- * green light as a green lamp of that power, as irradiance steps are per
- * colour. The hot spot of this lens is much fainter than its box suggests. */
+ * green light as a green lamp of that power: each colour has its own irradiance
+ * steps. The hot spot of this lens is much fainter than its bounding box
+ * suggests. */
 TEST(faint_colour_keeps_its_irradiance_steps)
 {
     const struct glint_view view = {
@@ -353,8 +354,8 @@ TEST(faint_colour_keeps_its_irradiance_steps)
 
 /* --------------------------------------- lenses without rotational symmetry */
 
-/* Loads a triplet. The lines FIRST and SECOND follow the surfaces of its
- * first element. */
+/* Loads a triplet with the line FIRST after the first surface of its first
+ * element, and SECOND after the second. */
 static void load_triplet_with_shapes(const char *before, const char *first,
                                      const char *second)
 {
@@ -374,9 +375,9 @@ static void load_triplet_with_shapes(const char *before, const char *first,
         fail_msg("%s", error.text);
 }
 
-/* Checks that a toric with two equal radii gives the picture of a sphere,
- * although its lens is traced like one without rotational symmetry: over the
- * whole pupil, rotated by the light's azimuth. */
+/* Checks that a toric surface with two equal radii gives the picture of a
+ * sphere, although the lens is then traced like one without rotational
+ * symmetry: over the whole pupil, rotated by the azimuth of the light. */
 TEST(toric_with_equal_radii_equals_a_sphere)
 {
     const struct glint_view view = {
@@ -402,7 +403,7 @@ TEST(toric_with_equal_radii_equals_a_sphere)
     assert_true(db >= 50);
 }
 
-/* Draws LAMPS into LINEAR of VIEW with FRAME. */
+/* Draws LAMPS with FRAME into LINEAR, an image of size VIEW. */
 static void draw_lamps_linear(struct glint_frame *frame, struct glint_view view,
                               const struct glint_lamp *lamps, int n,
                               float *linear)
@@ -415,9 +416,9 @@ static void draw_lamps_linear(struct glint_frame *frame, struct glint_view view,
         glint_frame_draw_flare_alone(frame, lamps, n, 1, linear, &report));
 }
 
-/* Checks that a frame which adopts the pupil boxes that a smaller frame found,
- * for the same and for other lamps, draws the same bits as one that searches
- * for them. */
+/* Checks that a frame that takes over the pupil boxes found by a smaller frame,
+ * for the same and for other lamps, draws the same bits as a frame that
+ * searches for them. */
 TEST(adopted_rays_do_not_change_the_picture)
 {
     const struct glint_view view = {
@@ -448,9 +449,9 @@ TEST(adopted_rays_do_not_change_the_picture)
     }
 }
 
-/* Checks that a frame draws the same bits as a new one after a picture whose
- * lamps differed only in their extent, which exact rays of points do not show,
- * and after one in which most ghosts were muted. */
+/* Checks that a frame draws the same bits as a new one after two kinds of
+ * earlier pictures: one whose lamps differed only in their extent, which exact
+ * rays of point lights do not show, and one in which most ghosts were muted. */
 TEST(earlier_pictures_do_not_change_the_picture)
 {
     static float linear[2][3 * 240 * 135];
@@ -483,8 +484,9 @@ TEST(earlier_pictures_do_not_change_the_picture)
     }
 }
 
-/* Checks that a decentre in x for light at azimuth 30 equals a decentre in y at
- * 60, mirrored at the diagonal, and differs from the centred lens. */
+/* Checks that a decentre in x for light at an azimuth of 30 degrees equals a
+ * decentre in y at 60 degrees, mirrored at the diagonal, and differs from the
+ * centred lens. */
 TEST(decentred_lens_is_mirrored_at_the_diagonal)
 {
     const struct glint_view view = {
@@ -514,7 +516,8 @@ TEST(decentred_lens_is_mirrored_at_the_diagonal)
     assert_true(compute_psnr(rgb, other, view) < 40);
 }
 
-/* Progress reports of a picture and of the small one that exposes it. */
+/* Progress reports while a picture is drawn, and while the small picture is
+ * drawn that determines its exposure. */
 struct reports {
     int n, n_exposing;
     double last, exposed;
@@ -530,8 +533,9 @@ static void record_report(void *ctx, double done)
     r->n++;
 }
 
-/* Checks that progress rises while a picture is exposed, which finds its
- * ghosts, and from there to the end while it is drawn. */
+/* Checks that the reported progress rises while the exposure is determined,
+ * which includes the search for ghosts, and from there to the end of
+ * drawing. */
 TEST(progress_rises_from_exposure_to_picture)
 {
     const struct glint_view view = {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the flux of the direct image, the unit of all light, with rays
- * through the stop at each f-number.
+ * Compares the flux of the direct image, the unit of all light, with the
+ * number of traced rays that pass the stop at each f-number.
  */
 #include <math.h>
 #include <stdint.h>
@@ -12,8 +12,8 @@
 
 static const double nm[3] = {650, 532, 450};
 
-/* Sets up the lens NAME at F_NUMBER twice: MODEL by stopping down its model
- * header, EXACT from the lens table. */
+/* Sets up the lens NAME at F_NUMBER twice: MODEL by stopping down the header of
+ * its model, EXACT from the lens table. */
 static void make_model_and_exact_setups(const char *name, double f_number,
                                         struct glint_setup *model,
                                         struct glint_setup *exact)
@@ -36,10 +36,10 @@ static void make_model_and_exact_setups(const char *name, double f_number,
     assert_ok(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error));
 }
 
-/* At their widest stops, barrels of these lenses clip the rim of the pupil,
- * which leaves 1 / 1.027 and 1 / 1.10 of the flux through a full circle. From a
- * quarter of a stop down they do not clip it; there the flux has a kink that
- * its interpolation over three openings cannot reproduce. */
+/* At full aperture, barrels of these lenses clip the rim of the pupil, which
+ * leaves 1 / 1.027 and 1 / 1.10 of the flux through a full circle. From a
+ * quarter of a stop down they do not clip it. The flux has a kink there, which
+ * the interpolation over three apertures cannot reproduce. */
 TEST(barrels_reduce_the_flux_of_fast_lenses)
 {
     static const struct {

@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* Indices at the d, C and F lines as printed by the manufacturers, to 5
- * decimals; independent of glint's coefficients. */
+/* Indices at the d, C and F lines as printed by the manufacturers, 5 decimals;
+ * not computed from glint's coefficients. */
 static const struct {
     const char *name;
     double nd, nc, nf;
@@ -47,7 +47,7 @@ static const struct {
     {"TAFD37", 1.90043, 1.89333, 1.91742},
 };
 
-/* nd and Vd as printed in CDGM's catalogue of 2022-06, to six decimals. */
+/* nd and Vd as printed in CDGM's catalogue of 2022-06, six decimals. */
 static const struct {
     const char *name;
     double nd, vd;
@@ -92,7 +92,7 @@ static enum glint_status parse_lens_of_medium(const char *medium,
     return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
 }
 
-/* tolerance: 1e-5, plus half of the last printed decimal */
+/* tolerance: 1e-5 plus half of the last printed decimal */
 static void check_index_is_near(double got, double want)
 {
     assert_true(fabs(got - want) < 1.5e-5);
@@ -138,8 +138,8 @@ TEST(printed_dispersions)
     }
 }
 
-/* Checks that every row of the catalogue is a plausible glass, which reveals
- * misprinted coefficients. */
+/* Checks that every row of the catalogue has plausible values for a glass,
+ * which reveals misprinted coefficients. */
 TEST(all_rows_are_glasses)
 {
     struct glint_error error = {""};
@@ -167,8 +167,8 @@ TEST(all_rows_are_glasses)
     assert_null(glint_glass_at(-1));
 }
 
-/* Checks that the violet dispersion of a flint differs from that of the formula
- * by nd and Vd alone. */
+/* Checks that the violet dispersion of a flint glass differs from that of the
+ * formula that has only nd and Vd. */
 TEST(violet_dispersion_is_not_that_of_two_terms)
 {
     struct glint_error error = {""};
@@ -210,7 +210,7 @@ TEST(misspelt_names_get_a_suggestion)
     assert_true(lens.surface[0].sellmeier[0] == 0);
 }
 
-/* Checks that two glasses with equal nd and Vd give different keys. */
+/* Checks that two glasses with equal nd and Vd give different model keys. */
 TEST(glasses_of_equal_nd_and_vd_have_distinct_keys)
 {
     struct glint_bake_options options;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Compares refractive indices, coatings, first-order optics and lists of ghosts
- * with textbook values, and with published values of the tables in lenses/.
+ * with textbook values, and with the values published for the lens tables in
+ * lenses/.
  */
 #include <complex.h>
 #include <math.h>
@@ -15,9 +16,9 @@ static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------- glass */
 
-/* Values of N-BK7 in the manufacturer's catalogue: nd 1.5168, Vd 64.17, nF - nC
- * 0.008054, nF 1.52238, nC 1.51432, ng (435.83 nm) 1.52668. Cauchy's two terms
- * are less exact in the violet. */
+/* The manufacturer's catalogue lists for N-BK7: nd 1.5168, Vd 64.17, nF - nC
+ * 0.008054, nF 1.52238, nC 1.51432, ng (435.83 nm) 1.52668. Cauchy's formula of
+ * two terms is less exact in the violet. */
 TEST(bk7_indices_match_the_catalogue)
 {
     assert_near(glint_index(1.5168, 64.17, 587.5618), 1.5168, 1e-15);
@@ -33,7 +34,8 @@ TEST(bk7_indices_match_the_catalogue)
 
 /* -------------------------------------------------------------- boundaries */
 
-/* Returns the reflectance of a boundary with a film of index NF; NF 0: bare. */
+/* Returns the reflectance of a boundary with a film of index NF; NF 0: no
+ * film. */
 static double compute_film_reflectance(double n1, double n2, double cosine,
                                        double nf, double phase)
 {
@@ -53,19 +55,20 @@ TEST(bare_boundary_reflectance)
     assert_near(compute_bare_reflectance(1.5, 1.0, 1.0), 0.04, 1e-16);
     assert_near(compute_bare_reflectance(1.0, 2.0, 1.0), 1.0 / 9.0, 1e-16);
     assert_near(compute_bare_reflectance(1.5, 1.6, 1.0), 1.0 / 961.0, 1e-16);
-    /* At Brewster's angle, tan = 1.5, p is 0 and s is (1.25 / 3.25)^2. */
+    /* At Brewster's angle, whose tangent is 1.5, the p reflectance is 0 and the
+     * s reflectance is (1.25 / 3.25)^2. */
     assert_near(compute_bare_reflectance(1.0, 1.5, 1.0 / sqrt(3.25)),
                 0.5 * 25.0 / 169.0, 1e-16);
-    /* At 45 degrees Rp = Rs^2, and Rs is the square of (1 - sqrt(3.5)) / (1 +
-     * sqrt(3.5)). */
+    /* At 45 degrees Rp = Rs^2, and Rs = ((1 - sqrt(3.5)) / (1 +
+     * sqrt(3.5)))^2. */
     assert_near(compute_bare_reflectance(1.0, 1.5, sqrt(0.5)),
                 0.5 * (0.0920134 + 0.0920134 * 0.0920134), 1e-7);
     assert_near(compute_bare_reflectance(1.0, 1.5, 1e-9), 1.0, 1e-8);
     assert_true(compute_bare_reflectance(1.0, 1.5, 0.0) == 1.0);
 }
 
-/* From index 1.5 to 1 the critical angle has the cosine sqrt(5) / 3; smaller
- * cosines give total reflection. */
+/* From index 1.5 to 1, the cosine of the critical angle is sqrt(5) / 3; rays of
+ * smaller cosines are totally reflected. */
 TEST(reflects_totally_beyond_the_critical_angle)
 {
     static const double film[] = {0.0, 1.38};
@@ -80,9 +83,9 @@ TEST(reflects_totally_beyond_the_critical_angle)
     }
 }
 
-/* At normal incidence a quarter-wave film of index f reflects ((n1 n2 - f^2)
- * / (n1 n2 + f^2))^2, so nothing if f^2 = n1 n2. A half-wave film has no
- * effect. */
+/* At normal incidence a quarter-wave film of index f between media n1 and n2
+ * reflects ((n1 n2 - f^2) / (n1 n2 + f^2))^2, so nothing if f^2 = n1 n2. A
+ * half-wave film has no effect. */
 TEST(film_reflectance_matches_hand_computation)
 {
     const double quarter = pi, half = 2.0 * pi;
@@ -108,9 +111,9 @@ TEST(film_reflectance_matches_hand_computation)
     }
 }
 
-/* Returns the reflectance of a film by Airy's sum in complex numbers, as in
- * textbooks: cosines in all three media, amplitudes at both faces of the
- * film. */
+/* Returns the reflectance of a film by the textbook form of Airy's sum in
+ * complex numbers, from the cosines in all three media and the amplitudes at
+ * both faces of the film. */
 static double compute_airy_reflectance(double n1, double n2, double c1,
                                        double nf, double phase)
 {
@@ -129,8 +132,8 @@ static double compute_airy_reflectance(double n1, double n2, double c1,
 
 TEST(film_reflectance_matches_airy)
 {
-    /* Indices before, inside and behind the film. In the last three cases,
-     * light at grazing angles passes only by frustrated total reflection. */
+    /* Indices before, in and behind the film. In the last three cases, light at
+     * grazing angles passes the film only by frustrated total reflection. */
     static const double n[][3] = {
         {1, 1.38, 1.5},   {1.8, 1.38, 1},   {1, 2.3, 1.6},   {1.5, 1.7, 1.6},
         {1.7, 1.2, 1.65}, {1.9, 1.01, 1.5}, {1.5, 1.38, 1.9}};
@@ -152,7 +155,8 @@ TEST(film_reflectance_matches_airy)
     assert_true(frustrated > 1000);
 }
 
-/* Checks that a thin gap transmits light that a thick one reflects totally. */
+/* Checks that a thin air gap transmits light that a thick one reflects
+ * totally. */
 TEST(thin_gap_transmits_by_frustrated_reflection)
 {
     assert_true(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
@@ -160,14 +164,15 @@ TEST(thin_gap_transmits_by_frustrated_reflection)
                 1e-12);
     assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0,
                 1e-12);
-    /* 1.7 times the sine 0.8 is 1.36, so the angle is critical for the film. */
+    /* 1.7 times the sine 0.8 is the film's index 1.36, so the angle is
+     * critical. */
     assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
                 compute_film_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0),
                 1e-7);
 }
 
-/* Checks that the reflectance is 0 .. 1 and the same from both sides of a
- * boundary. */
+/* Checks that the reflectance of a boundary is 0 .. 1 and the same from both
+ * sides. */
 TEST(reflectance_is_equal_from_both_sides)
 {
     static const double film[] = {0.0, 1.38, 1.2, 2.4};
@@ -192,8 +197,8 @@ TEST(reflectance_is_equal_from_both_sides)
 
 /* ------------------------------------------------------------- first order */
 
-/* Returns a biconvex lens, R = 50, d = 6, n = 1.5. The constants below were
- * computed by hand from the lensmaker's equation. */
+/* Returns a biconvex lens with radii of 50 mm, thickness 6 mm, index 1.5. The
+ * expected values below were computed by hand from the lensmaker's equation. */
 static struct glint_prescription make_biconvex_lens(void)
 {
     struct glint_prescription lens;
@@ -223,12 +228,14 @@ TEST(biconvex_with_stop_behind)
     assert_near(optics.focal_mm, BICONVEX_F, 1e-12);
     assert_near(optics.back_focal_mm, BICONVEX_BACK, 1e-12);
     assert_near(optics.entrance_radius_mm, BICONVEX_F / 16.0, 1e-12);
-    /* the stop, 10 mm behind the lens, limits the cone of rays to the focus */
+    /* the stop, 10 mm behind the lens, limits the cone of rays that meet in the
+     * focus */
     assert_near(optics.stop_radius_mm, (BICONVEX_BACK - 10.0) / 16.0, 1e-12);
     assert_near(optics.length_mm, 54.0, 1e-12);
-    /* Newton: the stop is BACK - 10 before the rear focus, so its image is
-     * f^2 / (BACK - 10) behind the front focus, which lies BACK in front of
-     * the front vertex (the lens is symmetric). */
+    /* Newton's formula: the stop is BACK - 10 mm before the rear focus, so
+     * its image is f^2 / (BACK - 10) mm behind the front focus. The lens is
+     * symmetric, so the front focus lies BACK mm in front of the front
+     * vertex. */
     assert_near(optics.entrance_z_mm,
                 BICONVEX_F * BICONVEX_F / (BICONVEX_BACK - 10.0) -
                     BICONVEX_BACK,
@@ -252,9 +259,9 @@ TEST(biconvex_with_stop_in_front)
 
 /* ------------------------------------------------------- the eleven tables */
 
-/* Values published with the tables: focal length, back focal length and stop
- * radius in mm at the d line, f-number, numbers of surfaces before and after
- * the stop, and number of ghosts. */
+/* Values published with the lens tables: focal length, back focal length and
+ * stop radius in mm at the d line, f-number, number of surfaces before and
+ * after the stop, number of ghosts. */
 static const struct {
     const char *name;
     double focal, back_focal, stop_radius, f_number;
@@ -304,8 +311,8 @@ TEST(focal_lengths_match_published_values)
 
 /* ------------------------------------------------------------------ ghosts */
 
-/* Checks the order of ghosts, which are pairs of surfaces on the same side of
- * the stop: five surfaces are before it, three behind it. */
+/* Checks the order of the list of ghosts. A ghost is a pair of surfaces on the
+ * same side of the stop; five surfaces are before it, three behind it. */
 TEST(ghosts_are_listed_in_order)
 {
     static const struct glint_ghost expected[] = {

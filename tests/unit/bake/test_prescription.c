@@ -32,8 +32,9 @@ static const char *const good[] = {
 
 #define N_GOOD 10
 
-/* Writes the valid table to TEXT, with LINE in place of line NUMBER (from 1;
- * 0: no replacement) and END after each line. Returns its size in bytes. */
+/* Writes to TEXT the valid table with its line NUMBER (from 1) replaced by LINE
+ * (NUMBER 0: no replacement) and with END after each line. Returns its size in
+ * bytes. */
 static size_t compose_table_with_line(char text[4096], int number,
                                       const char *line, const char *end)
 {
@@ -49,8 +50,8 @@ static enum glint_status parse_copy_of_text(struct glint_prescription *lens,
                                             const char *text, size_t bytes,
                                             struct glint_error *error)
 {
-    /* The copy has the exact size of the text, so that the address sanitizer
-     * detects reads beyond its end. */
+    /* The copy has exactly the size of the text, so that ASan detects
+     * overreads. */
     char *copy = malloc(bytes ? bytes : 1);
     enum glint_status status;
 
@@ -175,7 +176,7 @@ TEST(parses_coating_lines)
     expect_surface_coatings(7, "surface -50 3 12 air coating none",
                             (const double[]){550, 0, 550, 550},
                             (const double[]){1.38, 0, 1.38, 1.38});
-    /* Surface 1 is cemented now, so it has no coating. */
+    /* Surface 1 is cemented in this table, so it has no coating. */
     expect_surface_coatings(
         7,
         "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
@@ -276,7 +277,7 @@ static const struct {
     {2, "\xc3\xa9tude", "x.lens:2:1: unknown word '??tude'"},
     {2, "an-endless-word-of-forty-letters-or-more",
      "x.lens:2:1: unknown word 'an-endless-word-of-forty-let...'"},
-    /* mistakes in f-number and film */
+    /* mistakes in the lines f-number and film */
     {3, "", "x.lens:11:1: the line 'f-number' is missing"},
     {3, "f-number", "x.lens:3:9: f-number is missing"},
     {3, "f-number f8", "x.lens:3:10: f-number 'f8' is not a number"},
@@ -451,7 +452,7 @@ TEST(rejects_invalid_bytes)
     text[5] = 0;
     expect_parse_error(text, bytes,
                        "x.lens:1:6: byte 0x00 is not text (UTF-8)");
-    /* the last byte of the text is the first byte of a multi-byte character */
+    /* the text is cut off after the first byte of a multi-byte character */
     bytes = compose_table_with_line(text, 0, NULL, "\n");
     text[bytes - 1] = '\xe2';
     expect_parse_error(text, bytes,
@@ -525,8 +526,8 @@ TEST(rejects_lenses_without_power)
     expect_error_of_elements("stop 1 20\nsurface flat 3 9 1.5 60\n"
                              "surface flat 9 9 air\n",
                              "x.lens:7:1: the lens has no refractive power");
-    /* With R1 - R2 = d (n - 1) / n, which these decimals satisfy exactly,
-     * the lens is afocal. */
+    /* With R1 - R2 = d (n - 1) / n, which these decimals satisfy exactly, the
+     * lens is afocal and has no focus. */
     expect_error_of_elements("stop 1 20\nsurface 40 60 9 1.5 60\n"
                              "surface 20 9 9 air\n",
                              "x.lens:7:1: the lens has no refractive power");
@@ -535,8 +536,8 @@ TEST(rejects_lenses_without_power)
                              "x.lens:7:1: the lens has no focus behind it: "
                              "focal length -49.505 mm, back focal length "
                              "-50.495 mm");
-    /* The stop lies in the focus of a thick plano-convex rod of length R n /
-     * (n - 1); two relays image it. */
+    /* The stop lies in the focus of a thick plano-convex rod of length R n / (n
+     * - 1), so its image is at infinity; two relay lenses image it. */
     expect_error_of_elements("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
                              "stop 100 5\n"
                              "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
@@ -545,8 +546,8 @@ TEST(rejects_lenses_without_power)
                              "the surfaces before it");
 }
 
-/* Checks that focal lengths stated in a table may deviate by 0.1 % from the
- * computed ones. */
+/* Checks that focal lengths stated in a table may deviate from the computed
+ * ones by up to 0.1 %. */
 TEST(checks_stated_focal_lengths)
 {
     static struct glint_prescription lens;
@@ -564,7 +565,7 @@ TEST(checks_stated_focal_lengths)
         "38.08 mm");
 }
 
-/* Checks that errors contain the cause, however long the file name is. */
+/* Checks that error texts contain the cause, however long the file name is. */
 TEST(errors_keep_the_cause_after_a_long_file_name)
 {
     static struct glint_prescription lens;
@@ -579,8 +580,9 @@ TEST(errors_keep_the_cause_after_a_long_file_name)
     assert_memory_equal(error.text, "...ddd", 6);
 }
 
-/* Checks lenses whose smallest f-number would be rejected when rounded to
- * nearest: glint_prescription_widest() returns an f-number that is accepted. */
+/* Checks lenses whose smallest valid f-number would be too small when
+ * rounded to nearest: glint_prescription_widest() returns an f-number that
+ * is accepted. */
 TEST(printed_widest_f_number_is_accepted)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
@@ -612,7 +614,7 @@ TEST(sets_the_f_number)
     load_lens(&lens, "heliar-tronnier");
     assert_ok(glint_prescription_set_f_number(&lens, 8.0, &error));
     assert_true(lens.f_number == 8.0);
-    /* at f/8 the stop radius is twice that at f/16 */
+    /* at f/8 the stop radius is twice the radius at f/16 */
     glint_optics_of(&lens, &optics);
     assert_near(optics.stop_radius_mm, 2.0 * 2.4868, 1e-4);
     assert_int_equal(glint_prescription_set_f_number(&lens, 2.0, &error),
@@ -651,8 +653,8 @@ TEST(parses_the_table_of_the_manual)
     assert_string_equal(lens.name, "achromat");
 }
 
-/* Checks that tables in the fuzzer's corpus match their names: good-* parse,
- * bad-* are rejected, others may do either. */
+/* Checks the lens tables in the corpus of the fuzzer by their names: good-*
+ * must parse, bad-* must be rejected, others may do either. */
 TEST(corpus_tables_match_their_names)
 {
     static struct glint_prescription lens;
@@ -680,8 +682,8 @@ TEST(corpus_tables_match_their_names)
     assert_true(n >= 20);
 }
 
-/* Checks that numbers with any number of digits become the nearest double, like
- * the compiler's. */
+/* Checks that numbers with any number of digits become the nearest double, as
+ * the compiler converts them. */
 TEST(numbers_of_any_length_are_rounded_to_nearest)
 {
     static const struct {

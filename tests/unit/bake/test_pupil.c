@@ -15,8 +15,7 @@ static struct glint_prescription lens;
 static struct glint_optics optics;
 static struct glint_ghost ghosts[GLINT_MAX_GHOSTS];
 
-/* Returns whether a ray passes all openings, according to the trace of this
- * single ray. */
+/* Returns whether a ray passes all openings, by tracing this single ray. */
 static bool ray_passes_all_openings(const struct glint_path *path, double x,
                                     double y, const double direction[3],
                                     struct glint_ray *ray)
@@ -32,9 +31,9 @@ static bool is_ray_in_pupil_box(const struct glint_pupil *box, double x,
     return x >= box->x0_mm && x <= box->x1_mm && y <= box->y1_mm;
 }
 
-/* Checks the pupil box of GHOST at an angle and wavelength against a scan.
- * Adds the number of unblocked rays to *N_SEEN. NEAR: the search for the box
- * starts from the box at 532 nm, and that box is extended, as in a frame. */
+/* Compares the pupil box of GHOST at an angle and wavelength with a scan. Adds
+ * the number of unblocked rays to *N_SEEN. NEAR: as in a frame, the search
+ * begins with the box at 532 nm and extends it. */
 static void check_pupil_box_by_scan(int ghost, double theta_deg, double nm,
                                     bool near, int *n_seen)
 {
@@ -142,9 +141,9 @@ static void load_fisheye_ghost_path(struct glint_path *path, int ghost,
     glint_path_init(path, &lens, &ghosts[ghost], nm);
 }
 
-/* Checks ghosts of a fisheye that enter through spots of 1/20 mm in a front of
- * 80 mm, around which all rays are invalid. Every wavelength must have a spot,
- * next to that of the previous wavelength. */
+/* Checks ghosts of a fisheye that enter the front element, 80 mm wide, through
+ * spots of 1/20 mm; all rays around the spots are invalid. Every wavelength
+ * must have a spot next to that of the previous wavelength. */
 TEST(finds_spots_of_a_fisheye)
 {
     static const struct {
@@ -178,8 +177,8 @@ TEST(finds_spots_of_a_fisheye)
     }
 }
 
-/* Checks a crescent-shaped pupil with tips thinner than the cells of the search
- * grid. */
+/* Checks a crescent-shaped pupil whose tips are thinner than the cells of the
+ * search grid. */
 TEST(finds_thin_tips_of_a_crescent)
 {
     const double t = 12.74 * 3.14159265358979 / 180;
@@ -207,7 +206,7 @@ TEST(finds_thin_tips_of_a_crescent)
     }
 }
 
-/* Checks that there is no pupil box at 85 degrees, where no light of this ghost
+/* Checks that a ghost has no pupil box at 85 degrees, where none of its light
  * reaches the stop. */
 TEST(blocked_ghost_has_no_box)
 {
@@ -222,8 +221,9 @@ TEST(blocked_ghost_has_no_box)
         glint_pupil_find(&box, &path, 85, optics.stop_radius_mm, NULL));
 }
 
-/* Checks that a box whose side K was moved inwards by a fifth grows to
- * contain all unblocked rays, and that no other side moves inwards. */
+/* Checks that a pupil box, whose side K was moved inwards by a fifth of the
+ * box, grows to contain all unblocked rays, and that no other side moves
+ * inwards. */
 static void check_shrunk_box_grows(const struct glint_path *path,
                                    const double direction[3],
                                    const struct glint_pupil *whole, int k)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that the integers of a model differ from the polynomials that they
- * approximate by at most the proven bounds.
+ * Checks that values computed from the integers of a model differ from the
+ * fitted polynomials by at most the proven bounds.
  */
 #include <math.h>
 #include <stdio.h>
@@ -31,8 +31,8 @@ static int random_int(int lo, int hi)
     return lo + (int)(rng_xorshift(&seed) % (uint32_t)(hi - lo + 1));
 }
 
-/* Returns a random number within +-2^30; a quarter of them are +-2^30, 0, or
- * adjacent to these. */
+/* Returns a random number, -2^30 .. 2^30; a quarter of them are -2^30, 2^30, 0,
+ * or a neighbour of these. */
 static int32_t random_q30(void)
 {
     static const int32_t corner[] = {-ONE_Q30, 1 - ONE_Q30, -1,     0,
@@ -79,7 +79,7 @@ static void make_random_output(struct glint_fitted_system *s,
     for (int k = 0; k < o->n_terms; k++) {
         const double unit = random_signed_unit();
 
-        /* coefficients of the same sign bring some sums near the bound */
+        /* coefficients of the same sign bring some sums near their bound */
         o->coef[k] = ldexp(most % 3 ? unit : fabs(unit),
                            scale - random_int(0, most % 5 ? 3 : 20));
     }
@@ -114,7 +114,7 @@ static void make_random_system(struct made *m)
         make_random_output(s, (enum glint_channel)kind);
 }
 
-/* Quantises M, writes its model, and opens the model like a program. */
+/* Quantises M, writes its model file, and opens the file like a program. */
 static void quantise_and_open_model(struct made *m)
 {
     static struct glint_setup setup;
@@ -164,7 +164,7 @@ static double decode_q30(int32_t x_q30)
     return ldexp(x_q30, -30);
 }
 
-/* Maps X from LO .. HI to -1 .. 1 _q30, rounded like the run time. */
+/* Maps X from LO .. HI to -1 .. 1, Q30, with the rounding of the run time. */
 static int32_t map_range_to_q30(int32_t x, int32_t lo, int32_t hi)
 {
     const int64_t twice = 2 * (int64_t)x - lo - hi;
@@ -172,7 +172,8 @@ static int32_t map_range_to_q30(int32_t x, int32_t lo, int32_t hi)
     return (int32_t)(twice * ONE_Q30 / ((int64_t)hi - lo));
 }
 
-/* Returns the value of the fitted polynomial O at the powers POWER. */
+/* Returns the value of the fitted polynomial O; POWER[] are the powers of its
+ * variables. */
 static double evaluate_polynomial(const struct glint_fitted_output *o,
                                   double power[4][16])
 {
@@ -197,15 +198,15 @@ static void set_powers_of_variables(double power[4][16], const double x[4])
     }
 }
 
-/* Largest observed value / proven bound, and largest observed rounding error
- * / proven bound, each 0 .. 1. */
+/* How much of the proven bounds was used, each 0 .. 1: largest value divided by
+ * its bound, largest rounding error divided by its bound. */
 struct used {
     double bound, rounding;
     long n;
 };
 
-/* Returns the value that the run time computes from VALUE, a polynomial of
- * the energy: limited according to HEAD, then squared ROOTS times. */
+/* Returns the energy that the run time computes from VALUE, the polynomial of
+ * the energy: VALUE limited according to HEAD, then squared ROOTS times. */
 static double compute_energy_of_polynomial(int head, int roots, double value)
 {
     if (head || roots)
@@ -215,7 +216,7 @@ static double compute_energy_of_polynomial(int head, int roots, double value)
     return value;
 }
 
-/* Compares the run time's outputs OUT with the fitted polynomials. X are the
+/* Compares OUT, the outputs of the run time, with the fitted polynomials. X:
  * exact variables of the run time. */
 static void compare_outputs_with_polynomials(const struct made *m,
                                              const struct glint_outputs *out,
@@ -315,8 +316,8 @@ TEST(rounding_stays_below_its_proven_bound)
     assert_in_range((long)(1000 * used.rounding), 20, 1000);
 }
 
-/* Checks that a coefficient that is wrong by a thousandth exceeds the proven
- * rounding error, that is, that the test above can fail. */
+/* Checks that a coefficient with an error of a thousandth exceeds the proven
+ * rounding error, which shows that the test above can fail. */
 TEST(wrong_coefficient_exceeds_the_proven_bound)
 {
     struct glint_outputs out;
@@ -396,8 +397,8 @@ sum_coefficient_magnitudes(const struct glint_fitted_output *o,
     return sum;
 }
 
-/* Checks that sums of coefficients fit into their range and use at least half
- * of it. */
+/* Checks that the exponents are chosen so that sums of coefficients fit into
+ * their range and use at least half of it. */
 TEST(exponents_use_half_of_the_range)
 {
     for (int k = 0; k < 1000; k++) {
@@ -423,8 +424,8 @@ TEST(exponents_use_half_of_the_range)
     }
 }
 
-/* Checks that the limit of an energy is at least 1.2 times the largest energy
- * of an unblocked ray. */
+/* Checks that the upper limit of a ghost's energy is at least 1.2 times the
+ * largest energy of its unblocked rays. */
 TEST(energy_limit_has_headroom)
 {
     int cut = 0;
@@ -447,8 +448,8 @@ TEST(energy_limit_has_headroom)
     assert_in_range(cut, 300, 900);
 }
 
-/* Checks that coefficients too small for any exponent of the file are rounded
- * to steps of the smallest exponent. */
+/* Checks that coefficients too small for any exponent of the file format are
+ * rounded to steps of the smallest exponent. */
 TEST(tiny_coefficients_use_the_smallest_exponent)
 {
     struct made m;
@@ -459,7 +460,7 @@ TEST(tiny_coefficients_use_the_smallest_exponent)
         for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
             m.fitted.system->output[k].coef[t] = k % 2 ? 0 : 0x1p-200;
     quantise_and_open_model(
-        &m); /* quantise_and_open_model() checks that the model can be opened */
+        &m); /* its checks include that the run time opens the model */
     assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
     free_made_model(&m);
 }

@@ -18,8 +18,8 @@ static const struct glint_degrees degrees = {.most = {6, 6, 0, 0},
                                              .terms = 8,
                                              .leaps = true};
 
-/* Fits VALUE(u, v) on a grid, LEAST .. 1 along u and -1 .. 1 along v.
- * Returns the residual. */
+/* Fits a polynomial to VALUE(u, v) on a grid, LEAST .. 1 along u and -1 .. 1
+ * along v. Returns the residual. */
 static double fit_polynomial_on_grid(double (*value)(double u, double v),
                                      double least, struct glint_poly *poly)
 {
@@ -60,8 +60,8 @@ static double evaluate_polynomial(const struct glint_poly *poly,
     return glint_poly_evaluate(poly->n, poly->power, poly->coef, x);
 }
 
-/* On a grid symmetric in u, odd powers explain nothing of an even function
- * and vice versa: the fit does not need terms in between. */
+/* On a grid symmetric in u, odd powers cannot represent an even function and
+ * vice versa: the fit must not use powers of the other parity. */
 TEST(symmetric_grid_separates_even_and_odd_terms)
 {
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
@@ -83,9 +83,9 @@ static double cubic_polynomial(double u, double v)
     return 1 - u + 2 * u * u - 3 * u * u * u;
 }
 
-/* On a twentieth of the range, powers of u are nearly dependent. The component
- * of u^3 orthogonal to lower powers, 10^-5 of its length, cancels in
- * differences of squares, so the regression computes it again. */
+/* On a twentieth of the range, powers of u are nearly dependent: the component
+ * of u^3 orthogonal to lower powers is 10^-5 of its length. It would cancel in
+ * differences of squares, so the regression computes it separately. */
 TEST(fits_nearly_dependent_powers)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};

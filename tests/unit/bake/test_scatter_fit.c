@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that fits of scattering rows find known models, preserve light and
- * reject invalid options, and that their linear solvers are right.
+ * Checks that fits of scattering rows recover known models, preserve light and
+ * reject invalid options, and that the linear solvers of the fits are right.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -42,8 +42,8 @@ static void fit_rows_by_model(struct glint_scatter_rows *rows,
     assert_ok(glint_scatter_fit(rows, &options, NULL, fit));
 }
 
-/* Returns entry D of kernel J of synthetic rows. The kernels are not
- * symmetric, so that mirroring changes them. */
+/* Returns entry D of kernel J of the synthetic rows. The kernels are not
+ * symmetric, so that a mirrored kernel would be noticed. */
 static double synthetic_kernel_entry(int j, int d)
 {
     const int u = d % KERNEL - KERNEL / 2, v = d / KERNEL - KERNEL / 2;
@@ -53,7 +53,7 @@ static double synthetic_kernel_entry(int j, int d)
 }
 
 /* Sets ROWS to sums of synthetic kernels, multiplied by WEIGHT of the texel
- * where light leaves and by IN of the texel where light enters. */
+ * where light leaves and by IN of the texel where light enters the medium. */
 static void make_synthetic_rows(struct glint_scatter_rows *rows,
                                 double (*weight)[2], const double *in)
 {
@@ -72,8 +72,8 @@ static void make_synthetic_rows(struct glint_scatter_rows *rows,
             }
 }
 
-/* Checks that synthetic rows that match a model are fitted by that model,
- * including kernels that are not symmetric. */
+/* Checks that each model fits, without error, the synthetic rows that it can
+ * represent, including kernels that are not symmetric. */
 TEST(synthetic_rows_are_fitted_by_their_model)
 {
     uint32_t seed = 5;
@@ -98,17 +98,17 @@ TEST(synthetic_rows_are_fitted_by_their_model)
         }
         make_synthetic_rows(&rows, weight, in);
         assert_ok(glint_scatter_fit(&rows, &options, NULL, &fit));
-        /* The alternating fit ends before convergence, and floats have seven
-         * digits. */
+        /* the alternating fit stops before it has converged, and floats have
+         * seven digits */
         assert_true(fit.error.rmse < (bound[m]));
         glint_scatter_fit_close(&fit);
         glint_scatter_close(&rows);
     }
 }
 
-/* Checks that light scattered by a fit equals that scattered by its entries;
- * uniform light gives the albedo of the data; rows and columns multiply to
- * h. */
+/* Checks that the light scattered by a fit equals the light scattered by the
+ * entries of its rows, that uniform light gives the albedo of the data, and
+ * that row and column factors multiply to the kernel h. */
 TEST(fit_scatters_light_like_its_entries)
 {
     struct glint_scatter_rows rows, same;
@@ -151,9 +151,9 @@ TEST(fit_scatters_light_like_its_entries)
     glint_scatter_close(&same);
 }
 
-/* Checks that fits of a checkerboard of two marbles have a PSNR above 44 dB
- * under lamps and shadows, well above the 40 dB that the run time must reach.
- * More terms and higher ranks have smaller errors. */
+/* Checks that fits of a checkerboard of two marbles reach a PSNR of 44 dB under
+ * lamps and shadows, well above the 40 dB that the run time must reach, and
+ * that more terms and higher ranks have smaller errors. */
 TEST(psnr_is_sufficient)
 {
     static const int parts[4][2] = {{1, 3}, {3, 3}, {5, 1}, {5, 3}};
@@ -178,8 +178,8 @@ TEST(psnr_is_sufficient)
     glint_scatter_close(&rows);
 }
 
-/* Checks black media, one texel, and kernels wider than the square: results are
- * finite, and exact where the model can represent the data. */
+/* Checks black media, a single texel, and kernels wider than the medium:
+ * results are finite, and exact where the model can represent the data. */
 TEST(extreme_media_give_finite_results)
 {
     static const int shape[3][2] = {{1, 9}, {3, 13}, {9, 1}};
@@ -249,7 +249,8 @@ static void read_fitted_row(const void *ctx, int i, double *to)
     memcpy(to, (const double *)ctx + i * WIDE, WIDE * sizeof *to);
 }
 
-/* Sets A to a random matrix whose singular values decrease by half each. */
+/* Sets A to a random matrix whose singular values decrease by half from one to
+ * the next. */
 static void make_matrix_with_halving_values(double *a)
 {
     uint32_t seed = 9;
@@ -270,7 +271,7 @@ static void make_matrix_with_halving_values(double *a)
 typedef int dgesdd_fn(int layout, char job, int m, int n, double *a, int lda,
                       double *s, double *u, int ldu, double *vt, int ldvt);
 
-/* Checks that singular values and vectors equal those of LAPACK's dgesdd to
+/* Checks that singular values and vectors equal those of LAPACK's dgesdd within
  * 1e-10. */
 TEST(decomposition_matches_lapack)
 {
@@ -309,8 +310,8 @@ TEST(decomposition_matches_lapack)
 }
 
 /* Checks that singular vectors are orthogonal, and that the residual is the
- * smallest possible: the squares of the omitted singular values. Also with
- * equal and zero values. */
+ * smallest possible, the squares of the omitted singular values; also with
+ * equal and zero singular values. */
 TEST(decomposition_is_orthogonal_and_optimal)
 {
     double a[TALL * WIDE] = {0};
@@ -336,8 +337,8 @@ TEST(decomposition_is_orthogonal_and_optimal)
     glint_terms_free(&terms);
 }
 
-/* Solves a regular system, and a singular one with an undetermined
- * direction. */
+/* Checks the solution of a regular system, and of a singular one in which one
+ * direction is undetermined. */
 TEST(solves_regular_and_singular_systems)
 {
     double a[9] = {4, 2, 1, 2, 5, 3, 1, 3, 6}, b[3] = {7, 10, 10};

@@ -44,7 +44,7 @@ static double sum_row_entries(const struct glint_scatter_rows *rows, int x,
 }
 
 /* Returns the radiant exitance at distance R by [Jensen01], equation 4, with
- * image sources of the far face. */
+ * additional image sources for the far face of the slab. */
 static double compute_radiant_exitance(const struct glint_slab *s, double r)
 {
     const double loss = sqrt(s->absorb / s->diffusion);
@@ -65,9 +65,9 @@ static double compute_radiant_exitance(const struct glint_slab *s, double r)
     return s->albedo * sum / (4 * 3.14159265358979);
 }
 
-/* Checks a homogeneous medium, away from its rim: entries two or more texels
- * from the centre, and their sum, are within 2 % of the closed form; sums of
- * modes alone are from three texels on. */
+/* Checks rows of a homogeneous medium, away from its rim: entries two or more
+ * texels from the centre, and the sum of each row, are within 2 % of the closed
+ * form; with sums of modes alone, entries from three texels on. */
 TEST(homogeneous_rows_match_the_closed_form)
 {
     const struct glint_stone stone = make_medium(GLINT_STONE_EVEN);
@@ -104,7 +104,7 @@ TEST(homogeneous_rows_match_the_closed_form)
 }
 
 /* Checks that the total light that leaves a semi-infinite medium equals that of
- * the dipole, [Jensen01], equation 6. */
+ * the dipole model, [Jensen01], equation 6. */
 TEST(total_light_matches_the_dipole)
 {
     struct glint_stone stone = make_medium(GLINT_STONE_EVEN);
@@ -128,8 +128,8 @@ TEST(total_light_matches_the_dipole)
     free(entry);
 }
 
-/* C1: checks that rows are reciprocal, entries are not negative, and no row
- * exceeds 1. */
+/* C1: checks that rows are reciprocal, that no entry is negative, and that no
+ * row sums to more than 1. */
 TEST(c1_reciprocal)
 {
     static const enum glint_stone_pattern pattern[] = {GLINT_STONE_CHESS,
@@ -155,8 +155,8 @@ TEST(c1_reciprocal)
     }
 }
 
-/* C2: checks that offsets point away from the lit texel; entries outside the
- * square are 0; measured rows are read unchanged. */
+/* C2: checks that row offsets are relative to the lit texel, that entries
+ * outside the square are 0, and that measured rows are read unchanged. */
 TEST(c2_places)
 {
     enum { S = 3, N = 5, WIDE = S * N };
@@ -216,9 +216,9 @@ TEST(c2_light)
     glint_scatter_close(&rows);
 }
 
-/* Checks materials at the ends of their ranges, single and in pairs, in thin
- * and thick slabs: entries are finite and not negative, and sums are at most 1.
- * Strongly absorbing media are dark. */
+/* Checks materials at the ends of their parameter ranges, single and in pairs,
+ * in thin and thick slabs: entries are finite and not negative, and row sums
+ * are at most 1. Strongly absorbing media are dark. */
 TEST(extreme_materials_give_valid_rows)
 {
     static const double end[4][2] = {
@@ -230,7 +230,7 @@ TEST(extreme_materials_give_valid_rows)
         struct glint_scatter_rows rows;
 
         stone.side = 6;
-        /* a kernel that exceeds the square from every texel */
+        /* this kernel exceeds the square from every texel */
         stone.kernel = 7;
         stone.slab_mm = slab[(i ^ i >> 2) & 1];
         stone.texel_mm = texel[(i >> 1 ^ i >> 2) & 1];
@@ -304,7 +304,7 @@ static void count_progress_calls(void *ctx, double done)
 {
     double *seen = ctx;
 
-    /* some work was done since the previous call */
+    /* DONE has increased since the previous call, and is at most 1 */
     assert_true(done > seen[0] && done < 1 + 1e-9);
     seen[0] = done;
     seen[1]++;
@@ -317,7 +317,7 @@ static bool cancel_after_limit(void *ctx)
     return seen[1] > seen[2];
 }
 
-/* Checks that the computation reports progress and can be cancelled, without
+/* Checks that the computation reports progress, and can be cancelled without
  * memory leaks. */
 TEST(reports_progress)
 {

@@ -19,7 +19,7 @@
 static struct glint_prescription lens;
 static struct glint_path path;
 
-/* Parses a lens whose surfaces are SURFACES. */
+/* Parses a lens with the surface lines SURFACES. */
 static enum glint_status parse_lens_of_surfaces(const char *surfaces,
                                                 struct glint_error *error)
 {
@@ -40,8 +40,8 @@ static void load_lens_of_surfaces(const char *surfaces)
 
 /* ------------------------------------------------ independent intersections */
 
-/* Sag by the definition of the surface, in long double, without derivatives:
- * an implementation independent of the library. */
+/* Returns the sag by the definition of the surface, in long double and without
+ * derivatives, independent of the library. */
 static long double compute_surface_sag(const struct glint_surface *s,
                                        long double x, long double y)
 {
@@ -69,8 +69,8 @@ struct line {
     long double at[3], way[3];
 };
 
-/* Transforms LINE from the lens's frame to that of surface S, by successive
- * rotations. */
+/* Transforms LINE from the axes of the lens to those of surface S, by
+ * successive rotations. */
 static struct line transform_to_surface_frame(const struct glint_surface *s,
                                               const struct line *line)
 {
@@ -84,7 +84,8 @@ static struct line transform_to_surface_frame(const struct glint_surface *s,
     /* undo the rotation about y, then about x */
     for (int axis = 1; axis >= 0; axis--) {
         const long double t = (axis ? -1 : 1) * degree * a->tilt_deg[axis];
-        const int other = 1 - axis; /* the coordinate that rotates with z */
+        /* the coordinate that this rotation mixes with z */
+        const int other = 1 - axis;
 
         for (int v = 0; v < 2; v++) {
             long double *p = v ? out.way : out.at;
@@ -106,9 +107,8 @@ static long double compute_gap_to_surface(const struct glint_surface *s,
                                l->at[1] + t * l->way[1]);
 }
 
-/* Finds the nearest intersection by searching outwards from the vertex plane
- * in small steps, then by bisection. Returns false if there is none within
- * REACH. */
+/* Finds the intersection nearest to the vertex plane: searches outwards in
+ * small steps, then bisects. Returns false if there is none within REACH. */
 static bool find_nearest_intersection(const struct glint_surface *s,
                                       const struct line *l, long double reach,
                                       long double *t)
@@ -141,8 +141,8 @@ static bool find_nearest_intersection(const struct glint_surface *s,
     return false;
 }
 
-/* Refracts WAY at the surface by Snell's law in vector form, with a normal
- * from finite differences of the sag; RATIO is n / n'. */
+/* Refracts the direction WAY at the surface by Snell's law in vector form. The
+ * normal is computed from finite differences of the sag; RATIO is n / n'. */
 static void refract_by_vector_snell(const struct glint_surface *s,
                                     const struct line *l, long double t,
                                     long double ratio, long double way[3])
@@ -175,8 +175,8 @@ static double random_uniform(double low, double high)
     return low + (high - low) * (seed >> 8) / 0x1p24;
 }
 
-/* Compares rays that start within SPAN of the axis. Returns the number of
- * rays that hit the surface. */
+/* Compares library rays that start within SPAN of the axis with rays of the
+ * second method. Returns the number of rays that hit the surface. */
 static int compare_rays_near_axis(const char *surfaces, double span)
 {
     const struct glint_surface *const s = lens.surface;
@@ -220,7 +220,8 @@ static int compare_rays_near_axis(const char *surfaces, double span)
         met++;
         if (s->shape.tilt_deg[0] != 0 || s->shape.tilt_deg[1] != 0 ||
             s[1].radius_mm != 0)
-            /* the next check requires an untilted surface before a plane */
+            /* the next check needs a surface that is not tilted, followed by a
+             * plane */
             continue;
         refract_by_vector_snell(s, &own, t, 1 / (long double)s->nd, way);
         for (int k = 0; k < 2; k++) {
@@ -317,7 +318,8 @@ TEST(surface_without_shape_is_a_sphere)
     glint_path_init(&path, &lens, NULL, 532);
     assert_int_equal(glint_trace(&path, 3, 2, direction, &same, NULL), 0);
     assert_memory_equal(&ray, &same, sizeof ray);
-    /* a conic that differs from the sphere by rounding only */
+    /* a conic that differs from the sphere only by the rounding of a
+     * parameter */
     load_lens_of_surfaces(
         "surface 30 9 9 1.5 60\nshape conic 1e-15\nsurface -60 90 30 air");
     glint_path_init(&path, &lens, NULL, 532);
@@ -331,8 +333,8 @@ TEST(surface_without_shape_is_a_sphere)
     "surface 30 5 9 1.5 60\n" a "surface -60 4 9 air\n" b \
     "surface -40 3 9 1.6 40\n" c "surface 80 90 30 air\n" d
 
-/* Checks that ghosts of spheres are the same, up to rounding, if the spheres
- * are written as conics or as torics with two equal radii. */
+/* Checks that the ghosts of spheres are the same, up to rounding, if the
+ * spheres are written as conics or as torics with two equal radii. */
 TEST(spheres_as_conics_or_torics_give_the_same_ghosts)
 {
     static const char *const written[] = {
@@ -365,8 +367,9 @@ TEST(spheres_as_conics_or_torics_give_the_same_ghosts)
     }
 }
 
-/* Checks an anamorphic attachment of two cylinders in front of a lens: focal
- * lengths equal those of paraxial rays in either plane. */
+/* Checks an anamorphic attachment of two cylinders in front of a lens: its
+ * focal lengths equal those of paraxial rays in each of the two planes of
+ * symmetry. */
 TEST(anamorphic_lens_has_two_focal_lengths)
 {
     struct glint_optics optics;
@@ -394,9 +397,9 @@ TEST(anamorphic_lens_has_two_focal_lengths)
     assert_true(fabs(optics.squeeze - 1) > 0.2);
 }
 
-/* Checks that glint_path_init_at() rotates the lens: light in the plane at
- * PHI gives the same ray as the rotated light through the lens that is not
- * rotated. */
+/* Checks that glint_path_init_at() rotates the lens: light in the rotated
+ * plane, at azimuth PHI, gives the same ray as the rotated light through the
+ * unrotated lens. */
 TEST(rotated_lens_equals_rotated_light)
 {
     const double phi = 33, c = cos(phi * GLINT_PI / 180),
@@ -465,8 +468,8 @@ TEST(rejects_wrong_shape_lines)
     }
 }
 
-/* Checks that glint_surface_point() at the position where a ray meets a surface
- * returns a point of the ray. */
+/* Checks that glint_surface_point(), at the position where a ray meets a
+ * surface, returns a point of the ray. */
 TEST(points_lie_on_rays)
 {
     static const char *const shapes[] = {
@@ -506,9 +509,9 @@ TEST(points_lie_on_rays)
     }
 }
 
-/* Checks that a stop behind the front vertex, around the glass, gives the same
- * rays as a stop in the plane where it lies, as light in front of the glass
- * runs straight. */
+/* Checks a stop that lies behind the front vertex, but around the glass, where
+ * light still runs straight: rays are the same as with a stop in the same plane
+ * without the glass. */
 TEST(stop_around_the_glass_gives_the_same_rays)
 {
     static const char text[] = "name t\nf-number 4\nfilm 9 9\nstop %s\n"
@@ -529,7 +532,7 @@ TEST(stop_around_the_glass_gives_the_same_rays)
     assert_int_equal(glint_trace(&path, 1, 2, way, &ray, NULL), 0);
     assert_true(fabs(ray.stop_x_mm - (1 + 0.4 * 0.3 / way[2])) < 1e-14);
     assert_true(ray.stop_y_mm == 2);
-    /* at 3 mm from the axis the glass is 0.46 mm behind the vertex */
+    /* at 3 mm from the axis the surface is 0.46 mm behind its vertex */
     snprintf(table, sizeof table, text, "-0.5 3");
     assert_int_equal(
         glint_prescription_parse(&lens, table, strlen(table), "t.lens", &error),
@@ -543,8 +546,8 @@ TEST(stop_around_the_glass_gives_the_same_rays)
     assert_non_null(strstr(error.text, "thickness must be -100 .. 100000"));
 }
 
-/* Checks that rays traced in a batch and one by one hit the same points,
- * bit-identical for every batch size. */
+/* Checks that rays traced in a batch and rays traced one by one hit the same
+ * points, bit-identical for every batch size. */
 TEST(batches_equal_single_rays)
 {
     struct glint_launch from[19];
@@ -576,9 +579,9 @@ TEST(batches_equal_single_rays)
     assert_true(traced > 10);
 }
 
-/* Checks rays as steep as the profile, or outside the glass, where the first
- * root found need not be the nearest: batches agree with the search for single
- * rays. */
+/* Checks rays as steep as the surface profile, or outside the glass, for which
+ * the first root found need not be the nearest: rays in batches agree with
+ * single rays. */
 TEST(steep_rays_hit_the_nearest_intersection)
 {
     static const char *const shapes[] = {

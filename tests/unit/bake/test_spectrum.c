@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks the wavelengths that replace a spectrum: a flat spectrum is white, and
- * the colours of smooth spectra are close to those of 31 wavelengths.
+ * Checks the few wavelengths that represent a spectrum: a flat spectrum is
+ * white, and the colours of smooth spectra are close to those of 31
+ * wavelengths.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,8 +16,8 @@ enum { ALL = 31 };
 static double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
 static double rgb[GLINT_MAX_WAVELENGTHS][3];
 
-/* Sets ALL to the observer's RGB responses at 400 .. 700 nm, each channel
- * divided by its sum. */
+/* Sets ALL to the RGB responses of the standard observer at 400 .. 700 nm, each
+ * channel divided by its sum. */
 static void set_observer_responses(double all[ALL][3])
 {
     double sum[3] = {0, 0, 0};
@@ -42,7 +43,8 @@ TEST(wavelength_positions)
                 assert_true(fabs(rgb[i][c]) < 2);
         }
     }
-    glint_spectrum(3, nm, rgb, share); /* blue, green and orange */
+    /* three wavelengths are blue, green and orange */
+    glint_spectrum(3, nm, rgb, share);
     assert_true(nm[0] > 430 && nm[0] < 460 && nm[1] > 520 && nm[1] < 560 &&
                 nm[2] > 590 && nm[2] < 630);
 }
@@ -63,7 +65,7 @@ TEST(flat_spectrum_is_white)
     }
 }
 
-/* Returns the product of the reflectances of two coated glasses at
+/* Returns the product of the reflectances of two coated glass surfaces at
  * wavelength AT, nm, as in a ghost. */
 static double compute_ghost_reflectance(double first_nm, double second_nm,
                                         double index, double at)
@@ -76,8 +78,8 @@ static double compute_ghost_reflectance(double first_nm, double second_nm,
            glint_reflectance(1, index, 1, &second, 1);
 }
 
-/* Returns the largest error of a channel of a ghost's colour with N
- * wavelengths / the largest channel. */
+/* Returns the largest error of a ghost's colour, of any channel, when N
+ * wavelengths represent the spectrum; relative to the largest channel. */
 static double compute_colour_error(int n, double first_nm, double second_nm,
                                    double index)
 {
@@ -101,7 +103,7 @@ static double compute_colour_error(int n, double first_nm, double second_nm,
 }
 
 /* Checks that ghosts of quarter-wave and half-wave films have the right
- * colours, which converge as the number of wavelengths grows. */
+ * colours, whose errors decrease as the number of wavelengths grows. */
 TEST(coating_colours_converge)
 {
     static const double film[] = {430, 460, 520, 560, 640, 680, 1080};
@@ -134,8 +136,8 @@ TEST(coating_colours_converge)
 }
 
 /* Returns the height of the colour steps when N wavelengths represent a
- * dispersed edge: the largest difference from 3000 wavelengths in any
- * channel. */
+ * dispersed edge: the largest difference, in any channel, from 3000
+ * wavelengths. */
 static double compute_step_error(int n)
 {
     enum { FINE = 3000 };

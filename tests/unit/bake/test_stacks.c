@@ -2,8 +2,8 @@
  *
  * Tests the reflectance of film stacks against Rouard's recursion in complex
  * numbers: Airy's formula for the film next to the glass gives the amplitude of
- * an equivalent boundary for the film before it, and so on. It is independent
- * of characteristic matrices.
+ * an equivalent boundary for the film before it, and so on. This method is
+ * independent of the characteristic matrices that the library uses.
  */
 #include <complex.h>
 #include <math.h>
@@ -14,13 +14,13 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Fractions of light that are reflected and transmitted. */
+/* Fractions of the light that are reflected and transmitted. */
 struct shares {
     double r, t;
 };
 
-/* Sets R and T to Fresnel's amplitudes for light from a medium of index N1
- * at the cosine C1. */
+/* Sets R and T to Fresnel's amplitude coefficients for light from a medium of
+ * index N1 at the cosine C1. */
 static void set_fresnel_amplitudes(double n1, double complex c1, double n2,
                                    double complex c2, int is_p,
                                    double complex *r, double complex *t)
@@ -32,8 +32,9 @@ static void set_fresnel_amplitudes(double n1, double complex c1, double n2,
     *t = 2 * n1 * c1 / (a + b);
 }
 
-/* Returns the light that N films reflect and transmit; FILM[0] is next to
- * the medium of lower index. Light comes from N1 at the cosine COSINE to N2. */
+/* Returns the fractions of light that N films reflect and transmit. FILM[0] is
+ * next to the medium of lower index. Light comes from the medium N1 at the
+ * cosine COSINE. */
 static struct shares compute_stack_by_rouard(double n1, double n2,
                                              double cosine,
                                              const struct glint_film_at *film,
@@ -41,7 +42,7 @@ static struct shares compute_stack_by_rouard(double n1, double n2,
 {
     double index[GLINT_MAX_FILMS + 2];
     double complex c[GLINT_MAX_FILMS + 2], r, t;
-    /* films in the order in which light passes them */
+    /* the films in the order in which light passes them */
     struct glint_film_at met[GLINT_MAX_FILMS];
 
     index[0] = n1;
@@ -114,9 +115,9 @@ TEST(named_coatings_match_rouard)
     assert_null(glint_coating_named(-1, &coating));
 }
 
-/* At the design wavelength and normal incidence, two quarter waves reflect
- * ((a^2 g - b^2) / (a^2 g + b^2))^2, and a half wave between them has no
- * effect. */
+/* At the design wavelength and normal incidence, two quarter-wave films of
+ * indices a and b on glass of index g reflect ((a^2 g - b^2) / (a^2 g +
+ * b^2))^2; a half-wave film between them has no effect. */
 TEST(two_film_stack_matches_hand_computation)
 {
     const double g = 1.52, a = 1.38 * 1.38 * g;
@@ -136,8 +137,8 @@ TEST(two_film_stack_matches_hand_computation)
 }
 
 /* Checks that broadband coatings reflect less than a single film over the whole
- * band; a V-coat reflects less at its wavelength and more at the ends of the
- * band. */
+ * band, and that a V-coat reflects less than it at its design wavelength and
+ * more at the ends of the band. */
 TEST(coatings_reflect_less_in_their_band)
 {
     const struct glint_coating single = {550, 1, {{1.38, 1}}};
@@ -223,9 +224,9 @@ TEST(extreme_stacks_match_rouard)
 
 /* ------------------------------------------------------------------- paths */
 
-/* Checks that a ray through a coated pane has the product of both
- * transmittances, and a ghost that of both reflectances, with stacks as with
- * single films. */
+/* Checks that the energy of a ray through a coated pane is the product of both
+ * transmittances, and of a ghost that of both reflectances, for film stacks as
+ * for single films. */
 TEST(ghost_energy_is_the_product_of_reflectances)
 {
     struct glint_prescription lens = {

@@ -72,8 +72,8 @@ TEST(omitted_lines_have_defaults)
     assert_int_equal(t.stone.seed, 3);
 }
 
-/* Checks that the first medium of a pattern is material 0, in whatever order
- * the media are defined. */
+/* Checks that the first medium named in a pattern is material 0, in whatever
+ * order the media are defined. */
 TEST(first_medium_of_a_pattern_is_material_0)
 {
     struct glint_stone_text t;
@@ -149,8 +149,8 @@ TEST(rejects_mistakes)
     }
 }
 
-/* Returns the mean difference of SHARE between adjacent columns or rows:
- * within the medium, or, if EDGE is set, across its edges. */
+/* Returns the mean difference of SHARE between adjacent columns or rows of the
+ * medium; if EDGE is set, across its edges, where its opposite sides meet. */
 static double mean_neighbour_difference(const double *share, int side,
                                         bool rows, bool edge)
 {
@@ -167,8 +167,9 @@ static double mean_neighbour_difference(const double *share, int side,
     return sum / ((double)side * (end - first));
 }
 
-/* Checks that the texture of veins has no seam on a sphere, where the edges of
- * a medium meet: differences across edges are as small as those within. */
+/* Checks that the texture of veins has no seam on a sphere, where opposite
+ * edges of the map meet: differences across edges are as small as those
+ * inside. */
 TEST(veins_continue_across_edges)
 {
     enum { SIDE = 64, SEEDS = 20 };

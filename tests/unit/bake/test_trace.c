@@ -41,8 +41,8 @@ static void parse_golden_file_name(struct bundle *bundle, const char *name)
                      4);
 }
 
-/* Returns the next comma-separated number and advances *AT behind it; NAN if
- * the column is empty. */
+/* Returns the next comma-separated number and moves *AT behind it; NAN if the
+ * column is empty. */
 static double parse_next_column(const char **at)
 {
     char *end;
@@ -55,7 +55,8 @@ static double parse_next_column(const char **at)
     return value;
 }
 
-/* Largest differences over all files: positions in mm, energies relative. */
+/* Largest differences over all files: of positions, mm; of energies,
+ * relative. */
 static double worst_mm, worst_energy;
 
 static void compare_lengths_mm(double got, double expected, const char *where)
@@ -158,9 +159,9 @@ TEST(rays_match_other_program)
 
 /* ------------------------------------------------------------------- paths */
 
-/* Returns a lens of N bare surfaces, alternately into glass of index 1.5 and
- * into air, with the stop behind them. It need not satisfy the parser's
- * rules. */
+/* Returns a lens of N uncoated surfaces, which lead alternately into glass of
+ * index 1.5 and into air, with the stop behind them. The parser might reject
+ * it. */
 static struct glint_prescription
 make_lens_of_bare_surfaces(int n, const double *radius_mm, double thickness_mm)
 {
@@ -192,7 +193,8 @@ static void expect_path_event(const struct glint_event *event,
 }
 
 /* Checks that the path of a ghost of two surfaces 5 mm apart, with the stop 5
- * mm behind them, has these five events. */
+ * mm behind them, has the expected five events (refractions, reflections, stop,
+ * sensor). */
 TEST(ghost_path_has_five_events)
 {
     static const double radii[] = {40.0, -40.0};
@@ -229,15 +231,15 @@ TEST(direct_path_begins_at_a_front_stop)
     expect_path_event(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
     expect_path_event(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
     assert_true(path.to_sensor_mm == 5.0);
-    /* The stop lies 8 mm in front of the vertex plane, so the ray through (1,
-     * 2) is extended backwards with its slope of 3/4. */
+    /* The stop lies 8 mm in front of the vertex plane, so the library extends
+     * the ray through (1, 2) backwards with its slope of 3/4. */
     assert_int_equal(glint_trace(&path, 1.0, 2.0, up, &ray, NULL),
                      GLINT_RAY_OK);
     assert_near(ray.stop_x_mm, 1.0, 1e-14);
     assert_near(ray.stop_y_mm, -4.0, 1e-14);
 }
 
-/* Checks that the longest possible path, across the stop, fits into the array
+/* Checks that the longest possible path, through the stop, fits into the array
  * of events. */
 TEST(longest_path_fits_the_event_array)
 {
@@ -264,8 +266,9 @@ trace_single_ray(const struct glint_prescription *lens, double py_mm,
     return glint_trace(&path, 0.0, py_mm, direction, ray, NULL);
 }
 
-/* A plane-parallel plate, 5 mm of n = 1.5: a ray of sine 0.6 has sine 0.4
- * inside, rises by 5 tan(asin 0.4), and leaves parallel to its entry. */
+/* A plane-parallel plate, 5 mm thick, of index 1.5: a ray of sine 0.6 has sine
+ * 0.4 inside, rises by 5 tan(asin 0.4), and leaves the plate parallel to its
+ * entry. */
 TEST(plate_displaces_ray)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -282,9 +285,9 @@ TEST(plate_displaces_ray)
     assert_near(ray.rel_radius, (1.0 + inside) / 10.0, 1e-15);
 }
 
-/* A surface of radius 1e7 mm differs from a plane by its sag, h^2 / 2R =
- * 1.8e-6 mm, and its tilt, h / R = 6e-7: the ray lands lower by (n - 1) h /
- * R * ((5 - sag) / n + 55). */
+/* A surface of radius 1e7 mm differs from a plane by its sag, h^2 / 2R = 1.8e-6
+ * mm, and its tilt, h / R = 6e-7. So the ray lands lower on the sensor by (n -
+ * 1) h / R * ((5 - sag) / n + 55). */
 TEST(surface_of_huge_radius_acts_as_a_plane)
 {
     static const double huge[2] = {1e7, 0.0};
@@ -324,8 +327,8 @@ TEST(ray_to_the_centre_of_a_tiny_sphere_goes_straight)
 }
 
 /* The aplanatic points of a sphere: rays that converge to R + n R behind the
- * vertex meet at R + R / n, without any aberration. With R = 10 and n = 1.5,
- * rays to 25 meet at 16.667 whatever their angle. */
+ * vertex meet at R + R / n, free of aberrations. With R = 10 and n = 1.5, rays
+ * towards 25 meet at 16.667 at any angle. */
 TEST(aplanatic_points_are_free_of_aberration)
 {
     static const double radius[1] = {10.0};
@@ -356,14 +359,14 @@ TEST(reflects_totally_beyond_the_critical_angle)
     assert_int_equal(trace_single_ray(&lens, 10.0 * sqrt(0.5), along, &ray),
                      GLINT_RAY_TOTAL_REFLECTION);
     assert_true(ray.stop_x_mm == 7.0 && ray.rel_radius == 7.0);
-    /* a sine of exactly 2/3 is critical; a ray with a slightly smaller sine
-     * passes */
+    /* an angle with a sine of exactly 2/3 is critical; a ray with a slightly
+     * smaller sine passes */
     assert_int_equal(trace_single_ray(&lens, 6.66, along, &ray), GLINT_RAY_OK);
 }
 
-/* A ghost of a plate: light that is reflected twice inside is displaced
- * three times as far within the plate as light that crosses it once. Its
- * energy is (1 - R)^2 R^2 with R = ((1.5 - 1) / 2.5)^2. */
+/* A ghost of a plate: light reflected twice inside it is displaced three times
+ * as far as light that crosses it once. Its energy is (1 - R)^2 R^2 with the
+ * reflectance R = ((1.5 - 1) / 2.5)^2. */
 TEST(plate_ghost_is_displaced_three_times)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -390,8 +393,8 @@ TEST(plate_ghost_is_displaced_three_times)
     assert_near(ray.energy, 0.96 * 0.96 * 0.04 * 0.04, 1e-16);
 }
 
-/* Checks that rays that run backwards, sideways or are not finite are reported
- * as missed. */
+/* Checks that rays that run backwards or sideways, or are not finite, are
+ * reported as missed. */
 TEST(invalid_rays_are_missed)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -418,9 +421,9 @@ TEST(invalid_rays_are_missed)
 
 /* ---------------------------------------------------------- batches of rays */
 
-/* Checks that N rays traced in a batch, and their hits, are bit-identical to
- * rays traced one by one. Hits of events that are not reached stay
- * unchanged. */
+/* Checks that N rays traced in a batch, and their intersections, are
+ * bit-identical to rays traced one by one. Intersections that a ray does not
+ * reach must stay unchanged. */
 static void expect_batch_equals_single_rays(const struct glint_path *path,
                                             int n,
                                             const struct glint_launch *from)
@@ -586,8 +589,9 @@ TEST(mirrored_and_rotated_rays_are_bit_identical)
     }
 }
 
-/* Checks that a distant point is imaged f tan T from the axis by a narrow
- * pencil near the axis, with f = 49.992 mm as in the table. */
+/* Checks that a distant point at angle T is imaged f tan T from the axis, by a
+ * narrow pencil near the axis, with the focal length f = 49.992 mm stated in
+ * the table. */
 TEST(distant_point_is_imaged_at_f_tan_theta)
 {
     static struct glint_prescription lens;
@@ -603,13 +607,13 @@ TEST(distant_point_is_imaged_at_f_tan_theta)
                          GLINT_RAY_OK);
         assert_near(ray.sensor_y_mm, 49.992 * 1e-4, 2e-7);
     }
-    /* The chief ray passes the centre of the stop. */
+    /* The chief ray passes through the centre of the stop. */
     assert_int_equal(
         trace_single_ray(&lens, -optics.entrance_z_mm * sine, up, &ray),
         GLINT_RAY_OK);
     assert_near(ray.stop_y_mm, 0.0, 1e-9);
-    /* A ray at the rim of the entrance pupil passes the rim of the stop,
-     * 1.3200 mm in the table, up to aberrations. */
+    /* A ray at the rim of the entrance pupil passes the rim of the stop, whose
+     * radius is 1.3200 mm in the table, except for aberrations. */
     assert_int_equal(trace_single_ray(&lens, optics.entrance_radius_mm,
                                       (const double[3]){0.0, 0.0, 1.0}, &ray),
                      GLINT_RAY_OK);

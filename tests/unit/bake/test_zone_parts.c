@@ -17,8 +17,8 @@ static bool part_contains_position(const struct glint_zone_part *p, double u,
            v >= p->top * glint_zone_get_inner_rim(p->annulus);
 }
 
-/* Checks that after any number of halvings each pupil position lies in exactly
- * one part. */
+/* Checks that after any number of halvings of the pupil box each pupil position
+ * lies in exactly one part. */
 TEST(parts_are_disjoint)
 {
     enum { DEPTH = 8, PARTS = 1 << DEPTH };
@@ -49,14 +49,14 @@ TEST(parts_are_disjoint)
     }
 }
 
-/* A fit of the zone FROM .. TO, degrees, of a bright ghost: its error was LEFT
- * tolerances, that of the zone before halving 10 tolerances. DEPTH 0: the pupil
- * box is not divided. */
+/* The fit of zone FROM .. TO, degrees, of a bright ghost. LEFT: its error, in
+ * tolerances; the zone before halving had 10 tolerances. DEPTH 0: the pupil box
+ * is not divided. */
 struct attempted {
     bool shaped, far;
     double from, to, left;
-    /* number of halvings of the box in a thorough fit; -1: the fit was not
-     * thorough */
+    /* number of halvings of the pupil box in a thorough fit; -1: there was no
+     * thorough fit */
     int depth;
     int axis_depth;
     enum glint_next next;
@@ -91,9 +91,9 @@ static enum glint_next decide_next_division(const struct attempted *c)
     return glint_next_choose_step(&rules, &piece, &attempt);
 }
 
-/* Parts of wide zones of aspheric lenses have gaps between them. So these zones
- * are halved in angle where those of spherical lenses would be divided into
- * parts, and their boxes may be halved more often. */
+/* The pupil parts of wide zones of aspheric lenses would have gaps between
+ * them. So such zones are halved in angle where zones of spherical lenses are
+ * divided into parts, and their boxes may be halved more often. */
 TEST(wide_zones_of_aspheres_are_halved)
 {
     static const struct attempted all[] = {
@@ -102,7 +102,7 @@ TEST(wide_zones_of_aspheres_are_halved)
         {true, false, 5, 8.7, 9, -1, 4, GLINT_HALVE},
         {true, false, 5, 8.5, 9, -1, 4, GLINT_THOROUGH},
         {true, false, 5, 8.5, 7, -1, 4,
-         GLINT_HALVE}, /* as the previous halving reduced the error */
+         GLINT_HALVE}, /* because the previous halving reduced the error */
         {true, false, 5, 11, 0.9, -1, 4, GLINT_KEEP},
         {false, false, 5, 8, 9, 3, 4, GLINT_PART},
         {false, false, 5, 8, 9, 4, 4, GLINT_KEEP},
@@ -114,8 +114,8 @@ TEST(wide_zones_of_aspheres_are_halved)
         {true, false, 0, 3, 9, 5, 4, GLINT_PART},
         {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},
         {true, false, 0, 3, 9, 7, 8, GLINT_PART},
-        /* lights beyond 60 degrees: halved like aspheric lenses, but not
-         * divided further */
+        /* lights beyond 60 degrees: halved like zones of aspheric lenses, but
+         * not divided further */
         {false, true, 70, 74, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.7, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.5, 9, -1, 4, GLINT_THOROUGH},

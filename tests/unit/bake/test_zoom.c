@@ -44,7 +44,7 @@ static void focus_lens_at_distance(struct glint_prescription *lens,
         fail_msg("%s", error.text);
 }
 
-/* Checks that at a column of its table a zoom equals the lens of the
+/* Checks that a zoom set to a column of its table equals the lens of the
  * single-position table, bit-identical. */
 TEST(zoom_at_a_column_equals_its_table)
 {
@@ -66,8 +66,9 @@ TEST(zoom_at_a_column_equals_its_table)
     }
 }
 
-/* Checks that between columns focal lengths are monotone and the image stays in
- * focus; glint_prescription_zoom_to() finds each focal length again. */
+/* Checks that focal lengths between the columns of a table are monotonic and
+ * that the image stays in focus; glint_prescription_zoom_to() finds each focal
+ * length again. */
 TEST(monotone_between_columns)
 {
     enum { STEPS = 40 };
@@ -96,8 +97,8 @@ TEST(monotone_between_columns)
     }
 }
 
-/* Returns the sensor position, mm, of a ray through (X, 0) of the front's
- * vertex plane with the slope TANGENT. */
+/* Returns the position on the sensor, mm, of a ray through (X, 0) in the vertex
+ * plane of the front surface with the slope TANGENT. */
 static double trace_ray_to_sensor(const struct glint_prescription *lens,
                                   double x, double tangent)
 {
@@ -112,8 +113,8 @@ static double trace_ray_to_sensor(const struct glint_prescription *lens,
     return ray.sensor_x_mm;
 }
 
-/* Checks that rays from the focused point meet on the sensor, and that
- * distant light is imaged at the position given by scale_mm. */
+/* Checks that rays from the focused point meet on the sensor, and that distant
+ * light is imaged at the position that scale_mm gives. */
 static void check_lens_is_focused(struct glint_prescription *lens,
                                   double metres)
 {
@@ -152,8 +153,8 @@ TEST(focused_lens_images_the_distance_sharply)
     }
 }
 
-/* Checks that Newton's formula, x x' = f^2, holds for a lens that moves as a
- * whole. */
+/* Checks that Newton's formula, x x' = f^2, holds for a lens that is focused by
+ * moving the whole lens. */
 TEST(moving_the_lens_obeys_newtons_formula)
 {
     struct glint_optics optics;
@@ -170,8 +171,8 @@ TEST(moving_the_lens_obeys_newtons_formula)
                 0.5 * optics.focal_mm);
 }
 
-/* Checks that a stop in front of the focusing group keeps its distance from the
- * sensor. */
+/* Checks that a stop in front of the focusing group does not move relative to
+ * the sensor. */
 TEST(front_stop_keeps_its_distance_to_the_sensor)
 {
     static const char text[] =
@@ -193,8 +194,9 @@ TEST(front_stop_keeps_its_distance_to_the_sensor)
     assert_near(optics.length_mm + single.stop_thickness_mm, before, 1e-9);
 }
 
-/* Checks that elements behind a front stop are still solid: surfaces whose rims
- * do not touch may not pass through each other's vertices. */
+/* Checks that lens elements behind a front stop may not intersect: even
+ * surfaces whose rims do not touch may not pass through each other's
+ * vertices. */
 TEST(elements_stay_solid_behind_a_front_stop)
 {
     static const char text[] =
@@ -258,9 +260,9 @@ TEST(rejects_wrong_columns)
                             "the focusing group has no surface");
 }
 
-/* Checks that the result of a zoom does not depend on the previous position,
- * even if the table has a single last gap, whose distance from the focus
- * differs per column. */
+/* Checks that the result of setting a zoom does not depend on its previous
+ * position, even if the table states a single last gap while the distance of
+ * the focus differs per column. */
 TEST(result_is_independent_of_history)
 {
     static const char text[] =
@@ -280,8 +282,8 @@ TEST(result_is_independent_of_history)
     }
 }
 
-/* Checks that with two columns f-numbers are interpolated linearly. Descending
- * focal lengths work like ascending ones. */
+/* Checks that with two columns f-numbers are interpolated linearly, and that
+ * columns may be in descending order of focal length. */
 TEST(two_columns_are_interpolated_linearly)
 {
     static const char *const texts[] = {

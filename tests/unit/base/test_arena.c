@@ -39,7 +39,8 @@ TEST(overflowing_size_fills_the_arena)
     assert_true(m.used > SIZE_MAX - 256);
 }
 
-/* Checks rounding to nearest, ties up, also of negative numbers. */
+/* Checks rounding to nearest, with ties rounded up, also for negative
+ * numbers. */
 TEST(rounds_to_nearest_ties_up)
 {
     assert_int_equal(q_shift(5, 1), 3);
@@ -59,8 +60,8 @@ TEST(rounds_to_nearest_ties_up)
     assert_int_equal(bit_length(1 << 8), 9);
 }
 
-/* Checks that CONFIG=qcheck traps if a result does not fit. Skipped in other
- * builds, in which it may wrap. */
+/* Checks that a build with CONFIG=qcheck traps if a result does not fit.
+ * Skipped in other builds, where the result may wrap. */
 TEST(qcheck_traps_on_overflow)
 {
 #ifdef GLINT_Q_CHECK

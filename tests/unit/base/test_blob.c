@@ -12,8 +12,8 @@ enum { HEADER = 100, BYTES = 124 };
 
 static const struct glint_blob_kind kind = {UINT32_C(0x424f4c42), 3, HEADER};
 
-/* A file with two additional words at the end of its header, followed by 24
- * bytes of sections. */
+/* A baked file with two additional words at the end of its header, followed by
+ * 24 bytes of sections. */
 struct file {
     uint32_t word[BYTES / 4];
 };
@@ -45,7 +45,7 @@ TEST(crc32_of_known_text)
     assert_true(glint_blob_compute_crc32("", 0) == 0);
 }
 
-/* Checks that fields have the offsets of existing files. */
+/* Checks that the header fields have the same offsets as in existing files. */
 TEST(fields_have_the_offsets_of_existing_files)
 {
     struct glint_blob blob;
@@ -89,7 +89,7 @@ TEST(reports_the_fault_of_a_header)
                      GLINT_BLOB_UNALIGNED);
 }
 
-/* Checks that any wrong bit from the checksum to the end of the file is
+/* Checks that each single wrong bit from the checksum to the end of the file is
  * detected. */
 TEST(detects_any_changed_bit)
 {

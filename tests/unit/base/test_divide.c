@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares division by words of 32 bits with the compiler's division.
+ * Compares the library's division, which uses 32-bit words, with the
+ * compiler's division.
  */
 #include "base/divide.h"
 #include "support/test.h"
@@ -38,7 +39,8 @@ TEST(random_divisions_are_exact)
     }
 }
 
-/* Checks numerators at and next to multiples of D, and powers of two. */
+/* Checks numerators at and next to multiples of the divisor D, and at powers of
+ * two. */
 TEST(divisions_near_multiples_are_exact)
 {
     for (int i = 0; i < 300000; i++) {

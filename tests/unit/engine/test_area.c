@@ -30,9 +30,9 @@ static void compute_lamp_position(const struct glint_lamp *lamp, double *u,
     *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
 }
 
-/* Sets SUM to sums over the points of LAMP: power; power times offset from
- * the lamp, pixels, in u and v; power times squared offset along the lamp's
- * major and minor axis. Returns the number of points. */
+/* Sets SUM to sums over the points of LAMP: of power; of power times offset
+ * from the lamp, pixels, in u and v; of power times squared offset along the
+ * lamp's major and minor axis. Returns the number of points. */
 static int compute_point_sums(const struct glint_lamp *lamp, double thinning,
                               double sum[5])
 {
@@ -73,7 +73,7 @@ TEST(small_lamp_is_one_point)
 
     assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
     point = glint_area_point(&area, 0);
-    /* A single point equals the lamp bit by bit. */
+    /* a lamp of a single point equals that point bit by bit */
     assert_true(point.theta_deg == lamp.theta_deg);
     assert_true(point.phi_deg == lamp.phi_deg);
     assert_true(point.power == lamp.power);
@@ -92,9 +92,9 @@ TEST(sums_equal_the_lamp)
     assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
 }
 
-/* Checks that the points do not move when the lamp's rotation passes 90
- * degrees (a half turn of its axes), and that those of a round lamp do not
- * depend on the rotation. */
+/* Checks that the points do not move when the lamp's rotation passes 90 degrees
+ * (a half turn of its axes), and that the points of a round lamp do not depend
+ * on its rotation. */
 TEST(half_turn_of_the_axes_keeps_the_points)
 {
     const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
@@ -122,8 +122,8 @@ TEST(half_turn_of_the_axes_keeps_the_points)
     }
 }
 
-/* Checks, while a lamp grows by 0.005 px per step, that the centroid stays
- * and that the second moments change little per step. */
+/* Checks, while a lamp grows by 0.005 px per step, that its centroid does not
+ * move and that its second moments change little per step. */
 TEST(points_change_continuously_as_a_lamp_grows)
 {
     double last[5], sum[5];
@@ -170,7 +170,7 @@ TEST(point_count_is_limited)
     assert_int_equal(total, 1);
 }
 
-/* Checks that a lamp of 1/16 of the power gets 1/4 of the points, as steps
+/* Checks that a lamp with 1/16 of the power gets 1/4 of the points, as steps
  * between faint points are less visible. */
 TEST(faint_lamps_get_fewer_points)
 {
@@ -188,10 +188,10 @@ TEST(faint_lamps_get_fewer_points)
     assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 
-/* Checks that the distance of the points of a disc is that of points on a
- * square grid with equal area per point, and changes continuously as the
- * disc grows from one point to many. An ellipse 1/100 as wide has a fifth of
- * that distance. */
+/* Checks that the distance between the points of a disc is that of a square
+ * grid with equal area per point, and changes continuously as the disc grows
+ * from one point to many. For an ellipse 1/100 as wide it is a fifth of
+ * that. */
 TEST(point_distance_is_that_of_a_square_grid)
 {
     struct glint_area area;

@@ -19,8 +19,8 @@ static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
 
-/* A simulated machine: the time of a frame, ms, is a function of its quality
- * parameters. The clock is read at the ends of three intervals per frame. */
+/* A simulated machine: the frame time, ms, is a function of the quality
+ * parameters. Each frame reads the clock at the ends of three intervals. */
 static struct machine {
     const struct glint_frame *frame;
     double base_ms, cells_ms, power, steps_ms;
@@ -48,8 +48,8 @@ double __wrap_tool_clock_s(void)
     return machine.now_s;
 }
 
-/* Draws N frames with a budget of BUDGET_MS and returns the report of the
- * last. */
+/* Draws N frames with a budget of BUDGET_MS and returns the report of the last
+ * frame. */
 static struct glint_engine_report
 draw_frames_with_budget(struct glint_frame *frame, double budget_ms, int n)
 {
@@ -78,7 +78,7 @@ static const struct machine machines[] = {
     {NULL, 1, 3, 1.3, 0.5, 0, 7}, /* frame times with 6 % of noise */
 };
 
-/* Checks that on each machine a frame takes 0.8 to 1.1 of its budget, and
+/* Checks that on each machine the frame time is 0.8 to 1.1 of the budget, and
  * that a larger budget does not reduce the quality. */
 TEST(frame_time_stays_within_the_budget)
 {
@@ -108,11 +108,11 @@ TEST(frame_time_stays_within_the_budget)
     }
 }
 
-/* Draws SETTLED frames with a budget of 2.2 ms. Then sets the budget to MS
- * and the predicted time of levels from FROM on to 2^OCTAVES times that of
- * the cost model, and draws N frames. The cheapest level at full resolution
- * takes 4.2 ms. Returns how many of the N frames have full resolution;
- * *LAST: whether the last one has. */
+/* Draws SETTLED frames with a budget of 2.2 ms. Then sets the budget to MS,
+ * multiplies the predicted time of all quality levels from FROM on by
+ * 2^OCTAVES, and draws N frames. The cheapest level at full resolution takes
+ * 4.2 ms. Returns how many of the N frames have full resolution; sets *LAST to
+ * whether the last one has. */
 static int count_full_resolution_frames(double ms, int from, double octaves,
                                         int n, bool *last)
 {
@@ -139,8 +139,8 @@ static int count_full_resolution_frames(double ms, int from, double octaves,
     return n_whole;
 }
 
-/* Checks that levels whose times are overestimated are used in the end if
- * they fit. */
+/* Checks that quality levels whose time is overestimated are eventually used if
+ * they fit into the budget. */
 TEST(overestimated_levels_are_used_in_the_end)
 {
     bool last;
@@ -150,10 +150,10 @@ TEST(overestimated_levels_are_used_in_the_end)
     assert_true(last);
 }
 
-/* Checks that a level predicted to exceed the budget by a tenth is tried
- * within some frames if the levels predicted to fit take far less, and that
- * a level which does not fit is not retried too often (14 of these 100
- * frames; 52 without the limit). */
+/* Checks that a level predicted to exceed the budget by a tenth is tried within
+ * some frames if all cheaper levels take far less time, and that a level that
+ * does not fit is not retried too often (14 of these 100 frames; 52 without the
+ * limit). */
 TEST(slightly_too_slow_level_is_tried)
 {
     bool last;
@@ -161,7 +161,7 @@ TEST(slightly_too_slow_level_is_tried)
     assert_in_range(count_full_resolution_frames(4.6, 2, 0.95, 20, &last), 1,
                     20);
     assert_true(last);
-    /* A level predicted to exceed the budget by half is not tried. */
+    /* a level predicted to exceed the budget by half is not tried */
     assert_int_equal(count_full_resolution_frames(4.6, 2, 1.3, 20, &last), 0);
     assert_in_range(
         count_full_resolution_frames(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last),
@@ -178,14 +178,14 @@ TEST(extreme_budgets_give_extreme_qualities)
     machine.frame = &frame;
     assert_true(draw_frames_with_budget(&frame, 0.1, 10).quality == 0);
     assert_true(draw_frames_with_budget(&frame, 1e4, 10).quality == 1);
-    /* The quality drops at once, not after many late frames. */
+    /* the quality drops in the next frame, not after many late frames */
     assert_true(draw_frames_with_budget(&frame, 0.1, 2).quality == 0);
     machine.frame = NULL;
     glint_frame_finish(&frame);
 }
 
-/* Checks that the veil is dropped if the budget is too small for anything,
- * and returns with a larger budget. */
+/* Checks that the veil is dropped if the budget is too small even for the
+ * lowest quality, and returns with a larger budget. */
 TEST(veil_is_dropped_under_a_tiny_budget)
 {
     struct glint_frame frame;
@@ -200,8 +200,8 @@ TEST(veil_is_dropped_under_a_tiny_budget)
     glint_frame_finish(&frame);
 }
 
-/* Checks that the first frame with more lights stays within the budget, as
- * plans include the number of lights. */
+/* Checks that the first frame with more lights stays within the budget, because
+ * the predicted time includes the number of lights. */
 TEST(first_frame_of_more_lights_keeps_to_the_budget)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -212,7 +212,7 @@ TEST(first_frame_of_more_lights_keeps_to_the_budget)
     machine = (struct machine){NULL, 0, 0, 0, 0, 0, 0};
     make_test_frame(&frame);
     glint_budget_init(&frame.budget, 3);
-    /* The simulated clock stands still, so this rate is not corrected. */
+    /* the simulated clock stands still, so nothing corrects this rate */
     frame.budget.ms_per_minsn = 0.1;
     frame.dials =
         glint_budget_get_quality_parameters(&frame.budget, &frame.dials);
@@ -224,8 +224,9 @@ TEST(first_frame_of_more_lights_keeps_to_the_budget)
     glint_frame_finish(&frame);
 }
 
-/* Checks that the counts of a plan equal those of the drawn frame, and scale
- * with the quality parameters as those of another plan. */
+/* Checks that the counts of a plan equal those of the drawn frame, and that
+ * after scaling to other quality parameters they equal the counts of a plan
+ * made with these. */
 TEST(counts_of_a_plan_equal_the_drawn_frame)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
@@ -247,7 +248,7 @@ TEST(counts_of_a_plan_equal_the_drawn_frame)
     then = plan.dials;
     then.fineness = 128;
     predicted = glint_cost_of(&plan, &then);
-    /* Some planned bundles may have no edges. */
+    /* some planned bundles may have no edges when drawn */
     assert_true(coarse.count[GLINT_COST_BUNDLES] >= report.stats.bundles);
     assert_true(coarse.count[GLINT_COST_BUNDLES] <=
                 opened.lens.setup.n_ghosts * opened.lens.setup.n_wavelengths);
@@ -261,11 +262,12 @@ TEST(counts_of_a_plan_equal_the_drawn_frame)
     plan = glint_frame_make_cost_plan(&frame);
     fine = glint_cost_of(&plan, &plan.dials);
     for (int k = 0; k < GLINT_COST_KINDS; k++)
-        if (k != GLINT_COST_PARTS) /* The stop has no dust. */
+        /* the stop has no dust, so this count is 0 */
+        if (k != GLINT_COST_PARTS)
             assert_true(fabs(predicted.count[k] / fine.count[k] - 1) < 0.25);
     assert_true(glint_cost_convert_to_minsn(&fine) >
                 glint_cost_convert_to_minsn(&coarse));
-    /* Counts also scale to half resolution. */
+    /* counts can also be scaled to half resolution */
     then = plan.dials;
     then.flags |= GLINT_DIAL_HALF;
     predicted = glint_cost_of(&plan, &then);

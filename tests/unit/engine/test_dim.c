@@ -18,7 +18,7 @@ static struct stage stage;
 static struct glint_lamp lamps[LIGHTS];
 static uint8_t plain[BYTES], dim[BYTES], last[2][BYTES];
 
-/* Sets a bright lamp and fainter ones, over a range of seven octaves, at
+/* Sets one bright lamp and fainter ones, down to seven octaves below it, at
  * positions that depend on TIME. */
 static void set_bright_and_faint_lamps(double time)
 {
@@ -63,9 +63,9 @@ static double compute_psnr(const uint8_t *a, const uint8_t *b)
     return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
 }
 
-/* Checks that each larger dim_codes gives fewer bundles and an image no
- * closer to that of dim_codes 0 (where each ghost has three wavelengths of
- * its own), above 40 dB and with the same sum of codes within 1 %. */
+/* Checks that each larger dim_codes draws fewer bundles, and an image no closer
+ * to that of dim_codes 0, where each ghost has three wavelengths of its own.
+ * The PSNR stays above 40 dB, the sum of codes within 1 %. */
 TEST(larger_dim_codes_draw_fewer_bundles)
 {
     int bundles;
@@ -87,7 +87,8 @@ TEST(larger_dim_codes_draw_fewer_bundles)
 }
 
 /* Checks, while lights move for 300 frames, that dim ghosts increase the
- * largest jump of the mean of 8 x 8 pixels by less than half a code. */
+ * largest change of the mean of 8 x 8 pixels per frame by less than half a
+ * code. */
 TEST(dim_ghosts_do_not_jump_in_motion)
 {
     double worst[2] = {0, 0};
@@ -112,8 +113,8 @@ TEST(dim_ghosts_do_not_jump_in_motion)
     assert_true(worst[1] < worst[0] + 0.5);
 }
 
-/* Sets four groups of four lamps, each group within a degree, at positions
- * that depend on TIME, with 3 % of noise in their powers. */
+/* Sets four groups of four lamps, each group within a degree, at positions that
+ * depend on TIME. Their powers have 3 % of random noise. */
 static void set_lamp_groups(double time, uint64_t *noise)
 {
     for (int i = 0; i < LIGHTS; i++)
@@ -123,8 +124,8 @@ static void set_lamp_groups(double time, uint64_t *noise)
                                        stage_random_uniform(noise, 0.97, 1.03));
 }
 
-/* Returns the total light of a linear image that is planned as for an image in
- * codes, but drops no ghost. */
+/* Returns the total light of a linear image whose ghosts are planned like those
+ * of an image in codes, but of which none is dropped. */
 static double sum_image_light(double codes)
 {
     static int32_t light_q20[3 * W * H];
@@ -144,10 +145,10 @@ static double sum_image_light(double codes)
     return sum;
 }
 
-/* Checks that dim ghosts of neighbouring lights are merged: less than half
- * the bundles, the same light within 6 %, and jumps of the mean of 8 x 8
- * pixels at most half a code larger than with separate ghosts. The frame
- * statistics agree. */
+/* Checks that dim ghosts of neighbouring lights are merged: less than half of
+ * the bundles, the same total light within 6 %, and changes of the mean of 8 x
+ * 8 pixels per frame at most half a code larger than with separate ghosts. The
+ * frame statistics agree. */
 TEST(dim_ghosts_of_near_lights_are_merged)
 {
     struct glint_account account;
@@ -191,8 +192,8 @@ TEST(dim_ghosts_of_near_lights_are_merged)
     assert_true(of[GLINT_OUTCOME_SHARED] > bundles[1] / 4);
 }
 
-/* Checks that an image is the same bit by bit with 1, 3 or 5 workers, and
- * after another frame. */
+/* Checks that an image is bit-identical with 1, 3 and 5 workers, and after
+ * another frame. */
 TEST(image_is_bit_identical_for_all_workers)
 {
     struct shuffle shuffle;

@@ -42,8 +42,9 @@ static struct glint_engine *create_engine(void *arena, size_t bytes)
     return engine;
 }
 
-/* Draws the lamp picture into PX, US microseconds after the previous one, with
- * the flare of the lamps that the engine finds. Returns their number. */
+/* Draws the lamp picture, which follows the previous one by US microseconds,
+ * into PX, with the flare of the lamps that the engine finds in it. Returns
+ * their number. */
 static int draw_flare_of_found_lamps(struct glint_engine *engine, int32_t us,
                                      uint8_t *px,
                                      struct glint_engine_report *report)
@@ -74,8 +75,9 @@ TEST(draws_flares_of_found_lamps)
     glint_engine_destroy(engine);
 }
 
-/* Checks that the engine's memory and the caller's give the same image. If
- * the caller's is too small, the report states how much is enough. */
+/* Checks that the engine draws the same image in its own and in the caller's
+ * memory, and that it reports the required size if the caller's memory is too
+ * small. */
 TEST(callers_memory_gives_the_same_image)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -99,8 +101,8 @@ TEST(callers_memory_gives_the_same_image)
     free(mem);
 }
 
-/* Checks that tracked lamps are present after 30 frames, and that reduced
- * quality parameters draw fewer bundles. */
+/* Checks that lamps in a video are fully faded in after 30 frames, and that
+ * lower quality parameters draw fewer bundles. */
 TEST(tracked_lamps_are_present_after_30_frames)
 {
     static uint8_t px[BYTES];
@@ -120,7 +122,7 @@ TEST(tracked_lamps_are_present_after_30_frames)
     glint_engine_destroy(engine);
 }
 
-/* Draws the given LAMP alone on grey into PX, US microseconds after the
+/* Draws LAMP alone on grey into PX, with its flare, US microseconds after the
  * previous image; US < 0: time unknown. Returns the exposure. */
 static double draw_flare_of_given_lamp(struct glint_engine *engine,
                                        const struct glint_lamp *lamp,
@@ -137,9 +139,9 @@ static double draw_flare_of_given_lamp(struct glint_engine *engine,
     return report.scale;
 }
 
-/* Checks that a given lamp is exposed like a found one: in a still image by
- * a small rendering of its flare, whatever was drawn before; in a video by
- * small steps from frame to frame. */
+/* Checks that a lamp given by the caller is exposed like a found one: in a
+ * still image from a small rendering of its flare, whatever was drawn before;
+ * in a video by small steps from frame to frame. */
 TEST(given_lamp_is_exposed_like_a_found_one)
 {
     static uint8_t px[BYTES], found[BYTES], again[BYTES];
@@ -176,8 +178,8 @@ TEST(given_lamp_is_exposed_like_a_found_one)
     glint_engine_destroy(engine);
 }
 
-/* Checks that a stop set later gives the image of an engine created with it,
- * and that a stop wider than the model's is rejected. */
+/* Checks that setting a stop later gives the image of an engine created with
+ * that stop, and that a stop wider than the model's is rejected. */
 TEST(stop_set_later_equals_stop_at_creation)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];
@@ -208,8 +210,8 @@ TEST(stop_set_later_equals_stop_at_creation)
     glint_engine_destroy(engine);
 }
 
-/* Checks that an image of another size, or too many lamps, are rejected at
- * each stage, including automatic exposure. */
+/* Checks that an image of a wrong size, and too many lamps, are rejected at
+ * each step of drawing, including automatic exposure. */
 TEST(rejects_images_of_wrong_size)
 {
     static uint8_t px[BYTES];
@@ -236,9 +238,9 @@ TEST(rejects_images_of_wrong_size)
     glint_engine_destroy(engine);
 }
 
-/* Checks that layers add up to all parts drawn together, that a given lamp
- * lights a render without detection (twice as much at twice the gain), and
- * that a manual exposure applies from the next image on. */
+/* Checks that the layers of a flare add up to the whole flare, that a given
+ * lamp produces a flare without detection (twice as bright at twice the gain),
+ * and that a manual exposure applies from the next image on. */
 TEST(layers_add_up_to_the_whole_flare)
 {
     static uint8_t px[BYTES];
@@ -283,7 +285,7 @@ TEST(layers_add_up_to_the_whole_flare)
     glint_engine_destroy(engine);
 }
 
-/* Returns the light of the layer PART of the given LAMP, US microseconds after
+/* Returns the light of layer PART of the flare of LAMP, US microseconds after
  * the previous picture. */
 static double sum_layer_light(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int32_t us,
@@ -304,9 +306,9 @@ static double sum_layer_light(struct glint_engine *engine,
     return sum;
 }
 
-/* Checks that a lamp which becomes too bright for the exposure of a video has
- * its ghosts limited, but not its starburst, whose brightness does not depend
- * on the exposure. */
+/* Checks a lamp that becomes too bright for the exposure of a video: its ghosts
+ * are limited, but not its starburst, whose brightness does not depend on the
+ * exposure. */
 TEST(limited_lamp_keeps_its_starburst)
 {
     const struct glint_lamp faint = {5, 30, 1e2, {1, 1, 1}, {0, 0}, 0};
@@ -328,8 +330,8 @@ TEST(limited_lamp_keeps_its_starburst)
     assert_true(fabs(video[1] / still[1] - 1) < 1e-3);
 }
 
-/* Returns the light of the ghosts of the N LAMPS, whose powers include the
- * exposure. */
+/* Returns the light of the ghosts of the N lamps of LAMPS, whose powers include
+ * the exposure. */
 static double sum_ghost_light(struct glint_engine *engine,
                               const struct glint_engine_lamp *lamps, int n)
 {
@@ -344,8 +346,8 @@ static double sum_ghost_light(struct glint_engine *engine,
     return sum;
 }
 
-/* Checks that the layers of single lamps add up to that of all, one of which is
- * limited. */
+/* Checks that the layers of single lamps, one of which has limited ghosts, add
+ * up to the layer of all lamps. */
 TEST(layers_of_single_lamps_add_up)
 {
     static uint8_t px[BYTES];
@@ -413,9 +415,9 @@ TEST(rejects_invalid_configurations)
     }
 }
 
-/* Checks that a program compiled for an older library, whose configuration
- * struct is shorter, gets the defaults for the missing members, whatever the
- * memory after the struct contains. */
+/* Checks a program compiled for an older library, whose configuration struct is
+ * shorter: missing members get their defaults, whatever the memory after the
+ * struct contains. */
 TEST(shorter_config_of_older_programs_gets_defaults)
 {
     struct glint_engine *engine = NULL;
@@ -431,9 +433,9 @@ TEST(shorter_config_of_older_programs_gets_defaults)
     glint_engine_destroy(engine);
 }
 
-/* Checks the options struct of an older program, which lacks the last
- * option: nothing is written behind its end, all other options can be set
- * and used, and the missing option is unknown and has its default. */
+/* Checks the options struct of an older program, which lacks the last option:
+ * the library writes nothing behind its end, all other options can be set and
+ * have an effect, and the missing option is unknown and has its default. */
 TEST(shorter_options_of_older_programs_are_respected)
 {
     const size_t bytes = offsetof(struct glint_options, tile);
@@ -460,8 +462,8 @@ TEST(shorter_options_of_older_programs_are_respected)
     free(older);
 }
 
-/* Checks that options set by name draw the same image as the same
- * configuration, and that fixed, unknown or out-of-range options change
+/* Checks that options set by name draw the same image as a configuration with
+ * the same values, and that fixed, unknown or out-of-range options change
  * nothing. */
 TEST(options_by_name_equal_the_configuration)
 {
@@ -503,9 +505,9 @@ static bool is_option_accepted(struct glint_options *o, const char *name,
     return is_set;
 }
 
-/* Checks that stop, dust and colours set by options equal those of a setup
- * made step by step, that front-dust becomes the engine's dirt, and that
- * setting stop by name equals glint_engine_iris(). */
+/* Checks that stop, dust and colours set by options equal those of a setup made
+ * step by step, that the option front-dust sets the engine's dirt, and that
+ * setting the option stop equals glint_engine_iris(). */
 TEST(camera_options_equal_a_setup_by_steps)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -582,8 +584,8 @@ TEST(dust_is_drawn_behind_straight_blades)
     glint_engine_destroy(engine);
 }
 
-/* Checks that a configuration whose STOPS is NULL accepts only stops with
- * straight blades and without dirt. */
+/* Checks that a configuration whose member STOPS is NULL accepts only stops
+ * with straight blades and without dirt. */
 TEST(config_without_stops_accepts_only_clean_blades)
 {
     struct glint_engine_config cfg;
@@ -606,8 +608,8 @@ TEST(config_without_stops_accepts_only_clean_blades)
     }
 }
 
-/* Checks that each numeric option accepts its limits and rejects values
- * beyond them, and counts as given only after it was set. Of strength and
+/* Checks that each numeric option accepts its limits, rejects values beyond
+ * them, and counts as given only after it was set. Of the options strength and
  * exposure, and of quality and error, the one set last is used. */
 TEST(options_accept_their_limits)
 {
@@ -641,9 +643,9 @@ TEST(options_accept_their_limits)
     assert_false(GLINT_OPTION_GIVEN(&o, quality));
 }
 
-/* Checks that every default can be set again, that numbers must be finite,
+/* Checks that every default can be set explicitly, that numbers must be finite,
  * that an empty text restores the default, that flags accept yes and no, and
- * that blanks may precede numbers. */
+ * that spaces may precede numbers. */
 TEST(options_accept_their_defaults)
 {
     struct glint_options o, initial;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the reports of glint explain: counts equal those of the drawn frame,
- * their parts add up to it, each reason occurs where expected, and the image
- * shades the touched tiles.
+ * Tests the reports of glint explain: counts equal those of the drawn frame;
+ * the counts per ghost, light and wavelength add up to the frame's; each
+ * reason for not drawing a ghost occurs where expected; the image shades the
+ * tiles that ghosts touch.
  */
 #include <math.h>
 #include <stdint.h>
@@ -62,8 +63,9 @@ static int count_drawn_ghosts(const struct glint_explain *e)
     return n;
 }
 
-/* Checks the invariants of every frame: E agrees with REPORT, and its parts
- * per ghost, per light and per wavelength each add up to the frame. */
+/* Checks what holds for every frame: explanation E agrees with REPORT, and its
+ * counts per ghost, per light and per wavelength each add up to those of the
+ * frame. */
 static void
 assert_explanation_matches_report(const struct glint_explain *e,
                                   const struct glint_engine_report *report)
@@ -118,8 +120,8 @@ TEST(explains_lights_outside_and_inside_the_model)
     for (int i = 0; i < N_LAMPS; i++)
         assert_int_equal(glint_frame_is_lamp_outside_model(&frame, &lamps[i]),
                          i == 2);
-    /* At 12 degrees ghosts 5 and 7 pass no light. At 8 degrees they do, but
-     * ghost 5 falls off-screen. */
+    /* At 12 degrees ghosts 5 and 7 are closed: they pass no light. At 8 degrees
+     * they pass light, but ghost 5 falls off-screen. */
     assert_int_equal(e.light[0].of[GLINT_OUTCOME_CLOSED], 2 * 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_CLOSED], 3);
     assert_int_equal(e.ghost[5].of[GLINT_OUTCOME_OUTSIDE], 3);
@@ -128,8 +130,8 @@ TEST(explains_lights_outside_and_inside_the_model)
     glint_frame_finish(&frame);
 }
 
-/* Checks that the peak is within the range of codes, and that light is
- * linear in UNIT. */
+/* Checks that the peak light is within the range of codes, and that the
+ * reported light is proportional to UNIT. */
 TEST(light_is_linear_in_the_unit)
 {
     struct glint_engine_report report;
@@ -160,7 +162,8 @@ TEST(light_is_linear_in_the_unit)
 }
 
 /* Checks that each of these outcomes occurs in a frame made for it, and that
- * a frame whose only lamp is outside the model's angles has no bundles. */
+ * a frame whose only lamp is outside the model's range of angles has no
+ * bundles. */
 TEST(every_reason_occurs)
 {
     static const struct {
@@ -238,8 +241,8 @@ TEST(ghosts_are_sorted_by_light)
     glint_frame_finish(&frame);
 }
 
-/* Returns whether most of the tile at (X0, Y0) has the colour of a touched
- * tile in a black image. */
+/* Returns whether most of the tile at (X0, Y0) has the colour that marks a
+ * touched tile on a black image. */
 static int is_tile_shaded(const struct glint_image *marked, int x0, int y0)
 {
     static const uint8_t shade[3] = {6, 12, 34};
@@ -276,8 +279,8 @@ TEST(picture_shades_the_tiles_of_a_ghost)
     for (int y = 0; y < HEIGHT; y += SIDE)
         for (int x = 0; x < WIDTH; x += SIDE)
             n += is_tile_shaded(&marked, x, y);
-    /* A tile that is mostly covered by the label and the outline does not count
-     * as shaded. */
+    /* A tile that is mostly covered by the label and the outline is not
+     * recognised as shaded. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
     assert_ok(explain_draw_marks(&e, &title, &image, &unmarked));

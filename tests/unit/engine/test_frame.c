@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests frames in reserved memory: if it is large enough, the image equals that
- * of a frame that allocates on demand; else parts are dropped and counted. Such
- * a frame never allocates.
+ * of a frame that allocates on demand; otherwise parts are dropped and
+ * counted. A frame in reserved memory never allocates.
  */
 #include <stdint.h>
 
@@ -21,7 +21,8 @@ enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
 static struct opened opened, exact_scene;
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
-static int n_allocations; /* number of allocations since this was set to 0 */
+/* number of allocations since this counter was set to 0 */
+static int n_allocations;
 /* number of the allocation that fails, counted from 1; 0: none */
 static int fail_at;
 
@@ -116,8 +117,8 @@ static int count_brighter_samples(const uint8_t *a, const uint8_t *b)
     return n;
 }
 
-/* Checks that a frame drawn after frames of more and of fewer lamps equals
- * that of a new frame. */
+/* Checks that a frame drawn after frames with more and with fewer lamps equals
+ * a new frame. */
 TEST(regrown_frame_equals_a_new_frame)
 {
     static const int n_of[] = {1, 5, 0, 2, 5, 3};
@@ -135,8 +136,8 @@ TEST(regrown_frame_equals_a_new_frame)
         assert_int_equal(n_allocations, 0);
         make_heliar_frame(&grown);
         draw_lamps_on_grey(&grown, n_of[i], want, &other);
-        /* A frame without reserved memory must allocate, or the count would
-         * prove nothing. */
+        /* a frame without reserved memory must allocate, otherwise the count
+         * proves nothing */
         assert_true(n_of[i] == 0 || n_allocations > 0);
         assert_int_equal(count_different_samples(want, got), 0);
         assert_int_equal(report.stats.dropped_bundles, 0);
@@ -151,8 +152,8 @@ TEST(regrown_frame_equals_a_new_frame)
     glint_frame_finish(&reserved);
 }
 
-/* Checks, at the coarsest grids, that less memory draws less, that
- * everything dropped is counted, and that the image never becomes brighter. */
+/* Checks, at the coarsest grids, that a frame in less memory draws less, that
+ * it counts everything dropped, and that its image is never brighter. */
 TEST(too_little_memory_drops_and_counts)
 {
     static uint8_t full[BYTES], got[BYTES];
@@ -191,8 +192,8 @@ TEST(too_little_memory_drops_and_counts)
     glint_frame_finish(&frame);
 }
 
-/* Checks that limits of work and of memory make a frame coarser or drop
- * objects, and are reported; without limits the next frame equals the first. */
+/* Checks that limits of work and of memory make a frame coarser or drop ghosts,
+ * and that this is reported; without limits the next frame equals the first. */
 TEST(limits_make_frames_coarser_and_are_reported)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -214,7 +215,7 @@ TEST(limits_make_frames_coarser_and_are_reported)
     glint_frame_finish(&frame);
     make_heliar_frame(&frame);
     frame.limits.most_bytes =
-        full.need_bytes * 3 / 4; /* the arena gets 1.25 times the limit */
+        full.need_bytes * 3 / 4; /* the arena has 1.25 times the memory limit */
     draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
@@ -227,7 +228,8 @@ TEST(limits_make_frames_coarser_and_are_reported)
 }
 
 /* Checks that a frame that needs too much memory is drawn completely with
- * coarser grids, reports this, and is the same again in the same memory. */
+ * coarser grids, reports this, and is drawn identically again in the same
+ * memory. */
 TEST(too_little_memory_makes_grids_coarser)
 {
     static uint8_t want[BYTES], got[BYTES], coarse[BYTES];
@@ -258,7 +260,7 @@ TEST(too_little_memory_makes_grids_coarser)
     glint_frame_finish(&frame);
 }
 
-/* Draws a frame in BYTES of memory with N workers. Returns whether grids
+/* Draws a frame in BYTES of memory with N workers. Returns whether its grids
  * were made coarser. */
 static bool makes_grids_coarser(int n, size_t bytes, uint8_t rgb[BYTES],
                                 struct glint_engine_report *report)
@@ -275,9 +277,10 @@ static bool makes_grids_coarser(int n, size_t bytes, uint8_t rgb[BYTES],
     return report->tight;
 }
 
-/* Checks that the memory limit below which grids become coarser does not
- * depend on the number of workers, lies between the memory needed and that
- * of uneven shares per worker, and that grids are no coarser than necessary. */
+/* Checks that the amount of memory below which grids become coarser does not
+ * depend on the number of workers, that it lies between the memory needed and
+ * the memory for uneven shares per worker, and that grids are no coarser than
+ * necessary. */
 TEST(memory_limit_does_not_depend_on_workers)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -295,8 +298,8 @@ TEST(memory_limit_does_not_depend_on_workers)
             high = middle;
     }
     assert_true(high >= full.need_bytes);
-    /* At the limit, uneven shares per worker may drop bundles, which is
-     * counted. */
+    /* at the limit, uneven shares per worker may drop bundles, which are
+     * counted */
     assert_false(makes_grids_coarser(5, high, got, &held));
     assert_true(held.stats.dropped_bundles + held.stats.dropped_cells > 0 ||
                 count_different_samples(got, want) == 0);
@@ -307,7 +310,7 @@ TEST(memory_limit_does_not_depend_on_workers)
 }
 
 /* Checks that the bundles dropped for lack of reserved memory do not depend on
- * the number of workers either. */
+ * the number of workers, either. */
 TEST(dropped_bundles_do_not_depend_on_workers)
 {
     static uint8_t got[2][BYTES];
@@ -330,7 +333,7 @@ TEST(dropped_bundles_do_not_depend_on_workers)
     }
 }
 
-/* Checks that more lamps than max_lights are merged without an allocation. */
+/* Checks that lamps beyond max_lights are merged, without an allocation. */
 TEST(lamps_above_max_lights_are_merged)
 {
     static uint8_t got[BYTES];
@@ -349,8 +352,8 @@ TEST(lamps_above_max_lights_are_merged)
     glint_frame_finish(&frame);
 }
 
-/* Checks that settings changed between frames give the image of a frame
- * created with them. */
+/* Checks that a frame whose settings were changed draws the image of a frame
+ * created with these settings. */
 TEST(changed_settings_equal_a_new_frame)
 {
     static const struct {
@@ -380,7 +383,7 @@ TEST(changed_settings_equal_a_new_frame)
             both[k]->dials.cull_codes = setting[i].codes;
         }
         n_allocations = 0;
-        /* The image of the previous settings. */
+        /* the image with the previous settings */
         memcpy(want, got, BYTES);
         draw_lamps_on_grey(&frame, N_LAMPS, got, &report);
         assert_int_equal(n_allocations, 0);
@@ -393,8 +396,8 @@ TEST(changed_settings_equal_a_new_frame)
     glint_frame_finish(&frame);
 }
 
-/* Checks, for each allocation that may fail, that a flare is drawn
- * completely or an error is returned, never an image without light; by a
+/* Makes each allocation fail in turn. Checks that the flare is then drawn
+ * completely or an error is returned, but never an image without light; by a
  * model and by exact rays. */
 TEST(failed_allocation_draws_completely_or_fails)
 {
@@ -409,7 +412,7 @@ TEST(failed_allocation_draws_completely_or_fails)
 
             make_frame_for_lens(exact ? &exact_scene : &opened, &frame);
             frame.only_ghost = 0;
-            /* causes the three lamps to be merged */
+            /* more lamps than this: the three lamps are merged */
             frame.dials.max_lights = 2;
             n_allocations = 0;
             fail_at = nth;
@@ -421,7 +424,7 @@ TEST(failed_allocation_draws_completely_or_fails)
             assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
             if (status == GLINT_OK)
                 assert_memory_equal(want, nth ? got : want, sizeof want);
-            /* the frame has fewer than NTH allocations */
+            /* the frame makes fewer than NTH allocations */
             if (n_allocations < nth)
                 break;
         }
@@ -465,8 +468,8 @@ TEST(failed_stop_change_keeps_the_old_stop)
     glint_engine_destroy(engine);
 }
 
-/* Checks that numbers of lamps, ghosts and wavelengths whose product
- * overflows an int are rejected before any bundle is written. */
+/* Checks that numbers of lamps, ghosts and wavelengths whose product overflows
+ * an int are rejected before any bundle is written. */
 TEST(rejects_overflowing_numbers_of_bundles)
 {
     enum { N = 66577 };
@@ -481,7 +484,8 @@ TEST(rejects_overflowing_numbers_of_bundles)
         many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
                                       {1, 1, 1},    {0, 0},       0};
     make_frame_for_lens(&exact_scene, &frame);
-    crowd = exact_scene.lens.setup; /* 66577 x 2016 x 32 is 2^32 + 48128 */
+    /* 66577 lamps x 2016 ghosts x 32 wavelengths are 2^32 + 48128 bundles */
+    crowd = exact_scene.lens.setup;
     crowd.n_ghosts = 2016;
     crowd.n_wavelengths = 32;
     frame.setup = &crowd;
@@ -494,9 +498,9 @@ TEST(rejects_overflowing_numbers_of_bundles)
     free(many);
 }
 
-/* Checks that the points of wide lamps may use point_room lights if the
- * lamps fit into max_lights, but only max_lights in reserved memory or with
- * more lamps. */
+/* Checks that the points of wide lamps may use up to point_room lights if the
+ * lamps themselves fit into max_lights, but only max_lights in reserved memory
+ * or with more lamps. */
 TEST(points_of_wide_lamps_use_point_room)
 {
     static const struct {

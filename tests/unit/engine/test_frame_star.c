@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks the starbursts of a frame: estimated power and extent of each lamp,
- * the number of stars drawn, and the limits of memory and time.
+ * Checks the starbursts of a frame: the estimated power and extent of each
+ * lamp, the number of stars drawn, and their use of memory and time.
  */
 #include <stdint.h>
 
@@ -41,8 +41,8 @@ TEST_CLOSE
     opened_lens_close(&opened.lens);
 }
 
-/* Returns the power, in the brightest channel, of the star of a lamp of
- * power POWER at LEVEL (0 .. 1 while it fades). SEEN_PX: RMS radius of the
+/* Returns the power, in the brightest channel, of the star of a lamp of power
+ * POWER at LEVEL (0 .. 1 while the lamp fades). SEEN_PX: RMS radius of the
  * lamp's clipped core in the image, pixels; 0: not clipped. */
 static double star_power_at_level(double power, double seen_px, double level)
 {
@@ -64,8 +64,9 @@ static bool is_relatively_near(double a, double b)
 }
 
 /* Returns half of the power at which the star of a point lamp is white out
- * to the radius of a core of RMS radius SEEN_PX: power W is white out to
- * cbrt(W a) / pi pixels, where a is wavelength times f-number in pixels. */
+ * to the edge of a core of RMS radius SEEN_PX. A star of power W is white
+ * out to cbrt(W a) / pi pixels, where a is the wavelength times the
+ * f-number, pixels. */
 static double half_of_white_radius_power(double seen_px)
 {
     const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
@@ -75,15 +76,15 @@ static double half_of_white_radius_power(double seen_px)
 
 TEST(clipped_lamps_get_more_star_power)
 {
-    /* A lamp that is not clipped keeps its power. */
+    /* the star of a lamp that is not clipped has the lamp's power */
     assert_true(is_relatively_near(star_power_at_level(1000, 0, 1), 1000));
-    /* A clipped lamp gets more power, at most 32 times, and at most so much
-     * that its star is white out to the visible core. */
+    /* The star of a clipped lamp gets more power: at most 32 times, and at most
+     * so much that the star is white out to the edge of the visible core. */
     assert_true(is_relatively_near(star_power_at_level(1000, 50, 1), 32000));
     assert_true(is_relatively_near(star_power_at_level(1000, 2, 1),
                                    half_of_white_radius_power(2)));
     assert_true(is_relatively_near(star_power_at_level(1000, 0.5, 1), 1000));
-    /* The star of a fading lamp fades with it. */
+    /* the star of a fading lamp fades with the lamp */
     assert_true(is_relatively_near(star_power_at_level(500, 2, 0.5),
                                    0.5 * half_of_white_radius_power(2)));
 }
@@ -94,30 +95,31 @@ static double star_radius_px(double power, double seen_px)
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* Returns the max radius, pixels, of a lamp that a rim of SEEN_PX pixels can
- * hide, as computed for still images. */
+/* Returns the max radius, pixels, of a lamp that is hidden behind its own
+ * clipped rim of SEEN_PX pixels, as computed for still images. */
 static double max_hidden_lamp_radius(double seen_px)
 {
     return floor(256 * seen_px / 6) * 2 / 256;
 }
 
-/* Checks that a lamp whose core is no wider than its own star gets the
- * largest radius that its rim can hide, as in a still image, and that a lamp
- * which fills its core is a disc. */
+/* Checks that a lamp whose core is no wider than its own star gets the largest
+ * radius that its clipped rim can hide, as in a still image, and that a lamp
+ * that fills its core is drawn as a disc. */
 TEST(narrow_core_gets_the_radius_its_rim_can_hide)
 {
     assert_true(star_radius_px(100, 0) == 0);
     assert_true(star_radius_px(1e7, 2) == max_hidden_lamp_radius(2));
     assert_true(star_radius_px(1e9, 6) < 0.6 * sqrt(2) * 6);
     assert_true(star_radius_px(10, 6) > 0.8 * sqrt(2) * 6);
-    /* The core of a lamp without glare excludes the part that its own star
-     * makes white. */
+    /* the core of a lamp without glare does not include what its own star makes
+     * white */
     assert_true(star_radius_px(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
 }
 
 /* Checks that a spot widened by the glare of a lamp far above white has the
- * spikes of a small lamp, that one barely above white has those of a disc,
- * and that the transition is continuous. A fading lamp keeps its extent. */
+ * spikes of a small lamp, that a spot barely above white has those of a disc,
+ * and that the transition is continuous. The star of a fading lamp keeps its
+ * extent. */
 TEST(glare_of_a_small_lamp_does_not_widen_spikes)
 {
     const double white = GLINT_PI * 2 * 50 * 50;
@@ -137,8 +139,8 @@ TEST(glare_of_a_small_lamp_does_not_widen_spikes)
     assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
-/* Checks that of too many lamps the brightest are drawn, in falling order,
- * whatever the order of the input. */
+/* Checks that if there are too many lamps, the stars of the brightest are
+ * drawn, in descending order, whatever the order of the input. */
 TEST(brightest_lamps_get_stars)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };
@@ -155,8 +157,8 @@ TEST(brightest_lamps_get_stars)
         101));
 }
 
-/* Checks that a frame allocates nothing after memory was reserved for many
- * lamps. */
+/* Checks that a frame allocates nothing after memory was reserved for the stars
+ * of many lamps. */
 TEST(reserved_memory_prevents_allocations)
 {
     const struct glint_star *star;
@@ -170,14 +172,14 @@ TEST(reserved_memory_prevents_allocations)
     star_power_at_level(1000, 0, 1);
     assert_ptr_equal(star, frame.star.star);
     assert_int_equal(bytes, glint_frame_star_count_bytes(&frame));
-    /* tables, and the lamps twice: as given and as drawn */
+    /* the star tables, and the lamps twice: as given and as drawn */
     assert_true(bytes > 40000 + GLINT_STAR_MAX_LIGHTS * 160);
     assert_true(bytes < (1 << 20) + GLINT_STAR_MAX_LIGHTS * 400);
     assert_ptr_equal(tables, frame.star.tables);
 }
 
-/* Checks that stars take at most a quarter of the budget, whatever their
- * number and brightness. */
+/* Checks that drawing stars takes at most a quarter of the budget, whatever
+ * their number and brightness. */
 TEST(stars_cost_at_most_a_quarter_of_the_budget)
 {
     const struct glint_budget none = frame.budget;
@@ -199,10 +201,10 @@ TEST(stars_cost_at_most_a_quarter_of_the_budget)
 }
 
 /* Checks that camera noise does not make stars flicker: for lamps of three
- * sizes and noise of 2 and 4 codes a star changes by at most 2 % per frame
- * after it has risen, and 7 % in four seconds. Noise of 8 codes hides the rim
- * of the smallest lamp; then the limits are 6 % and 25 %, as a star's power is
- * proportional to the cube of the extent. */
+ * sizes and noise of 2 and 4 codes, a star that has faded in changes by at most
+ * 2 % per frame and 7 % in four seconds. Noise of 8 codes hides the rim of the
+ * smallest lamp; then the limits are 6 % and 25 %, as a star's power is
+ * proportional to the cube of the lamp's extent. */
 TEST(camera_noise_does_not_make_stars_flicker)
 {
     enum { FRAMES = 100, SETTLED = 25 };
@@ -242,7 +244,7 @@ TEST(camera_noise_does_not_make_stars_flicker)
     }
 }
 
-/* Checks that a higher cull_codes covers fewer pixels. */
+/* Checks that a higher cull_codes draws stars on fewer pixels. */
 TEST(higher_cull_codes_cover_fewer_pixels)
 {
     const double cull = frame.dials.cull_codes;

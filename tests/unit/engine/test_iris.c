@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the outline of the stop: corners lie exactly on the circle of the
- * f-number, outlines are convex, rounded blades are arcs between the straight
- * side and the circle, areas equal those by counting, and the integer test that
- * clips ghosts agrees with the one in double precision.
+ * Tests the outline of the stop: corners lie exactly on the circle that the
+ * f-number defines; outlines are convex; rounded blades are arcs between the
+ * straight side and the circle; areas equal those counted from sample points;
+ * the integer test that clips ghosts agrees with a test in double precision.
  */
 #include "engine/setup/iris.h"
 
@@ -39,7 +39,7 @@ static struct glint_setup make_iris_setup(int n, double rotation_deg,
     return s;
 }
 
-/* Returns the radius of the outline at the azimuth PHI, radians, by
+/* Returns the radius of the stop's outline at the azimuth PHI, radians, by
  * bisection. */
 static double find_outline_radius(const struct glint_iris_sides *s, double phi)
 {
@@ -72,9 +72,9 @@ static void check_each_iris(void (*test)(const struct glint_setup *s,
     }
 }
 
-/* Checks that the corners lie on the circle of the f-number, and that the
- * outline's middle between two corners lies on the circle of radius 1 / R
- * through both. */
+/* Checks that the corners lie on the circle that the f-number defines, and that
+ * the outline half-way between two corners lies on the circle of radius 1 / R
+ * through both (R: roundness). */
 static void check_outline_corners(const struct glint_setup *s,
                                   const struct glint_iris_sides *sides)
 {
@@ -127,8 +127,9 @@ TEST(outline_is_convex_and_has_its_area)
     check_each_iris(check_outline_is_convex);
 }
 
-/* Checks that points which the integer test classifies lie on the same side
- * of the outline in double precision, at the same distance near the outline. */
+/* Checks that points classified by the integer test are on the same side of the
+ * outline in double precision, and near the outline at the same distance from
+ * it. */
 static void check_integer_stop_test(const struct glint_setup *s,
                                     const struct glint_iris_sides *sides)
 {
@@ -179,8 +180,8 @@ TEST(rounder_stop_passes_more_light)
     }
 }
 
-/* Checks that a setup rejects values out of range and recomputes the light
- * of the stop. */
+/* Checks that a setup rejects values out of range, and recomputes the fraction
+ * of light that the stop passes. */
 TEST(setup_rejects_values_out_of_range)
 {
     struct glint_setup s = make_iris_setup(6, 0, 0);

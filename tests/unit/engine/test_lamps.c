@@ -15,8 +15,8 @@
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
 
-/* Checks the lamp found in a white square of 10 x 10 pixels on black: centre
- * (225, 45), flux 100; a clipped pixel counts as 2^3 times white. */
+/* Checks the lamp that is found in a white square of 10 x 10 pixels on black:
+ * centre (225, 45), flux 100. A clipped pixel counts as 2^3 times white. */
 TEST(finds_a_white_square)
 {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
@@ -39,8 +39,7 @@ TEST(finds_a_white_square)
     assert_near(x, 225, 0.02);
     assert_near(y, 45, 0.02);
     assert_near(lamp[0].power, 800, 1);
-    /* 65 pixels right of and 55 above the image centre, at 320 pixels per 36
-     * mm */
+    /* 65 pixels right of and 55 above the image centre; 320 pixels are 36 mm */
     assert_near(lamp[0].phi_deg, 40.236, 0.01);
     assert_near(lamp[0].theta_deg, 10.845, 0.01);
 }
@@ -55,8 +54,8 @@ static void draw_white_square(struct glint_image *image, int x0, int y0,
 }
 
 /* Checks tracking in a video: a stationary lamp equals that of a still image
- * bit by bit, a new lamp fades in, and after a restart a lamp has full power
- * at once. */
+ * bit by bit, a new lamp fades in, and after a restart all lamps have full
+ * power at once. */
 TEST(tracked_stationary_lamp_equals_a_still)
 {
     static uint8_t grey[W * H];
@@ -84,7 +83,7 @@ TEST(tracked_stationary_lamp_equals_a_still)
         glint_lamp_detector_find_lamps(&finder, &image, 40000, &view, 50, lamp),
         2);
     assert_int_equal(finder.n_tracks, 2);
-    /* after 40 ms of the fade, which lasts 200 ms */
+    /* after 40 ms of the fade-in, which takes 200 ms */
     assert_near(lamp[1].power, still[0].power / 5, 10);
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
@@ -95,9 +94,9 @@ TEST(tracked_stationary_lamp_equals_a_still)
     glint_lamp_detector_close(&finder);
 }
 
-/* Checks a lamp in glare whose clipped core has a rim as wide as its radius:
- * in a video it may be a point, in a still image its axes are at least a
- * sixth of its size. */
+/* Checks a lamp in glare whose clipped core has a rim as wide as the core's
+ * radius: in a video the lamp may be a point, in a still image its axes are at
+ * least a sixth of its size. */
 TEST(lamp_in_glare_may_become_a_point)
 {
     static uint8_t grey[W * H];
@@ -131,8 +130,8 @@ TEST(lamp_in_glare_may_become_a_point)
     glint_lamp_detector_close(&finder);
 }
 
-/* Checks that the four largest of twelve lamps are returned, with and
- * without tracking. */
+/* Checks that of twelve lamps the four with the most light are returned, with
+ * and without tracking. */
 TEST(largest_lamps_are_returned)
 {
     static uint8_t grey[W * H];
@@ -171,7 +170,7 @@ static void read_lamp_list_text(struct lamp_list *list, const char *text)
 }
 
 /* Checks that a lamp is preferred to a larger flat window with the same clipped
- * codes, as its halo shows that it has more light. */
+ * codes: its halo shows that the lamp has more light. */
 TEST(lamp_is_preferred_to_a_flat_window)
 {
     static uint8_t grey[W * H];
@@ -199,8 +198,8 @@ TEST(lamp_is_preferred_to_a_flat_window)
     glint_lamp_detector_close(&finder);
 }
 
-/* Checks that CSV and JSON lines give the same lamps; a row belongs to one
- * frame, or to all frames. */
+/* Checks that lists in CSV and in JSON lines give the same lamps; a row belongs
+ * to one frame, or to all frames. */
 TEST(csv_and_json_lists_give_the_same_lamps)
 {
     static const char *const texts[2] = {
@@ -233,9 +232,9 @@ TEST(csv_and_json_lists_give_the_same_lamps)
     }
 }
 
-/* Checks that text which is not a list of lamps is rejected with the number
- * of the wrong line. In the third text power times colour is too large for
- * an image. */
+/* Checks that text that is not a list of lamps is rejected with the number of
+ * the wrong line. In the third text power times colour is too large for an
+ * image. */
 TEST(rejects_texts_that_are_not_lamp_lists)
 {
     static const char *const text_and_error[][2] = {

@@ -60,7 +60,7 @@ TEST(measures_differences_below_a_code)
     b[0] = 0.6f;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(!m.same_codes && m.psnr_db < 100);
-    fill_both_images(1.5f); /* differences above white do not count */
+    fill_both_images(1.5f); /* differences above white are ignored */
     b[0] = 2;
     assert_true(glint_measure_at(&image_a, &image_b, false, 1, &m));
     assert_true(m.same_codes && m.psnr_db == 999);
@@ -70,7 +70,7 @@ TEST(measures_differences_below_a_code)
 TEST(exposure_is_a_percentile)
 {
     fill_both_images(0.25f);
-    for (int i = 0; i < 3 * 4; i++) /* 4 of 4096 pixels */
+    for (int i = 0; i < 3 * 4; i++) /* 4 of 4096 pixels are less than 0.1 % */
         a[i] = 1000;
     assert_true(fabs(glint_measure_exposure(&image_a) - 4) < 1e-6);
     fill_both_images(0);

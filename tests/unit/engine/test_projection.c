@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the polynomials of lens projections with traced chief rays, and
- * checks their inverses.
+ * Compares the polynomials that describe the projection of a lens with traced
+ * chief rays, and checks their inverses.
  */
 #include <math.h>
 #include <string.h>
@@ -37,8 +37,8 @@ TEST(view_without_projection_is_a_pinhole)
     }
 }
 
-/* Checks that angles convert to image positions and back, inside and outside
- * the traced range. */
+/* Checks that converting an angle to an image position and back gives the
+ * angle, inside and outside the traced range. */
 TEST(angles_convert_to_positions_and_back)
 {
     static const char *const names[] = {"heliar-tronnier", "phone/phone-six",
@@ -86,7 +86,7 @@ TEST(pixel_directions_are_imaged_to_the_pixel)
     }
 }
 
-/* Checks the error of the polynomials, and the known type of each
+/* Checks the error of the polynomials, and that each lens has its known type of
  * projection. */
 TEST(projections_have_their_known_types)
 {
@@ -94,7 +94,8 @@ TEST(projections_have_their_known_types)
     struct glint_projection p;
     double miss_deg;
 
-    /* Equidistant within 0.1, as is usual for fisheyes of 220 degrees. */
+    /* equidistant within 0.1, the usual projection of fisheyes of 220
+     * degrees */
     p = compute_projection(&lens, "wide/fisheye-nikkor-6", &miss_deg);
     assert_true(miss_deg < 0.1);
     for (int deg = 10; deg <= 80; deg += 10)
@@ -108,7 +109,7 @@ TEST(projections_have_their_known_types)
     assert_true(glint_projection_rho(&p, 20) != tan(20 * GLINT_PI / 180));
 }
 
-/* Checks chief rays between the whole degrees to which the polynomials were
+/* Checks the polynomials at angles between the whole degrees to which they were
  * fitted. */
 TEST(chief_rays_between_degrees_fit)
 {

@@ -3,8 +3,8 @@
  * Tests frames that reuse the previous frame's binned edges: each equals, bit
  * by bit, the image drawn without reuse, whatever changed before it and for any
  * number of workers; and an unchanged frame is reused. Lights that move less
- * than a tolerance are drawn with their old rays and present light, never
- * further off than the tolerance.
+ * than a tolerance are drawn with their old rays but their present power, and
+ * are never displaced by more than the tolerance.
  */
 #include <math.h>
 #include <stdint.h>
@@ -59,8 +59,8 @@ static void draw_lamps_with_frame(struct glint_frame *frame, int n,
     assert_ok(glint_frame_draw(frame, lamps, n, scale, &image, report));
 }
 
-/* Draws N lamps with and without reuse and compares. Returns whether the
- * frame was reused. */
+/* Draws N lamps with and without reuse and checks that both images are equal.
+ * Returns whether the edges of the previous frame were reused. */
 static bool draw_with_and_without_reuse(int n)
 {
     draw_lamps_with_frame(&reusing, n, 1, got, &of_reusing);
@@ -82,8 +82,9 @@ static void set_stop_of_frames(double opening)
 
 /* -------------------------------------------------------------------- same */
 
-/* Changes a setting of both frames or the lamps, depending on TIME, and returns
- * true; or changes nothing and returns false: then the frame must be reused. */
+/* Depending on TIME, changes the lamps or a setting of both frames and returns
+ * true; or changes nothing and returns false: then the next frame must reuse
+ * the edges. */
 static bool change_frames_or_lamps(int time, int *n)
 {
     switch (time % 12) {
@@ -124,8 +125,7 @@ static void check_reuse_in_video(void)
 
         n_reused += reused;
         assert_int_equal(reused, !turned);
-        /* the ray prepass and planning happen only in frames that are not
-         * reused */
+        /* the ray prepass and planning are skipped in frames that are reused */
         assert_true(reused == (of_reusing.looked == 0));
         assert_int_equal(of_reusing.stats.primitives,
                          of_fresh.stats.primitives);
@@ -150,7 +150,8 @@ TEST(reused_rays_give_the_same_image)
 
 static struct glint_tint tints[GLINT_MAX_GHOSTS];
 
-/* Changes input K of a frame's plan. Returns false if there is no input K. */
+/* Changes input number K of a frame's plan. Returns false if there is no such
+ * input. */
 static bool change_plan_input(int k)
 {
     struct glint_lamp *const l = lamps;
@@ -224,8 +225,8 @@ TEST(any_change_prevents_reuse)
     close_both_frames();
 }
 
-/* Checks that a frame restricted to some of its bundles does not restrict
- * the next frame. */
+/* Checks that a frame restricted to some of its bundles does not restrict the
+ * frame after it. */
 TEST(restricted_frame_does_not_restrict_the_next)
 {
     open_both_frames(0);
@@ -237,9 +238,8 @@ TEST(restricted_frame_does_not_restrict_the_next)
     close_both_frames();
 }
 
-/* Checks that in reserved memory a frame with more lights than can be
- * remembered is drawn again, and that a linear image after one in codes is
- * not reused. */
+/* Checks two cases without reuse: a frame in reserved memory with more lights
+ * than can be remembered, and a linear image after one in codes. */
 TEST(frame_with_too_many_lights_is_drawn_again)
 {
     static int32_t linear[2][3 * W * H];
@@ -280,9 +280,9 @@ static double sum_image_codes(const uint8_t *codes)
     return sum;
 }
 
-/* Compares frames of stationary lamps: one with the existing edges, one with
- * edges rebuilt for the same lights and factors. Returns whether the first was
- * reused. */
+/* Compares two images of the same stationary lamps: one from existing edges,
+ * one from edges rebuilt for the same lights and factors. Returns whether the
+ * first frame was reused. */
 static bool draw_stationary_lamps(int n, double scale)
 {
     draw_lamps_with_frame(&reusing, n, scale, got, &of_reusing);
@@ -293,8 +293,8 @@ static bool draw_stationary_lamps(int n, double scale)
     return of_reusing.stats.reused;
 }
 
-/* Checks that noise in position, power, colour and order of lamps traces no
- * ray, and that changed power and colour are applied. */
+/* Checks that noise in the position, power, colour and order of lamps causes no
+ * ray to be traced, and that changed powers and colours are applied. */
 TEST(noise_of_lamps_traces_no_rays)
 {
     const double degree = 0.02; /* 0.02 degrees are 0.1 pixel */
@@ -333,8 +333,8 @@ TEST(noise_of_lamps_traces_no_rays)
     close_both_frames();
 }
 
-/* Returns the distance of LAMP to the nearest light whose rays are reused,
- * pixels. */
+/* Returns the distance, pixels, from LAMP to the nearest light whose rays are
+ * reused. */
 static double distance_to_reused_light_px(const struct glint_lamp *lamp)
 {
     const double degree = GLINT_PI / 180;
@@ -356,9 +356,9 @@ static double distance_to_reused_light_px(const struct glint_lamp *lamp)
     return least;
 }
 
-/* Checks that a slowly moving lamp is traced again before it is further off
- * than the tolerance, that a new lamp is traced, and that the end of a lamp
- * traces nothing. */
+/* Checks that a slowly moving lamp is traced again before it is displaced by
+ * more than the tolerance, that a new lamp is traced, and that no ray is traced
+ * when a lamp disappears. */
 TEST(moving_lamp_is_traced_before_the_tolerance)
 {
     int n_reused = 0;
@@ -376,15 +376,15 @@ TEST(moving_lamp_is_traced_before_the_tolerance)
     assert_false(draw_stationary_lamps(LIGHTS, 1));
     assert_true(draw_stationary_lamps(LIGHTS - 2, 1));
     assert_true(draw_stationary_lamps(LIGHTS, 1));
-    /* limit below the number of reused lights */
+    /* limit on lights, below the number of reused lights */
     reusing.dials.max_lights = fresh.dials.max_lights = 2;
     assert_false(draw_stationary_lamps(2, 1));
     assert_int_equal(reusing.lights.n, 2);
     close_both_frames();
 }
 
-/* Checks that with reserved memory lights are reused only if there is memory
- * for them. */
+/* Checks that in reserved memory the rays of lights are reused only if there is
+ * memory for them. */
 TEST(reserved_memory_limits_reuse)
 {
     for (int i = 0; i < 2; i++) {
@@ -415,8 +415,8 @@ static struct glint_light make_light_of_lamp(double theta_deg, double power,
     return b;
 }
 
-/* Checks reuse factors that were computed by hand. Distances are chords: 1
- * degree is 0.01745. */
+/* Checks brightness factors of reused lights against factors computed by hand.
+ * Distances are chords: 1 degree is 0.01745. */
 TEST(reuse_factors_match_hand_computation)
 {
     static const double red[3] = {1, 0.5, 0}, other[3] = {1, 0.25, 0.01},
@@ -431,7 +431,8 @@ TEST(reuse_factors_match_hand_computation)
     light[1] = make_light_of_lamp(8, 3, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_int_equal(gain_q14[1][0], 1 << 14);
-    /* The second light is switched off, the first is split into two halves. */
+    /* The second light was switched off, the first is now two lights of half
+     * the power. */
     light[0] = make_light_of_lamp(5.09, 600, dark);
     light[1] = make_light_of_lamp(4.91, 600, dark);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
@@ -445,8 +446,8 @@ TEST(reuse_factors_match_hand_computation)
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 2);
     assert_in_range(gain_q14[0][0], 22937, 22938);
     assert_in_range(gain_q14[0][1], 11468, 11469);
-    /* traced again: a light with added blue, one too bright, one too far
-     * away */
+    /* These are traced again: a light with added blue, a light that is too
+     * bright, and one too far away. */
     light[0] = make_light_of_lamp(5, 1000, blue);
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     light[0] = make_light_of_lamp(5, 1530, blue);
@@ -459,7 +460,7 @@ TEST(reuse_factors_match_hand_computation)
     light[0].apart_q30 = 2 * near_q30;
     assert_int_equal(glint_lights_still(&s, light, 1, near_q30), 1);
     assert_int_equal(at[0].apart_q30, 2 * near_q30);
-    /* the nearer of two lights within the tolerance */
+    /* of two lights within the tolerance, the nearer is reused */
     light[0] = make_light_of_lamp(5, 10, red);
     light[1] = make_light_of_lamp(5.05, 10, red);
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
@@ -468,7 +469,7 @@ TEST(reuse_factors_match_hand_computation)
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_in_range(gain_q14[0][0], 8191, 8193);
     assert_in_range(gain_q14[1][0], 13106, 13108);
-    /* more lights than the limit; then no light */
+    /* more lights than the limit; afterwards no light */
     light[2] = make_light_of_lamp(1, 1, red);
     assert_int_equal(glint_lights_still(&s, light, 3, near_q30), 0);
     assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);

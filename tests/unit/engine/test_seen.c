@@ -21,8 +21,8 @@ static void fill_background(int code)
     memset(&ground, code, sizeof ground);
 }
 
-/* Sets the flare to the light OF (1 = white) in the green channel of its first
- * ROWS rows, to 0 elsewhere. */
+/* Sets the green flare to the light OF (1 = white) in its first ROWS rows, and
+ * to 0 elsewhere. */
 static void set_flare_rows(int rows, double of)
 {
     memset(light, 0, sizeof light);
@@ -39,8 +39,8 @@ static struct glint_seen measure_flare_visibility(void)
     return seen;
 }
 
-/* Checks that a light that adds 32 codes on black has visibility 1 there,
- * 1/9 on code 120, and 0 on code 240. */
+/* Checks that light that adds 32 codes on black has visibility 1 there, 1/9 on
+ * code 120, and 0 on code 240. */
 TEST(bright_background_lowers_visibility)
 {
     struct glint_seen dark, lit;
@@ -71,12 +71,12 @@ TEST(visibility_ignores_single_pixels)
     assert_true(measure_flare_visibility().few ==
                 measure_flare_visibility().many);
     assert_true(fabs(log2(measure_flare_visibility().many) - 2) <= 0.126);
-    light[0][0][0] = 1; /* A single bright pixel does not count. */
+    light[0][0][0] = 1; /* a single bright pixel is ignored */
     assert_true(fabs(log2(measure_flare_visibility().few) - 2) <= 0.126);
 }
 
-/* Checks the light that makes code 200 white: it counts as 1 in a small
- * ghost with all channels, and as 0 on dark ground and on code 250, where
+/* Checks light that makes code 200 white. It counts as 1 in a small ghost that
+ * lights all channels. It counts as 0 on dark ground, and on code 250, where
  * the ghost has no visible edge. */
 TEST(only_all_channels_make_white)
 {
@@ -85,7 +85,7 @@ TEST(only_all_channels_make_white)
     fill_background(200);
     set_flare_rows(1, 1);
     assert_true(measure_flare_visibility().white ==
-                0); /* Green alone is not white. */
+                0); /* green light alone does not make a pixel white */
     for (int x = 0; x < WIDTH; x++)
         for (int c = 0; c < 3; c++)
             light[0][x][c] = x < 4 ? room : 0;
@@ -96,8 +96,8 @@ TEST(only_all_channels_make_white)
     assert_true(measure_flare_visibility().white == 0);
 }
 
-/* Checks that an image whose left half is white gives a background (struct
- * ground) whose left half is white. */
+/* Checks that the background (struct ground) sampled from an image whose left
+ * half is white has a white left half. */
 TEST(background_is_sampled_from_the_image)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 50);
@@ -111,8 +111,8 @@ TEST(background_is_sampled_from_the_image)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the peak that the exposure of strength ASKED gives to a flare with
- * peak PEAK, mean MEAN and visibility SEEN. */
+/* Returns the peak of a flare after the exposure of strength ASKED. Before it,
+ * the flare has peak PEAK, mean MEAN and visibility SEEN. */
 static double exposed_flare_peak(double asked, double peak, double mean,
                                  struct glint_seen seen)
 {
@@ -132,15 +132,15 @@ TEST(hidden_flares_are_exposed_brighter)
     const struct glint_seen plain = {1, 0, 0}, hidden = {0, 0, 0},
                             half = {0.0625, 0, 0};
 
-    /* A visible flare has a peak of a quarter of white. */
+    /* a flare that is fully visible gets a peak of a quarter of white */
     assert_true(fabs(exposed_flare_peak(0.5, peak, mean, plain) - 0.25) <
                 0.001);
-    /* An invisible flare is brightened until it is visible, at most to 0.6
-     * of white. */
+    /* An invisible flare is brightened until it is visible, but its peak at
+     * most to 0.6 of white. */
     assert_true(fabs(exposed_flare_peak(0.5, peak, mean, half) - 0.5) < 0.001);
     assert_true(fabs(exposed_flare_peak(0.5, peak, mean, hidden) - 0.6) <
                 0.001);
-    /* Halving the strength still darkens the flare by two stops. */
+    /* Half the strength darkens the flare by two stops, here too. */
     assert_true(fabs(exposed_flare_peak(0.25, peak, mean, half) - 0.125) <
                 0.001);
     assert_true(fabs(exposed_flare_peak(0.25, peak, mean, plain) - 0.0625) <
@@ -161,8 +161,8 @@ TEST(veils_and_skies_are_exposed_darker)
                 0.001);
     assert_true(fabs(exposed_flare_peak(0.5, peak, mean, thick) - 0.1) < 0.001);
     assert_true(exposed_flare_peak(0.5, peak, mean, thin) > 0.24);
-    /* Ghosts on a sky that becomes white by light of 0.4 get a peak of two
-     * fifths of 0.4, and at least 0.1. */
+    /* On a sky that becomes white when light of 0.4 is added, the peak of
+     * ghosts is two fifths of 0.4, and at least 0.1. */
     assert_true(fabs(exposed_flare_peak(0.5, peak, peak / 300, sky) - 0.16) <
                 0.001);
     assert_true(fabs(exposed_flare_peak(0.5, peak, peak / 300, haze) - 0.1) <

@@ -18,15 +18,15 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 enum { PIXELS = 1000000, FRAME_US = 40000 };
 
-/* Power of a lamp, white x pixels, whose flare has a peak of a quarter of
- * white by default with the responses below. */
+/* Power of a lamp, white x pixels, whose flare gets a peak of a quarter of
+ * white by default, with the responses made below. */
 static const double common = PIXELS / 8.0;
 
-/* Factors on the ghosts of each lamp, set by the last exposure. */
+/* Factors on the ghosts of each lamp, as the last exposure limited them. */
 static double part[16];
 
-/* Returns the response of a lens whose flare falls by SLOPE stops from the
- * axis to 20 degrees and whose mean is MEAN stops below its peak. */
+/* Returns the response of a lens whose flare peak falls by SLOPE stops from the
+ * axis to 20 degrees, and whose flare mean is MEAN stops below the peak. */
 static struct glint_response make_lens_response(double slope, double mean)
 {
     struct glint_response r = {.n = 3, .theta_deg = {0, 10, 20}};
@@ -47,9 +47,9 @@ static struct glint_engine_lamp make_lamp_at_angle(double theta_deg,
     return glint_engine_lamp_of(&lamp, 1);
 }
 
-/* Returns the peak that the exposure gives to the flare of N lamps, lamp i
- * at level[i] (0 .. 1 while fading), US microseconds after the previous
- * frame. */
+/* Returns the peak that the exposure gives to the flare of N lamps, US
+ * microseconds after the previous frame. level[i], 0 .. 1, is the fading state
+ * of lamp i. */
 static double exposed_flare_peak(struct glint_strength *s,
                                  const struct glint_response *r,
                                  struct glint_engine_lamp *lamps,
@@ -106,8 +106,8 @@ TEST(rises_with_strength)
     }
 }
 
-/* Checks that the flare of a lamp of any power is within a stop of a quarter
- * of white, and grows with the power. */
+/* Checks that the peak of the flare of a lamp of any power is within a stop of
+ * a quarter of white, and increases with the power. */
 TEST(any_lamp_power_gives_a_visible_flare)
 {
     const struct glint_response r = make_lens_response(8, 7);
@@ -193,9 +193,9 @@ TEST(lamps_without_light_give_a_finite_exposure)
     assert_true(strength.scale == 0);
 }
 
-/* Returns the corrected peak of a still image whose flare is drawn STOPS
- * brighter than the response predicts, with a mean MEAN_STOPS below the
- * peak. */
+/* Returns the peak of the flare of a still image after the correction. Before
+ * it, the flare is STOPS brighter than the response predicts, with a mean
+ * MEAN_STOPS below the peak. */
 static double corrected_flare_peak(double asked, double stops,
                                    double mean_stops)
 {
@@ -225,15 +225,15 @@ TEST(exposure_is_corrected_to_the_drawn_flare)
         const double peak = corrected_flare_peak(0.5, stops, 7);
 
         assert_true(peak > 0.124 && peak < 0.501);
-        /* The mean of a veil is at its limit. */
+        /* the mean of a veil is limited */
         assert_true(fabs(corrected_flare_peak(0.5, stops, 0.5) -
                          0.015 * exp2(0.5)) < 1e-6);
     }
     assert_true(corrected_flare_peak(0, 3, 7) == 0);
 }
 
-/* Checks that a physical exposure, and a flare without light, are not
- * corrected. */
+/* Checks that a physical exposure is not corrected, nor a flare without
+ * light. */
 TEST(physical_exposure_is_not_corrected)
 {
     const struct glint_response_light bright = {{9, 9, 9}, {1, 1, 1}};
@@ -253,9 +253,9 @@ TEST(physical_exposure_is_not_corrected)
 
 /* ------------------------------------------------------------------- videos */
 
-/* Checks, while a lamp crosses the image in 200 frames, that its flare
- * changes per frame by at most its response's change and the max step of the
- * factor. */
+/* Checks, while a lamp crosses the image in 200 frames, that its flare changes
+ * per frame by at most the change of the lens's response plus the max step of
+ * the exposure factor. */
 TEST(crossing_lamp_changes_gradually)
 {
     const struct glint_response r = make_lens_response(7, 7);
@@ -274,8 +274,8 @@ TEST(crossing_lamp_changes_gradually)
     }
 }
 
-/* Checks that a sun which appears among lamps lowers the common factor
- * gradually, and that its light is limited until then. */
+/* Checks that a sun that appears among lamps gradually lowers the exposure
+ * factor of all lamps, and that the sun's light is limited until then. */
 TEST(rising_sun_lowers_the_factor_gradually)
 {
     const struct glint_response r = make_lens_response(0, 7);
@@ -300,8 +300,8 @@ TEST(rising_sun_lowers_the_factor_gradually)
     }
 }
 
-/* Checks that the factor rises again after the sun leaves, more slowly than
- * it fell. */
+/* Checks that the exposure factor rises again after the sun has left, more
+ * slowly than it fell. */
 TEST(leaving_sun_raises_the_factor_slowly)
 {
     const struct glint_response r = make_lens_response(0, 7);
@@ -325,8 +325,8 @@ TEST(leaving_sun_raises_the_factor_slowly)
     assert_true(scale > 300 * first);
 }
 
-/* Checks that the flare of a single lamp follows its level: no gain
- * compensates it. */
+/* Checks that the flare of a single lamp fades with the lamp: the exposure does
+ * not compensate for the fading. */
 TEST(single_lamp_follows_its_level)
 {
     const struct glint_response r = make_lens_response(0, 7);
@@ -344,7 +344,7 @@ TEST(single_lamp_follows_its_level)
     }
 }
 
-/* Checks that the exposure adapts at once after a cut and after frames
+/* Checks that the exposure adapts without delay after a cut and after frames
  * without a lamp. */
 TEST(exposure_adapts_at_once_after_a_cut)
 {
@@ -364,8 +364,8 @@ TEST(exposure_adapts_at_once_after_a_cut)
                 0.1);
 }
 
-/* Checks that a strength set by key frames applies in its own frame, also
- * after frames of strength 0, during which the exposure keeps adapting. */
+/* Checks that a strength set in a key frame applies in this frame, also after
+ * frames of strength 0, during which the exposure continues to adapt. */
 TEST(strength_of_key_frames_applies_at_once)
 {
     static const double asked[] = {0.5, 1, 0.05, 0, 0, 2, 0.5};
@@ -399,8 +399,8 @@ TEST(strength_of_key_frames_applies_at_once)
 
 /* ------------------------------------------------------------------- lenses */
 
-/* Draws one lamp at several angles and powers with the automatic exposure,
- * and checks its flare's peak: the response of LENS must predict it. */
+/* Draws one lamp at several angles and powers with automatic exposure, and
+ * checks that the response of LENS predicts the peak of the flare. */
 static void check_automatic_exposure_of_lens(const char *lens,
                                              double corner_deg)
 {
@@ -420,14 +420,14 @@ static void check_automatic_exposure_of_lens(const char *lens,
         struct glint_response_light drawn;
         struct glint_strength s;
 
-        /* azimuths for which the lamp is inside the image */
+        /* at these azimuths the lamp is inside the image */
         lamp.lamp.phi_deg = 29 + 180 * (i % 2);
         glint_strength_set_defaults(&s);
         glint_strength_expose_frame(&s, &r, &all, 0);
         assert_ok(glint_response_draw_and_measure(
             &frame, &lamp.lamp, 1, GLINT_RESPONSE_FINE, NULL, &drawn, NULL));
-        /* FINE measures the brightest 1e-4 of the pixels, the response 1e-3;
-         * hence the wide bounds. */
+        /* The bounds are wide because FINE measures the brightest 1e-4 of the
+         * pixels, the response the brightest 1e-3. */
         assert_true(s.scale * glint_largest_channel(drawn.peak) > 1 / 16.0 ||
                     s.scale * glint_largest_channel(drawn.mean) > 0.01);
         assert_true(s.scale * glint_largest_channel(drawn.peak) < 2);
@@ -445,8 +445,8 @@ TEST(automatic_exposure_suits_real_lenses)
     check_automatic_exposure_of_lens("lenses/nikon-zoom-mid.lens", 12.5);
 }
 
-/* Checks that the response is the same within the memory limits of glint
- * live. */
+/* Checks that the response measured within the memory limits of glint live
+ * equals the response without limits. */
 TEST(response_is_the_same_in_little_memory)
 {
     struct opened opened = {.lens = {.tints = NULL}};
@@ -490,7 +490,7 @@ TEST(response_peak_skips_the_brightest_pixels)
         rgb[3 * i + 1] = i == 7 ? 8 : 0;
         rgb[3 * i + 2] = 2;
     }
-    /* The peak is the mean of the brightest four of 4000 pixels. */
+    /* the peak is the mean of the brightest 1e-3, here four of 4000 pixels */
     glint_response_around(rgb, 4000, &light);
     assert_true(light.peak[0] == 3997.5 && light.mean[0] == 1999.5);
     assert_true(light.peak[1] == 2 && light.mean[1] == 0.002);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the frame statistics of ray bundles: each outcome has its own cause,
- * counts equal those of the drawn frame, and images of parts add up to the
+ * Tests the frame statistics of ray bundles: each outcome of a bundle (drawn,
+ * closed, faint, ...) has its own cause, counts equal those of the drawn
+ * frame, and images of single ghosts, lights and wavelengths add up to the
  * whole image.
  */
 #include <math.h>
@@ -36,8 +37,8 @@ struct fixture {
     struct glint_flare *flare;
 };
 
-/* Opens a model with WAVES wavelengths and N_LIGHTS beams at a sine of 1/8, in
- * different directions. */
+/* Opens a model with WAVES wavelengths and N_LIGHTS lights, each at an angle
+ * whose sine is 1/8, in different directions. */
 static void open_model_with_beams(struct fixture *f, int n_lights)
 {
     *f = (struct fixture){.m = model_make_auto(), .n_lights = n_lights};
@@ -94,7 +95,8 @@ struct sums {
     double flux;
 };
 
-/* Checks the statistics of each bundle and returns their sums. */
+/* Checks the statistics of each bundle and returns their sums over all
+ * bundles. */
 static struct sums sum_bundle_statistics(struct fixture *f)
 {
     struct sums sums = {.n = 0};
@@ -155,8 +157,8 @@ static void assert_bundle_outcome(struct fixture *f, enum glint_outcome outcome,
 
 /* ------------------------------------------------------------------- tests */
 
-/* Ghost 1 of the model is never visible; ghost 2 is not visible at sines below
- * 1/8. */
+/* Ghost 1 of the model is closed at all angles; ghost 2 is closed at sines
+ * below 1/8. */
 TEST(counts_drawn_and_closed_bundles)
 {
     struct fixture f;
@@ -198,7 +200,8 @@ TEST(counts_bundles_without_light)
     struct fixture f;
 
     open_model_with_beams(&f, 2);
-    f.light[1].rgb_q14[0] = 0; /* Without red, wavelength 0 has no light. */
+    /* without red light, wavelength 0 has no light */
+    f.light[1].rgb_q14[0] = 0;
     assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
     assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);
@@ -217,8 +220,8 @@ TEST(counts_bundles_blocked_by_barrels)
     free_model_and_flare(&f);
 }
 
-/* Checks ghost 0 while it is moved to the right of the image, which is 2.5
- * mm wide: far off it is OUTSIDE, closer it is EMPTY, then DRAWN. */
+/* Moves ghost 0 to the right of the image, which is 2.5 mm wide, and checks the
+ * outcome: OUTSIDE when far off, EMPTY closer to the image, then DRAWN. */
 TEST(counts_bundles_outside_the_image)
 {
     struct fixture f;
@@ -235,9 +238,9 @@ TEST(counts_bundles_outside_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks that bundles fainter than FAINTEST are counted as faint: those of a
- * single light, which are counted separately, and those of several lights,
- * which are counted together. */
+/* Checks that bundles fainter than FAINTEST are counted as faint, in two
+ * separate counts: one for faint ghosts of a single light, one for ghosts that
+ * are faint even when summed over several lights. */
 TEST(counts_faint_bundles)
 {
     struct fixture f;
@@ -289,8 +292,8 @@ static void draw_flare_image(struct fixture *f, int32_t *px_q20)
 }
 
 /* Checks that images of single ghosts, of single lights and of single
- * wavelengths each add up to the whole image, within their rounding to
- * 2^-20. Ghost 1, which is closed, is dark. */
+ * wavelengths each add up to the whole image, within their rounding to 2^-20.
+ * The image of ghost 1, which is closed, is black. */
 TEST(images_of_parts_add_up)
 {
     static int32_t whole[3 * N], part[3 * N];
@@ -340,9 +343,9 @@ TEST(statistics_do_not_change_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks the number of terms of ghost 0: sensor x 2, and v^2 s except in the
- * middle of the range of angles; sensor y 2, stop x 1 and stop y 2, energy 1
- * for a given wavelength, barrel 2. */
+/* Checks the number of polynomial terms of ghost 0: sensor x has 2, plus v^2 s
+ * except in the middle of the range of angles; sensor y 2; stop x 1; stop y 2;
+ * energy 1 for a given wavelength; barrel 2. */
 TEST(counts_polynomial_terms)
 {
     struct glint_account a;
@@ -361,15 +364,16 @@ TEST(counts_polynomial_terms)
     free_model_and_flare(&f);
 }
 
-/* Checks the count of rows against one that tests for each row whether any
- * part of it lies between the ends of an edge. */
+/* Checks the number of rows that edges cross against a count that tests each
+ * row for overlap with each edge. */
 TEST(counts_rows_of_edges)
 {
     struct fixture f;
     int64_t want = 0, got = 0;
 
     open_model_with_beams(&f, 2);
-    f.rays.pixels_per_mm = real_of(200, 0); /* a ghost larger than the image */
+    /* at this scale the ghost is larger than the image */
+    f.rays.pixels_per_mm = real_of(200, 0);
     plan_and_bin_edges(&f);
     for (int i = 0; i < f.stats.primitives; i++)
         for (int y = 0; y < HEIGHT; y++)
@@ -389,7 +393,8 @@ TEST(counts_rows_of_edges)
     free_model_and_flare(&f);
 }
 
-/* Returns the light in the middle WIDTH x HEIGHT pixels of a larger image. */
+/* Returns the light in the middle WIDTH x HEIGHT pixels of an image that is
+ * larger. */
 static int64_t sum_light_in_middle(const int32_t *px_q20, int width, int height)
 {
     int64_t sum = 0;
@@ -400,9 +405,9 @@ static int64_t sum_light_in_middle(const int32_t *px_q20, int width, int height)
     return sum;
 }
 
-/* Scales the stop's polynomials so that the ghost passes a round stop
- * through a small spot of its pupil, with no ray of the prepass near the
- * spot's edge. */
+/* Scales the polynomials of the stop position so that only a small spot of the
+ * ghost's pupil passes a round stop, and no ray of the prepass is near the edge
+ * of the spot. */
 static void scale_stop_polynomials(struct fixture *f)
 {
     const struct glint_model_output *o =
@@ -416,9 +421,9 @@ static void scale_stop_polynomials(struct fixture *f)
     f->cfg.stop.n_blades = 0;
 }
 
-/* Checks that a ghost with outcome OUTSIDE adds no light to the image: a
- * larger image around it shows where its light falls. Tries all azimuths at
- * growing distances. */
+/* Checks that a ghost with the outcome OUTSIDE adds no light to the image, by
+ * drawing a larger image around it. Tries all azimuths and increasing
+ * distances. */
 static void check_outside_adds_no_light(int small_stop)
 {
     enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT };

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests frames set up in integers: pixel directions and colour weights equal
- * those that the engine computes in double precision, within the bounds stated
- * in flare.h.
+ * Tests frames set up in integers: pixel directions and colour weights differ
+ * from those that the engine computes in double precision by at most the
+ * bounds stated in flare.h.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -53,9 +53,9 @@ static void assert_same_direction_and_power(const struct glint_light *a,
     assert_memory_equal(a->rgb_q14, b->rgb_q14, sizeof a->rgb_q14);
 }
 
-/* Checks the direction of pixels of images of any shape, also far
- * off-screen, through lenses from fisheyes to telephotos and through
- * mirroring lenses (negative focal length). */
+/* Checks the directions of pixels of images of any shape, also far off-screen,
+ * for lenses from fisheyes to telephotos and for mirroring lenses (negative
+ * focal length). */
 TEST(pixel_directions_match_double_precision)
 {
     uint32_t seed = 7;
@@ -80,15 +80,15 @@ TEST(pixel_directions_match_double_precision)
         doubles = compute_direction_in_double(width, height, focal_mm,
                                               x_q8 / 256.0, y_q8 / 256.0);
         if (x_q8 == width * 128 && y_q8 == height * 128)
-            /* at the image centre every azimuth is correct */
+            /* at the image centre the azimuth is arbitrary */
             doubles.cos_q30 = 1 << 30;
         assert_same_direction_and_power(&integers, &doubles);
     }
 }
 
-/* Checks a direction computed by hand: a pixel 45 degrees to the left.
- * Pixels so far to the upper right that their distance is clamped all have
- * the same direction. */
+/* Checks a direction computed by hand: the pixel 45 degrees to the left. Pixels
+ * far off to the upper right, whose distance is clamped, must all have the same
+ * direction. */
 TEST(direction_matches_hand_computation)
 {
     const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */
@@ -144,9 +144,9 @@ static void check_wavelength_fluxes(const double flux[6])
     }
 }
 
-/* Checks wavelength weights against double precision: for the flux
- * polynomial of a real lens, for a constant one, and for wavelengths outside
- * the band, which use its nearer end. */
+/* Checks the weights of wavelengths against double precision: for the flux
+ * polynomial of a real lens, for a constant polynomial, and for wavelengths
+ * outside the model's band, which use the nearer end of the band. */
 TEST(wavelength_weights_match_double_precision)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests where the sides of a square stop cut edges and cells. Positions in the
- * stop map to the same screen position, one pixel per stop radius.
+ * Tests where the sides of a square stop cut edges and cells. Each position in
+ * the stop is drawn at the same position on the screen, one pixel per stop
+ * radius.
  */
 #include "flare/edges/cuts.h"
 #include "support/test.h"
@@ -41,7 +42,7 @@ clip_edge_to_visible_part(const struct glint_vertex *a,
     return part;
 }
 
-/* Checks that an edge from inside to outside the right side is cut at x = 1,
+/* Checks that an edge that crosses the right side of the stop is cut at x = 1,
  * in both directions. */
 TEST(edge_is_cut_at_the_side)
 {
@@ -65,8 +66,8 @@ TEST(edge_is_cut_at_the_side)
         }
 }
 
-/* Checks that an edge across the whole stop and one across a corner are cut
- * twice, and that an edge outside a corner is invisible. */
+/* Checks that an edge across the whole stop is cut twice, that an edge across a
+ * corner is cut twice, and that an edge outside a corner is invisible. */
 TEST(edge_across_the_stop_is_cut_twice)
 {
     const struct glint_vertex left = make_stop_vertex(-2 * ONE_Q16, 0);
@@ -91,8 +92,8 @@ TEST(edge_across_the_stop_is_cut_twice)
     assert_false(clip_edge_to_visible_part(&right, &past).visible);
 }
 
-/* Checks that exactly the cells whose middle is within three quarters of a
- * cell of the upper right corner find that corner. */
+/* Checks that a cell finds the upper right corner of the stop exactly if the
+ * middle of the cell is within three quarters of a cell from that corner. */
 TEST(cells_near_a_corner_find_it)
 {
     const int wide = ONE_Q16 / 4;

@@ -51,8 +51,8 @@ static void add_red_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8,
     glint_edges_add_to_sums(s, &edge, &red, &first, 1);
 }
 
-/* Returns the red light of pixel X in row Y of an image in codes, Q16. Half
- * of white gives 128 per 1/256 of the pixel's area. */
+/* Returns the red light of pixel X in row Y of an image in codes, Q16. Light of
+ * half of white contributes 128 per 1/256 of the pixel's area. */
 static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
@@ -61,8 +61,8 @@ static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
     return light_q16[x];
 }
 
-/* Checks that a vertical edge, FROM_Q8 right of the pixel's left side and
- * HEIGHT_Q8 high, lights the area to its right. */
+/* Checks that a vertical edge adds light to the area on its right. The edge
+ * lies FROM_Q8 right of the pixel's left side and is HEIGHT_Q8 high. */
 TEST(vertical_edge_lights_its_right)
 {
     for (int from_q8 = 0; from_q8 < 256; from_q8 += 5)
@@ -85,8 +85,8 @@ TEST(vertical_edge_lights_its_right)
         }
 }
 
-/* Checks that an edge from the upper right corner of pixel 3 to the lower
- * left corner of pixel 2 lights a quarter of pixel 2 and three quarters of
+/* Checks that an edge from the upper right corner of pixel 3 to the lower left
+ * corner of pixel 2 adds light to a quarter of pixel 2 and to three quarters of
  * pixel 3. */
 TEST(slanted_edge_lights_partial_pixels)
 {
@@ -109,9 +109,9 @@ static int random_int_below(int n)
     return (int)((uint64_t)rng_bits32(&seed) * (uint32_t)n >> 32);
 }
 
-/* Checks that a random edge gives the same light, bit by bit, in a whole
- * tile and in its two halves, which use other code paths: no light left of
- * the edge, and the light of its full height right of it. */
+/* Checks that a random edge gives bit-identical light in a whole tile and in
+ * its two halves, which use different code paths: no light left of the edge,
+ * and the light of its full height right of it. */
 TEST(edge_gives_the_same_light_in_half_tiles)
 {
     enum { FROM = 4 };
@@ -145,7 +145,7 @@ TEST(edge_gives_the_same_light_in_half_tiles)
         }
         s = make_row_sums(1);
         for (int part = 0; part < 2;
-             /* The left half carries its sums over to the right half. */
+             /* the sums of the left half are carried over to the right half */
              part++) {
             s.tile.x0 = part ? FROM : 0;
             s.tile.x1 = part ? SIDE : FROM;
@@ -161,8 +161,8 @@ TEST(edge_gives_the_same_light_in_half_tiles)
 }
 
 /* Checks that packed light is exact to 25 bits, up to 2^40. */
-/* Draws eight edges that each add LIGHT to their right, and if BRIGHT is 1
- * two more that cancel each other and together need wide sums. */
+/* Draws eight edges that each add LIGHT to their right. If BRIGHT is 1, also
+ * draws two edges that cancel each other and need wide sums. */
 static void draw_eight_edges(int fine, int64_t light_q20, int bright,
                              uint16_t light_q16[SIDE][STRIDE])
 {
@@ -191,8 +191,8 @@ static void draw_eight_edges(int fine, int64_t light_q20, int bright,
                                  light_q16[y]);
 }
 
-/* Checks that light does not depend on the width of the sums, up to and
- * above the range of narrow ones. */
+/* Checks that the light is the same with narrow and wide sums, up to and above
+ * the range of narrow sums. */
 TEST(light_does_not_depend_on_sum_width)
 {
     for (int fine = 0; fine < 2; fine++)

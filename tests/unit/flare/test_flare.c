@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws hand-made grids with the integer rasteriser: tiles, workers and order
- * do not change the image, and images have their golden hashes.
+ * Draws hand-made grids with the integer rasteriser: tiles, workers and the
+ * order of jobs do not change the image, and images have the expected hashes
+ * (tests/golden).
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -52,7 +53,7 @@ TEST(image_does_not_depend_on_job_order)
     }
 }
 
-/* An image of any format in its own memory, on which random ghosts are
+/* An image of any format, with its own memory, on which random ghosts are
  * drawn. */
 struct random_picture {
     struct glint_image image;
@@ -99,8 +100,8 @@ static unsigned choose_instruction_sets(void)
     return (unsigned)draw_random_number(8) & glint_system_sets();
 }
 
-/* Checks that light growing from far below a code to far above the range of
- * 32-bit sums never makes a pixel darker. */
+/* Checks that a pixel never becomes darker while its light grows, from far
+ * below a code to far above the range of 32-bit sums. */
 TEST(more_light_never_darkens_a_pixel)
 {
     struct glint_flare_config c = octagonal_stop_config();
@@ -124,8 +125,8 @@ TEST(more_light_never_darkens_a_pixel)
     }
 }
 
-/* Checks that many random scenes give the same bytes for all tile sizes,
- * kernels, numbers of workers and job orders. */
+/* Checks that many random scenes give bit-identical images for all tile sizes,
+ * kernels, numbers of workers and orders of jobs. */
 TEST(random_scenes_are_bit_identical)
 {
     for (int k = 0; k < 240; k++) {
@@ -178,8 +179,8 @@ TEST(image_does_not_depend_on_bundle_order)
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
-/* Checks that drawing in place on 8 bits does not change padding or pixels
- * that no ghost touches. */
+/* Checks that drawing onto an 8-bit image changes neither its padding nor
+ * pixels that no ghost touches. */
 TEST(untouched_pixels_are_unchanged)
 {
     enum { STRIDE = WIDTH * 3 + 13 };
@@ -214,8 +215,8 @@ TEST(untouched_pixels_are_unchanged)
     free(mem);
 }
 
-/* Checks that drawing into NULL does all work but writing an image, and does
- * not change the next frame. */
+/* Checks that drawing into NULL does the same work as drawing an image, except
+ * for writing it, and does not change the next frame. */
 TEST(drawing_into_null_does_all_work)
 {
     static uint8_t bytes[2][3 * WIDTH * HEIGHT];
@@ -273,8 +274,8 @@ static void check_golden_hash(FILE *file, bool update, const char *name,
     assert_string_equal(line, expected);
 }
 
-/* Checks that hashes are the same on every CPU; GLINT_GOLDEN_UPDATE=1
- * rewrites them. */
+/* Checks that hashes are those of the golden file, on every CPU;
+ * GLINT_GOLDEN_UPDATE=1 rewrites the file. */
 TEST(hashes_match_the_golden_file)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;

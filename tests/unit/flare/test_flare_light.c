@@ -14,9 +14,10 @@
 
 /* ------------------------------------------------------------------- light */
 
-/* Checks the total light of a ghost: an octagonal stop of radius 1 in a grid
- * of 2.5 x 2.5 radii. Its area is 2 sqrt 2 of 6.25; the flux is 16 x 16
- * cells x 1.5e9 / 2^31 x 50000 / 65536, as the slope of the energy cancels. */
+/* Checks the total light of a ghost: an octagonal stop of radius 1 in a grid of
+ * 2.5 x 2.5 stop radii. The stop's area is 2 sqrt 2 of 6.25. The grid's flux is
+ * 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536; the slope of the energy
+ * cancels. */
 TEST(ghost_has_the_light_that_passes_the_stop)
 {
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -24,8 +25,8 @@ TEST(ghost_has_the_light_that_passes_the_stop)
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
     struct glint_flare_config c = octagonal_stop_config();
 
-    /* The stop's corners lie on the rim of the barrel, so only the stop
-     * clips. */
+    /* The corners of the stop lie on the rim of the barrel, so that only the
+     * stop clips. */
     c.stop.apothem_q16 = 60547;
     draw_ghost_list(c, &g, 1, pixels);
     assert_true(sum_channel_light(pixels, 0) > 0.999 * flux);
@@ -34,8 +35,8 @@ TEST(ghost_has_the_light_that_passes_the_stop)
                 sum_channel_light(pixels, 2) == 0);
 }
 
-/* Checks that a ghost only two pixels wide keeps its light at several
- * positions, bent or not. */
+/* Checks that the light of a ghost only two pixels wide is preserved at several
+ * positions, for straight and bent ghosts. */
 TEST(focused_ghost_keeps_its_light)
 {
     struct glint_flare_config c = octagonal_stop_config();
@@ -57,7 +58,7 @@ static int32_t read_pixel_light(const int32_t *p, int x, int y)
     return p[3 * (y * WIDTH + x)];
 }
 
-/* Checks that a flat ghost has, away from its rim, an even irradiance: the
+/* Checks that the irradiance of a flat ghost, away from its rim, is even: the
  * flux of a cell divided by its area in pixels. */
 TEST(flat_ghost_is_even_inside)
 {
@@ -81,8 +82,8 @@ TEST(flat_ghost_is_even_inside)
     assert_int_equal(read_pixel_light(pixels, 100, 2), 0);
 }
 
-/* Checks that outlines close bit by bit; else a streak would extend to the
- * right end of their rows. */
+/* Checks that outlines are closed bit by bit. A gap would cause a streak to the
+ * right end of its row. */
 TEST(outlines_close_without_streaks)
 {
     for (int k = 0; k < 400; k++) {
@@ -100,7 +101,7 @@ TEST(outlines_close_without_streaks)
     }
 }
 
-/* Checks that the outline of a cell closes even if a corner is so far
+/* Checks that the outline of a cell is closed even if a corner is so far
  * outside the stop that the visible parts of its two sides are shorter than
  * 1/256 pixel. */
 TEST(outline_closes_around_a_far_corner)
@@ -133,7 +134,7 @@ TEST(outline_closes_around_a_far_corner)
             v[i] = (struct glint_vertex){.x_q8 = i & 1 ? 7693 : 2573,
                                          .y_q8 = i & 2 ? 7757 : 2637,
                                          .energy_q16 = 65536};
-        /* stop position just inside the stop's outline */
+        /* this corner's stop position is just inside the outline of the stop */
         v[1].stop_x_q16 = v[2].stop_y_q16 = 65534;
         v[3].stop_x_q16 = v[3].stop_y_q16 = far_q16[k];
         memset(pixels, 0, sizeof pixels);
@@ -146,8 +147,8 @@ TEST(outline_closes_around_a_far_corner)
     }
 }
 
-/* Checks that quantising the irradiance changes the light of a cell by at
- * most half a step. */
+/* Checks that rounding the irradiance to steps changes the light of a cell by
+ * at most half a step. */
 TEST(irradiance_steps_change_little_light)
 {
     static int32_t stepped[3 * WIDTH * HEIGHT];
@@ -165,8 +166,8 @@ TEST(irradiance_steps_change_little_light)
 
 /* --------------------------------------------------------------------- rays */
 
-/* Returns whether the ray at the position WEIGHT (bilinear weights of the
- * corners V) in a cell passes STOP and the barrel. */
+/* Returns whether a ray of a cell passes STOP and the barrel. The ray is
+ * interpolated between the corners V with the bilinear weights WEIGHT. */
 static bool ray_passes_stop(const struct glint_stop *stop,
                             const struct glint_vertex *v, const double *weight)
 {
@@ -184,9 +185,8 @@ static bool ray_passes_stop(const struct glint_stop *stop,
     return barrel <= 65536;
 }
 
-/* Draws the red ghost G into WANT by RAYS rays per cell. Rays are
- * interpolated between the cell's corners; each lights the pixel that it
- * hits. */
+/* Draws the red ghost G into WANT by RAYS rays per cell, interpolated between
+ * the cell's corners. Each ray adds light to the pixel that it hits. */
 static void draw_ghost_by_rays(const struct ghost *g)
 {
     enum { RAYS = 4096 };
@@ -223,8 +223,9 @@ static void draw_ghost_by_rays(const struct ghost *g)
         want[3 * i] = (int32_t)sum[i];
 }
 
-/* Checks that the image of G equals that of its rays except for a fraction
- * OFF of the light, and that the total light differs by at most 0.2 %. */
+/* Checks that the image of G equals that of its rays except for at most the
+ * fraction OFF of the light, and that the total light differs by at most 0.2
+ * %. */
 static void check_image_equals_rays(const struct ghost *g, double off)
 {
     double sum = 0, all;
@@ -255,17 +256,18 @@ TEST(ghosts_agree_with_traced_rays)
 
 /* ------------------------------------------------ polygons computed by hand */
 
-/* One cell of flux 64 and energy 1. Its corners are listed in circular
- * order, in 1/256 px. */
+/* One cell of flux 64 and energy 1. Corners are in order around the cell, in
+ * 1/256 px. */
 struct quad {
     int32_t at[4][2];
     int32_t barrel_q16[4];
-    int lost; /* bit k: the ray of corner k is invalid */
+    int lost; /* bit k is set: the ray of corner k is invalid */
 };
 
 static struct glint_flare_stats draw_single_quad(const struct quad *q)
 {
-    static const int corner[4] = {0, 1, 3, 2}; /* corners in row order */
+    /* indices of the corners row by row */
+    static const int corner[4] = {0, 1, 3, 2};
     struct glint_flare_config c = octagonal_stop_config();
     const struct glint_image image = make_linear_image(pixels);
     const struct glint_bundle b = {.n_cells = 1,
@@ -307,8 +309,8 @@ static void assert_total_flux(double flux)
     assert_true(sum_channel_light(pixels, 0) < 1.001 * flux);
 }
 
-/* Checks that the rectangle from (10.25, 10.5) to (14.25, 12.5) spreads its
- * flux of 64 over eight pixels of area. */
+/* Checks that the rectangle from (10.25, 10.5) to (14.25, 12.5) distributes its
+ * flux of 64 evenly over its area of eight pixels. */
 TEST(rectangle_matches_hand_computation)
 {
     struct quad q = {{{2624, 2688}, {3648, 2688}, {3648, 3200}, {2624, 3200}},
@@ -325,8 +327,8 @@ TEST(rectangle_matches_hand_computation)
     assert_pixel_light(13, 11, 8);
     assert_pixel_light(14, 12, 1);
     assert_pixel_light(12, 13, 0);
-    /* A barrel radius from 0.5 on the left to 1.5 on the right passes only
-     * the left half. */
+    /* The barrel radius increases from 0.5 on the left to 1.5 on the right, so
+     * only the left half passes. */
     q.barrel_q16[0] = q.barrel_q16[3] = 32768;
     q.barrel_q16[1] = q.barrel_q16[2] = 98304;
     draw_single_quad(&q);
@@ -366,7 +368,7 @@ TEST(thin_cells_keep_their_light)
         {{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {5000, 5000}, {9000, 5000}}, {0}, 0},
         {{{5120, 5120}, {5120, 5120}, {5120, 5120}, {5120, 5120}}, {0}, 0},
-        /* self-intersecting or concave: a bow tie, a cell with a dent */
+        /* self-intersecting: a bow tie; concave: a cell with a dent */
         {{{5000, 5000}, {9000, 5000}, {5000, 9000}, {9000, 9000}}, {0}, 0},
         {{{5000, 5000}, {9000, 5000}, {6000, 6000}, {5000, 9000}}, {0}, 0},
         /* tiny: 2/256 px wide and high */
@@ -377,7 +379,7 @@ TEST(thin_cells_keep_their_light)
         assert_int_equal(draw_single_quad(&quads[i]).dropped_cells, 0);
         assert_total_flux(64);
     }
-    /* The barrel passes half of a line. */
+    /* the barrel passes half of a line */
     draw_single_quad(
         &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
                        {32768, 98304, 98304, 32768},
@@ -385,8 +387,8 @@ TEST(thin_cells_keep_their_light)
     assert_total_flux(32);
 }
 
-/* Checks that light is linear: eight times the flux gives eight times the
- * image, within rounding. */
+/* Checks that light is linear: eight times the flux gives an image eight times
+ * as bright, within rounding. */
 TEST(image_is_linear_in_flux)
 {
     struct ghost g = ghosts[1];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks the limits of the integer rasteriser: edges above the capacity are
- * counted, invalid settings are rejected, and counts saturate at INT_MAX.
+ * Checks the limits of the integer rasteriser: edges beyond the capacity are
+ * dropped and counted, invalid settings are rejected, and counts saturate at
+ * INT_MAX.
  */
 #include <stdbool.h>
 #include <stdio.h>
@@ -14,8 +15,8 @@
 
 /* ---------------------------------------------------------------- capacity */
 
-/* Checks that the capacities which glint_flare_bin() requests are
- * sufficient, and that one byte of memory less is rejected. */
+/* Checks that the capacities that glint_flare_bin() requests are sufficient,
+ * and that memory one byte smaller is rejected. */
 TEST(requested_capacities_are_sufficient)
 {
     struct glint_flare_config c = octagonal_stop_config();
@@ -37,7 +38,7 @@ TEST(requested_capacities_are_sufficient)
     free(mem);
 }
 
-/* Checks that if any capacity is too small by one, one bundle is dropped and
+/* Checks each capacity: if it is too small by one, one bundle is dropped and
  * counted, and all others are drawn correctly. */
 TEST(missing_capacity_drops_one_bundle)
 {
@@ -65,7 +66,7 @@ TEST(missing_capacity_drops_one_bundle)
     less = draw_scene(full, pixels);
     assert_int_equal(less.bundles, 0);
     assert_int_equal(less.need_primitives, s.need_primitives);
-    /* Dropped bundles are counted however little memory there is. */
+    /* dropped bundles are counted even with very little memory */
     for (int k = 0; k < 8; k++) {
         full.max_primitives = (int)((int64_t)s.need_primitives * k / 8);
         full.max_refs = k % 2 ? s.need_refs / 3 : s.need_refs;
@@ -91,8 +92,8 @@ TEST(rejects_invalid_configurations)
     assert_int_equal(glint_flare_bytes(&c), 0);
 }
 
-/* true: the wrapped glint_edges_bin() only adds 1e9 cells per bundle to the
- * counts */
+/* true: the wrapped glint_edges_bin() draws nothing, but adds 1e9 cells per
+ * bundle to the counts */
 static bool counts_many;
 
 void __real_glint_edges_bin(struct glint_flare *f);

@@ -15,8 +15,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* NEAR_Q30: merge distance, about 1/8 pixel if a tangent of 1 is 2000
- * pixels. */
+/* NEAR_Q30: merge distance, about 1/8 pixel if an angle of tangent 1 is 2000
+ * pixels */
 enum { MANY = 3000, NEAR_Q30 = 60000 };
 
 static double real_to_double(struct glint_real x)
@@ -57,8 +57,8 @@ static double random_unit_q30(uint32_t *state)
     return rng_xorshift(state) * 0x1p-32;
 }
 
-/* Fills B with lights of powers 1e-6 to 1e9, most of them small. Some lights
- * coincide; some are on the axis with random azimuths. */
+/* Fills B with lights of powers 1e-6 to 1e9, most of them weak. Some lights
+ * coincide; some are on the axis and have random azimuths. */
 static void fill_with_random_lights(struct glint_light *b, int n, uint32_t seed)
 {
     for (int i = 0; i < n; i++) {
@@ -135,8 +135,8 @@ TEST(no_light_and_one_light_are_unchanged)
     assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
-/* Checks that two lights are merged by the larger of their merge distances, in
- * any order. */
+/* Checks that two lights are merged if they are nearer than the larger of their
+ * two merge distances, in either order. */
 TEST(merge_distance_is_the_larger_of_two)
 {
     for (int order = 0; order < 2; order++) {
@@ -150,8 +150,8 @@ TEST(merge_distance_is_the_larger_of_two)
     }
 }
 
-/* Checks that lights too few and too far apart to be merged are unchanged
- * bit by bit. */
+/* Checks that lights which are within the limit and too far apart to be merged
+ * are unchanged bit by bit. */
 TEST(distant_lights_are_unchanged)
 {
     static struct glint_light b[200], was[200];
@@ -188,7 +188,8 @@ TEST(identical_lights_are_merged)
     assert_true(fabs(real_to_double(b->power) - 0.5 * MANY) < 1e-5 * MANY);
 }
 
-/* Returns the chord between the directions with sines (X, Y) and (P, Q). */
+/* Returns the chord (length of the difference) between the unit vectors with
+ * sines (X, Y) and (P, Q). */
 static double chord_between_sines(double x, double y, double p, double q)
 {
     const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
@@ -196,8 +197,8 @@ static double chord_between_sines(double x, double y, double p, double q)
     return sqrt((x - p) * (x - p) + (y - q) * (y - q) + z * z);
 }
 
-/* Checks that two lights closer than NEAR become one at their centroid by
- * power, and that lights further apart do not. */
+/* Checks that two lights nearer than NEAR_Q30 are merged at their centroid,
+ * weighted by power, and that lights further apart are not merged. */
 TEST(near_lights_merge_at_their_centroid)
 {
     const double near = NEAR_Q30 * 0x1p-30;
@@ -240,7 +241,7 @@ TEST(lights_on_the_axis_are_merged)
     int apart;
 
     b[1].cos_q30 = -(1 << 29);
-    b[1].sin_q30 = 929887697; /* sine of the azimuth 120 degrees, Q30 */
+    b[1].sin_q30 = 929887697; /* sine of an azimuth of 120 degrees, Q30 */
     assert_int_equal(glint_lights_merge(b, 4, NEAR_Q30, 4, &apart), 1);
     assert_light_is_valid(b);
     assert_true(b->sine_q30 <= 2);
@@ -267,8 +268,8 @@ TEST(lights_at_the_horizon_merge_to_valid_ones)
     assert_light_is_valid(b);
 }
 
-/* Checks that the result does not depend on the order, bit by bit, for any
- * requested number of lights. */
+/* Checks that the result is bit-identical for any order of the lights and any
+ * requested number. */
 TEST(merging_does_not_depend_on_order)
 {
     static struct glint_light want[MANY], got[MANY];
@@ -309,8 +310,8 @@ TEST(limit_of_lights_keeps_the_flux)
     }
 }
 
-/* Checks that the colour of many faint lights is not lost in the rounding of
- * a bright light's. */
+/* Checks that the colours of many faint lights merged with a bright light are
+ * not lost in the rounding of the bright light's colour. */
 TEST(colour_of_faint_lights_is_kept)
 {
     static struct glint_light b[MANY];
@@ -328,8 +329,8 @@ TEST(colour_of_faint_lights_is_kept)
     assert_true(fabs(flux[1] - 1) < 1e-4 && fabs(flux[2] - 1) < 1e-4);
 }
 
-/* Checks the sums of powers at the ends of their range, far outside it, and of
- * both kinds. */
+/* Checks sums of powers at the ends of their range, far outside it, and of
+ * large and small powers together. */
 TEST(sums_of_extreme_powers_are_right)
 {
     static const double powers[] = {1e-6, 1e9, 1e-55, 1e55};
@@ -348,7 +349,8 @@ TEST(sums_of_extreme_powers_are_right)
         }
 }
 
-/* Checks that a few bright lights among many faint ones do not move. */
+/* Checks that merging many faint lights does not move the few bright lights
+ * among them. */
 TEST(bright_lights_do_not_move)
 {
     static struct glint_light b[MANY];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests plans: exactly the visible ghosts are planned, and rows of rays
- * computed one at a time give the image of a stored grid.
+ * Tests plans: exactly the visible ghosts are planned, and rays computed row
+ * by row give the same image as rays stored in a grid.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -146,7 +146,7 @@ TEST(visible_lights_are_planned)
     fx.light.power = real_of(0, 0);
     assert_int_equal(plan_and_bin_lights(&fx, 1).bundles, 0);
     fx.light.power = real_of(1000, 0);
-    /* brighter than any ghost, so all ghosts are dropped */
+    /* FAINTEST is brighter than any ghost, so all ghosts are dropped */
     fx.rays.faintest = real_of(1, 60);
     assert_int_equal(plan_and_bin_lights(&fx, 1).bundles, 0);
     fx.rays.faintest = real_of(1, -60);
@@ -155,8 +155,8 @@ TEST(visible_lights_are_planned)
     assert_true(plan_and_bin_lights(&fx, 1).bundles < all);
 }
 
-/* Checks that an annular pupil, which has no rays in its middle, has no
- * invalid rays there. */
+/* Checks that the plan of an annular pupil, which has no rays in its middle,
+ * counts no invalid rays there. */
 TEST(annular_pupil_has_no_invalid_rays)
 {
     struct glint_model_system *system;
@@ -193,8 +193,8 @@ static double find_peak_light(struct fixture *f)
     return most * 0x1p-20;
 }
 
-/* Checks that a dropped ghost is fainter than FAINTEST in every pixel, and
- * that a drawn ghost reaches at least an eighth of FAINTEST in some pixel. */
+/* Checks that dropped ghosts are fainter than FAINTEST in every pixel, and that
+ * drawn ghosts reach at least an eighth of FAINTEST in some pixel. */
 TEST(dropped_ghosts_are_invisible)
 {
     int n_left_out = 0, n_kept = 0;
@@ -239,9 +239,9 @@ static void draw_flare_image(struct fixture *f, int32_t *px_q20,
     f->mem = NULL;
 }
 
-/* Checks that the plan for codes draws faint light with fewer edges and
- * nearly the same codes (50 dB), and that the plan for linear light uses as
- * many edges as for bright light. */
+/* Checks that the plan for images in codes draws faint light with fewer edges
+ * and nearly the same codes (50 dB), and that the plan for linear images uses
+ * as many edges for faint as for bright light. */
 TEST(faint_light_gets_fewer_edges)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
@@ -271,8 +271,8 @@ TEST(faint_light_gets_fewer_edges)
     assert_true(n_fewer > 15);
 }
 
-/* Sums over an image: total light, its centroid, and its mean square
- * distance from the centroid, pixels. */
+/* Total light of an image, its centroid, and its mean square distance from the
+ * centroid; lengths in pixels. */
 struct extent {
     double light, x, y, square;
 };
@@ -296,9 +296,9 @@ static struct extent compute_image_extent(const int32_t *px_q20)
     return e;
 }
 
-/* Checks that distant points of a lamp give wider ghosts at the same
- * position with the same light, and that close points give the ghost of a
- * single light. */
+/* Checks a lamp of several points: distant points give wider ghosts at the
+ * same position with the same light; near points give the ghost of a single
+ * light. */
 TEST(distant_lamp_points_widen_ghosts)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
@@ -324,7 +324,7 @@ TEST(distant_lamp_points_widen_ghosts)
     assert_true(hypot(far.x - alone.x, far.y - alone.y) < 0.3);
 }
 
-/* Checks that pixel-snapped edges preserve the total light and nearly all
+/* Checks that edges snapped to pixels preserve the total light and nearly all
  * codes. */
 TEST(pixel_snapped_edges_keep_the_light)
 {
@@ -353,14 +353,13 @@ TEST(pixel_snapped_edges_keep_the_light)
         }
         /* a PSNR of at least 61 dB */
         assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05);
-        /* Sides of an upright outline may move by half a pixel. */
+        /* the sides of an upright outline may move by half a pixel */
         assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
     }
     assert_true(n_changed > 10000);
 }
 
-/* Draws a frame of F into IMAGE, at full resolution or, if HALF is set, at half
- * resolution. */
+/* Draws a frame of F into IMAGE; at half resolution if HALF is set. */
 static void draw_at_half_resolution(struct fixture *f, int half,
                                     struct glint_image *image, void *mem)
 {
@@ -381,7 +380,7 @@ static void draw_at_half_resolution(struct fixture *f, int half,
     f->mem = NULL;
 }
 
-/* Checks that at half resolution nearly all light stays in its place. */
+/* Checks that drawing at half resolution displaces hardly any light. */
 TEST(half_resolution_keeps_light_in_place)
 {
     static uint8_t codes[2][3 * WIDTH * HEIGHT];
@@ -406,8 +405,8 @@ TEST(half_resolution_keeps_light_in_place)
     assert_true(sum > 0.01 * n && sum < 40 * n);
 }
 
-/* Checks that at half resolution each 2 x 2 pixels have the same light,
- * including the last row and column. */
+/* Checks that at half resolution all pixels of a 2 x 2 block get the same
+ * light, also in the last row and column. */
 TEST(half_resolution_shares_linear_light)
 {
     static int32_t light_q20[2][3 * WIDTH * HEIGHT];
@@ -432,8 +431,8 @@ TEST(half_resolution_shares_linear_light)
     assert_true(sum[0] > 0 && fabs(sum[1] / sum[0] - 1) < 0.02);
 }
 
-/* Checks, on a textured image, that the light shared by four pixels is close
- * to the light of each. */
+/* Checks, on a textured image, that the light shared by a block of four pixels
+ * is close to the light of each. */
 TEST(half_resolution_of_yuyv_is_close)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
@@ -457,8 +456,8 @@ TEST(half_resolution_of_yuyv_is_close)
     assert_true(sum < 30. * WIDTH * HEIGHT);
 }
 
-/* Checks, for every setting of the plan, that an image is the same bit by
- * bit for all tile sizes, workers, job orders and kernels. */
+/* Checks, for every setting of the plan, that an image is bit-identical for all
+ * tile sizes, numbers of workers, orders of jobs and kernels. */
 TEST(image_is_bit_identical_for_all_settings)
 {
     static const int whole_q8[] = {0, 64, 1024, 1 << 15};
@@ -501,9 +500,9 @@ TEST(image_is_bit_identical_for_all_settings)
     }
 }
 
-/* Draws N faint lights with F in linear light and in codes. Returns the mean
- * square difference, codes squared. Checks that the brightest code is
- * between 4 and 40. */
+/* Draws N faint lights with F into a linear image and into an image in codes.
+ * Returns the mean square difference, codes squared. Checks that the brightest
+ * code is between 4 and 40. */
 static double compare_faint_lights(struct fixture *f, int n)
 {
     enum { MANY = 1024 };
@@ -531,7 +530,7 @@ static double compare_faint_lights(struct fixture *f, int n)
     memset(codes, 0, sizeof codes);
     allocate_and_init_flare(f);
     for (int turn = 0; turn < 2; turn++) {
-        /* light that changes a code by 1/8 */
+        /* FAINTEST: light that changes a code by 1/8 */
         f->rays.faintest = real_of(turn ? 163 : 0, -22);
         glint_flare_plan(f->flare, &f->rays, light, n);
         glint_flare_bin(f->flare, &s);
@@ -549,9 +548,9 @@ static double compare_faint_lights(struct fixture *f, int n)
     return sum / (3 * WIDTH * HEIGHT);
 }
 
-/* Checks that lights too faint to be visible singly are visible together,
- * also in codes, and that the same holds for fewer lights whose soft edges
- * draw each as several outlines. */
+/* Checks that lights too faint to be visible singly are visible together, also
+ * in codes. The same must hold for fewer lights with soft edges, which draw
+ * each light as several outlines. */
 TEST(many_faint_lights_are_visible_together)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
@@ -587,8 +586,8 @@ static void draw_planned_flare(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* Checks that edges from rows of rays, which are discarded along the way,
- * equal those of a stored grid. */
+/* Checks that edges computed row by row, where each row of rays is discarded
+ * after use, equal those of a stored grid. */
 static void check_rows_and_grids(int32_t opening_q30)
 {
     static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
@@ -640,9 +639,9 @@ TEST(rows_and_grids_give_the_same_edges)
     check_rows_and_grids(1 << 28);
 }
 
-/* Checks that a hole of radius 0.4 in the model's stop gives the same light
- * as a hole of 0.8 in a stop half as wide, except for the corners of cells,
- * and that closing the stop further reduces the light. */
+/* Checks that a hole of radius 0.4 in a stop as wide as the model's gives the
+ * same light as a hole of 0.8 in a stop half as wide, except for the corners of
+ * cells, and that closing the stop further reduces the light. */
 TEST(stop_radius_scales_the_opening)
 {
     static int32_t whole[3 * WIDTH * HEIGHT], half[3 * WIDTH * HEIGHT];
@@ -650,7 +649,7 @@ TEST(stop_radius_scales_the_opening)
     int64_t light = 0, off = 0, left = 0;
     struct glint_flare_stats s;
 
-    /* a light of many steps of 2^-20, so that rounding is small */
+    /* this light is many steps of 2^-20, so that rounding is small */
     fx.light.power = real_of(1000, 4);
     draw_flare_image(&fx, whole, &s);
     fx.cfg.stop.apothem_q16 *= 2;
@@ -667,14 +666,14 @@ TEST(stop_radius_scales_the_opening)
                   (double)off / (double)light, (double)left / (double)light);
     assert_true(light > 1 << 20);
     assert_true(off < light / 250);
-    /* 0.5 u^3 is 0.4 and 0.2 at u = 0.9283 and 0.7368; 0.5 v - 0.125 v^3 is
-     * below 0.4 everywhere, and 0.2 at v = 0.4183. */
+    /* Stop x, 0.5 u^3, is 0.4 at u = 0.9283 and 0.2 at u = 0.7368. Stop y, 0.5
+     * v - 0.125 v^3, is below 0.4 everywhere, and 0.2 at v = 0.4183. */
     assert_true(fabs((double)left / (double)light - 0.7368 / 0.9283 * 0.4183) <
                 0.003);
 }
 
-/* Checks that a stop changed between frames gives the image of a flare
- * created with it, and that openings out of range are rejected. */
+/* Checks that changing the stop between frames gives the image of a flare
+ * created with that stop, and that stop openings out of range are rejected. */
 TEST(changed_stop_equals_a_new_flare)
 {
     static const int32_t bad[] = {-1, 1, (1 << 20) - 1, (1 << 30) + 1};
@@ -702,7 +701,7 @@ TEST(changed_stop_equals_a_new_flare)
 }
 
 /* Checks that the finest grid has exactly the max number of cells per row,
- * however strongly a ghost is bent. */
+ * however much a ghost is bent. */
 TEST(finest_grid_has_the_max_cells)
 {
     static struct glint_plan_scratch scratch;
@@ -727,9 +726,9 @@ TEST(finest_grid_has_the_max_cells)
     assert_int_equal(most, GLINT_MAX_CELLS);
 }
 
-/* Checks the deviation of rays from linear interpolation: the barrel's 0.5 +
- * u^2 / 2 has second derivative 4 over the box, in u only, so straight lines
- * between rays lie 4 / 12 / n^2 above it in the mean. */
+/* Checks how far rays deviate from linear interpolation between grid points.
+ * The barrel's 0.5 + u^2 / 2 has second derivative 4 over the box, in u only;
+ * so straight lines between n rays lie 4 / 12 / n^2 above it in the mean. */
 TEST(sag_matches_the_second_derivative)
 {
     static struct glint_plan_scratch scratch;
@@ -751,8 +750,8 @@ TEST(sag_matches_the_second_derivative)
     assert_int_equal(planned.sag_q16[1], 0);
 }
 
-/* Checks that lights beyond the model's angles are not drawn, whatever the
- * polynomials give there, and need no memory unless another light follows. */
+/* Checks that lights beyond the model's range of angles are not drawn, whatever
+ * its polynomials give there, and need memory only if another light follows. */
 TEST(lights_outside_the_model_are_not_drawn)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests dust and masks in the stop, which are drawn by edges: each pixel of a
- * flat ghost has the light that the stop passes at its rays, on coarse and fine
- * grids; a white mask gives the clear ghost and a black one nothing; a soft
- * edge has the light of its profile; workers and tiles do not change the image.
+ * flat ghost has the light that the stop passes at that pixel's rays, on
+ * coarse and fine grids; a white mask gives the ghost of a clean stop, a black
+ * mask no light; soft edges follow their profile; workers and tiles do not
+ * change the image.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@
 
 static const struct ghost plain = {16, 100, 75, 60, 0, 1, 0, 0, {16384, 0, 0}};
 
-/* Sets up SETUP with IRIS; returns the dirt in its stop. */
+/* Sets up SETUP with IRIS. Returns the dirt (dust, masks) in its stop. */
 static struct glint_dirt *make_dirt_in_stop(struct glint_setup *setup,
                                             int n_blades,
                                             const struct glint_iris *iris)
@@ -54,9 +55,9 @@ draw_ghost_with_and_without_dirt(const struct ghost *g,
     return stats;
 }
 
-/* Compares each pixel inside the stop with the clear ghost times the
- * transmission of IRIS. Returns the root mean square difference, divided by
- * the clear ghost's light. */
+/* Compares each pixel inside the stop with the ghost of a clean stop times the
+ * transmission of IRIS. Returns the root mean square difference, divided by the
+ * light of the clean ghost. */
 static double compare_with_clear_ghost(const struct ghost *g,
                                        const struct glint_iris *iris)
 {
@@ -71,7 +72,7 @@ static double compare_with_clear_ghost(const struct ghost *g,
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const double u = (x + 0.5 - g->cx) / g->size;
-            /* undoes the shear of the ghost */
+            /* removes the shear of the ghost */
             const double v = (g->cy - y - 0.5) / g->size - u / 5;
             const int at = 3 * (y * WIDTH + x);
             double light = 0, off;
@@ -91,7 +92,8 @@ static double compare_with_clear_ghost(const struct ghost *g,
     return sqrt(sum / n) / (all / n);
 }
 
-/* Checks position and darkness of dust, on every grid. */
+/* Checks that specks of dust have the expected position and darkness, on every
+ * grid. */
 TEST(dust_has_its_position_and_darkness)
 {
     for (int seed = 1; seed < 5; seed++)
@@ -100,14 +102,14 @@ TEST(dust_has_its_position_and_darkness)
             struct ghost g = plain;
 
             g.n = n;
-            /* The smallest specks are smaller than a pixel. */
+            /* the smallest specks are smaller than a pixel */
             assert_true(compare_with_clear_ghost(&g, &iris) <
                         (n == 8 ? 0.085 : 0.045));
         }
 }
 
-/* Checks that a mask is upright: the top row of its image is at the highest
- * y of the stop. */
+/* Checks that a mask is drawn upright: the top row of its image lies at the
+ * highest y of the stop. */
 TEST(mask_is_upright)
 {
     uint8_t mask[32 * 32];
@@ -119,7 +121,8 @@ TEST(mask_is_upright)
     assert_true(compare_with_clear_ghost(&plain, &iris) < 0.005);
 }
 
-/* Checks that the dirt rotates with the blades, from x towards y. */
+/* Checks that dirt rotates with the blades, from the x axis towards the y
+ * axis. */
 TEST(dirt_rotates_with_the_blades)
 {
     const uint8_t mask[4] = {0, 255, 0, 255};
@@ -165,7 +168,7 @@ TEST(white_and_black_masks_pass_all_or_nothing)
     assert_true(sum_channel_light(pixels, 0) == 0);
 }
 
-/* Checks that dust adds few edges: at most one patch per cell. */
+/* Checks that dust adds few edges: at most one patch of edges per cell. */
 TEST(dust_adds_few_edges)
 {
     const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
@@ -176,13 +179,13 @@ TEST(dust_adds_few_edges)
         draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want).primitives;
     dusty = draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels)
                 .primitives;
-    /* clipped cells consist of two polygons of up to five corners */
+    /* clipped cells consist of two polygons, each with up to five corners */
     assert_true(dusty > plain_edges);
     assert_true(dusty < plain_edges + 16 * 16 * 10);
 }
 
-/* Checks a mask whose one half is white: all light of that half remains,
- * none of the other half, with a sharp boundary. */
+/* Checks a mask with one white half: all light of that half passes, none of the
+ * other half, with a sharp boundary. */
 TEST(half_mask_passes_half_of_the_light)
 {
     uint8_t mask[64 * 64];
@@ -202,8 +205,8 @@ TEST(half_mask_passes_half_of_the_light)
         assert_true(pixels[k] > -want[3 * (75 * WIDTH + 100)] / 100);
 }
 
-/* Checks that a soft edge has the light of its profile, for straight sides,
- * arcs and circles. */
+/* Checks that the light across a soft edge follows its profile, for straight
+ * sides, arcs and circles. */
 TEST(soft_edge_has_the_light_of_its_profile)
 {
     for (int k = 0; k < 12; k++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests tints of ghosts: light follows gain and tint, muted ghosts cost
- * nothing, and tints of 1 change no bit.
+ * Tests tints of ghosts: the light of a ghost is proportional to its gain and
+ * tint, muted ghosts are not planned, and tints of 1 change no bit.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -25,7 +25,7 @@ struct fixture {
     struct glint_tint tint[GHOSTS];
     struct glint_flare_stats stats;
     int32_t px_q20[SAMPLES];
-    double sum[3]; /* light of the image, display white x pixels */
+    double sum[3]; /* light of the image in R, G, B; display white x pixels */
 };
 
 static struct fixture *open_model_with_tints(void)
@@ -112,8 +112,8 @@ TEST(gain_and_tint_scale_the_light)
     free_model_with_tints(f);
 }
 
-/* Checks, while ghosts are muted one after the other, that the light of the
- * others remains, and that nothing is planned when all are muted. */
+/* Mutes ghosts one after the other. Checks that the light of the others does
+ * not change, and that nothing is planned when all are muted. */
 TEST(muted_ghosts_add_no_light)
 {
     struct fixture *f = open_model_with_tints();
@@ -141,7 +141,8 @@ TEST(muted_ghosts_add_no_light)
     free_model_with_tints(f);
 }
 
-/* Checks that a gain makes a ghost visible that would be below one code. */
+/* Checks that a gain makes a ghost visible whose light is below one code
+ * without it. */
 TEST(gain_makes_a_faint_ghost_visible)
 {
     struct fixture *f = open_model_with_tints();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the choice of wavelengths: ghosts get as many as their dispersion and
- * light need, without colour steps that 31 wavelengths do not have; explicit
- * lists of wavelengths are drawn as given.
+ * Tests the choice of wavelengths: each ghost gets as many as its dispersion
+ * and brightness require, without colour steps that would not occur with 31
+ * wavelengths; explicit lists of wavelengths are used as given.
  */
 #include <math.h>
 #include <stdint.h>
@@ -38,8 +38,8 @@ static struct glint_engine_report draw_lamp_frame(struct glint_frame *frame,
     return report;
 }
 
-/* Returns the number of wavelengths planned for GHOST in FRAME; sets
- * *N_DRAWN to the number drawn. */
+/* Returns the number of wavelengths planned for GHOST in FRAME. Sets *N_DRAWN
+ * to the number of those that were drawn. */
 static int count_wavelengths_of_ghost(struct glint_frame *frame, int ghost,
                                       int *n_drawn)
 {
@@ -57,7 +57,8 @@ static int count_wavelengths_of_ghost(struct glint_frame *frame, int ghost,
     return n;
 }
 
-/* Counts drawn ghosts by their number of wavelengths, and the bundles drawn. */
+/* Counts, for each number of wavelengths, the drawn ghosts with that number;
+ * and the bundles drawn. */
 static void count_ghosts_by_wavelengths(struct glint_frame *frame,
                                         int ghosts[GLINT_MAX_WAVELENGTHS + 1],
                                         int *bundles)
@@ -85,7 +86,8 @@ TEST(small_image_needs_few_wavelengths)
     struct glint_frame frame;
     struct glint_engine_report report;
 
-    /* In a width of 32 pixels dispersion moves no outline by a pixel. */
+    /* In an image only 32 pixels wide, dispersion moves no outline by as much
+     * as a pixel. */
     report = draw_lamp_frame(&frame, &chosen, 32, 1, picture);
     count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     assert_true(ghosts[4] > 0);
@@ -103,7 +105,7 @@ TEST(large_image_needs_more_wavelengths)
     report = draw_lamp_frame(&frame, &chosen, WIDTH, 100, picture);
     count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
-    /* Ghosts get different numbers of wavelengths. */
+    /* there are ghosts with different numbers of wavelengths */
     assert_true(ghosts[4] > 0 && more > 0);
     assert_int_equal(bundles, report.stats.bundles);
     assert_int_equal(report.stats.dropped_bundles, 0);
@@ -135,8 +137,8 @@ TEST(dispersion_sets_the_number_of_wavelengths)
     assert_true(before > 2 * least);
 }
 
-/* Checks that a dispersion of 0 gives the three default wavelengths, bit by
- * bit. */
+/* Checks that with a dispersion of 0 each ghost has the three default
+ * wavelengths, bit by bit. */
 TEST(dispersion_of_0_gives_default_wavelengths)
 {
     struct opened set = chosen;
@@ -150,7 +152,8 @@ TEST(dispersion_of_0_gives_default_wavelengths)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* Checks that a single set of wavelengths gives the image of the same list. */
+/* Checks that a choice of wavelength sets that offers only one set gives the
+ * image of a list of the same wavelengths. */
 TEST(single_set_equals_the_list)
 {
     struct opened set = chosen, list = three;
@@ -174,8 +177,8 @@ TEST(single_set_equals_the_list)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* Checks that ghosts without memory for a larger set use the first set, and
- * that nothing is dropped. */
+/* Checks that ghosts for which a larger set of wavelengths would need too much
+ * memory use the first set, and that no ghost is dropped. */
 TEST(too_little_memory_uses_the_first_set)
 {
     int ghosts[GLINT_MAX_WAVELENGTHS + 1], bundles, most = 0;
@@ -189,7 +192,7 @@ TEST(too_little_memory_uses_the_first_set)
     draw_lamp_frame(&frame, &set, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
-    /* Drawing has raised the capacity above 4 bundles per ghost. */
+    /* drawing has raised the capacity to more than 4 bundles per ghost */
     assert_true(most > frame.cfg.max_bundles);
     bytes = glint_flare_bytes(&frame.cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
@@ -209,8 +212,8 @@ TEST(too_little_memory_uses_the_first_set)
     glint_frame_finish(&frame);
 }
 
-/* Checks that three lamps give the same image bit by bit, whether one worker
- * plans them or several. */
+/* Checks that the image of three lamps is bit-identical, whether one worker
+ * plans the ghosts or several. */
 TEST(image_does_not_depend_on_workers)
 {
     const struct glint_lamp lamps[3] = {
@@ -244,9 +247,9 @@ static int compare_ints(const void *a, const void *b)
     return *(const int *)b - *(const int *)a;
 }
 
-/* Returns the hue step, codes, that only 0.1 % of all pairs of neighbouring
- * pixels exceed. A hue step is the error of the change of R - G or B - G from
- * one pixel to the next. */
+/* Returns the hue step, codes, that is exceeded by only 0.1 % of all pairs of
+ * neighbouring pixels. The hue step of a pair is the error of the difference in
+ * R - G or B - G between both pixels. */
 static int measure_hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];
@@ -331,13 +334,13 @@ TEST(parses_texts_of_wavelengths)
     assert_false(settings_set_text(&s, "wavelengths", "650,532,1101"));
     assert_false(settings_set_text(&s, "wavelengths", "9,17"));
     s.camera.waves.kind = GLINT_WAVES_AUTO;
-    /* exact rays choose wavelengths per ghost, as models do */
+    /* with exact rays, wavelengths are chosen per ghost, as with models */
     s.options.rays = GLINT_RAYS_EXACT;
     assert_true(s.camera.waves.kind == GLINT_WAVES_AUTO);
 }
 
-/* Checks that behind an uncoated lens the sum of all ghosts of a white lamp
- * is white. */
+/* Checks that the sum of all ghosts of a white lamp is white, in a lens without
+ * coatings. */
 TEST(sum_of_ghosts_of_a_white_lamp_is_white)
 {
     static float rgb[SAMPLES];

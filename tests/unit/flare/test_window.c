@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the window: the rectangle in a ghost's pupil that contains every ray
- * passing a narrower stop. It must contain all of them, be only a little
- * larger, and move continuously while the stop closes.
+ * Tests the pupil window: the rectangle in a ghost's pupil that contains every
+ * ray that passes a stop narrower than the model's. It must contain all of
+ * them, be only a little larger, and move continuously while the stop closes.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -14,14 +14,16 @@
 
 enum { ONE = 1 << 30, ACROSS = 240, DOWN = 120 };
 
-/* Polynomials of the position in the stop, |x|, |y| <= 2, and of the barrel. */
+/* Polynomials of a ray's position in the stop, |x|, |y| <= 2, and of its
+ * position in the barrel. */
 struct shape {
     const char *name;
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
-    /* barrel polynomial (1 + r^2) / 2 = [0] + [1] u; [0] = 0: no barrel */
+    /* The barrel's polynomial is (1 + r^2) / 2 = barrel[0] + barrel[1] u;
+     * barrel[0] = 0: there is no barrel. */
     double barrel[2];
-    /* max ratio of the window's size to the extent of passing rays */
+    /* max size of the window divided by the extent of passing rays */
     double slack;
 };
 
@@ -61,10 +63,10 @@ static const struct shape shape[] = {
     {"half behind a barrel", {P(1, 0)}, {P(0, 1)}, {1}, {1}, {1, 2}, 1.5},
 };
 
-/* Shapes for lenses without rotational symmetry: their boxes have two
- * separate halves in y, with as many rows of rays in total as others have in
- * one. Through the first shape light passes at all heights of a narrow
- * strip, so its windows remain 2^31 high. */
+/* Shapes for lenses without rotational symmetry. Their pupil boxes have two
+ * separate halves in y, with as many rows of rays in total as other boxes have.
+ * Light passes the first shape at all heights of a narrow strip, so its windows
+ * keep their height of 2^31. */
 static const struct shape whole_shape[] = {
     {"a strip", {P(1, 0)}, {P(0, 1)}, {2}, {0.01}, {0}, 1.45},
     {"a strip aside",
@@ -110,7 +112,8 @@ static struct glint_lens
 open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    const int exponent = -28; /* unit of coefficients for values up to 4 */
+    /* coefficients have this exponent, which allows values up to 4 */
+    const int exponent = -28;
     struct model_polynomial p[] = {
         {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {1 << 27}},
         {GLINT_OUT_SENSOR_Y, 1, -28, {P(0, 1)}, {1 << 27}},
@@ -155,8 +158,8 @@ static bool ray_passes_stop(const struct glint_transfer *t, double radius,
                   t->exponent[GLINT_OUT_BARREL_0]) <= 1);
 }
 
-/* Extent of passing rays in the box, found ray by ray: left and right -1 ..
- * 1; height 0 .. 1, in a box with both halves LOW .. HIGH. */
+/* Extent of the rays that pass, found ray by ray. left and right: -1 .. 1;
+ * height: 0 .. 1, or LOW .. HIGH in a box with two halves. */
 struct seen {
     double left, right, low, high;
     int n;
@@ -215,7 +218,7 @@ static void check_window_contains_rays(const struct shape *s,
         fail_msg("%s at %g: %g .. %g, %g .. %g instead of %g .. %g, %g .. %g",
                  s->name, opening, got.left, got.right, got.low, got.high,
                  want.left, want.right, want.low, want.high);
-    /* The search finds the extent to within one step. */
+    /* the search is exact to one step */
     if (got.right - got.left >
             s->slack * (want.right - want.left + 4.0 / ACROSS) ||
         got.high - got.low > s->slack * (want.high - want.low + 2.0 / DOWN))
@@ -237,7 +240,8 @@ TEST(window_contains_all_passing_rays)
     }
 }
 
-/* Checks a box with both halves, whose height of 2^31 overflows 32 bits. */
+/* Checks a pupil box with two halves in y, whose height of 2^31 overflows 32
+ * bits. */
 TEST(box_with_both_halves_does_not_overflow)
 {
     for (size_t k = 0; k < sizeof whole_shape / sizeof *whole_shape; k++) {
@@ -252,8 +256,8 @@ TEST(box_with_both_halves_does_not_overflow)
     }
 }
 
-/* Checks, while the stop closes by 0.2 %, that each side moves by less than
- * a hundredth of the window. */
+/* Closes the stop by 0.2 %. Checks that each side of the window moves by less
+ * than a hundredth of the window's size. */
 TEST(window_moves_smoothly_with_the_stop)
 {
     static struct glint_window_nodes nodes;
@@ -311,12 +315,12 @@ TEST(annular_box_has_two_window_ends)
     static const struct shape aside = {
         "upwards", {P(1, 0)}, {P(0, 1), P(0, 3)}, {1}, {-0.64, 1}, {0}, 1};
     struct model_image m;
-    /* the stop position y is 0 at v = 0.8 */
+    /* the stop position y is 0 at v = 0.8, away from the middle */
     const struct glint_lens lens = open_shape(&aside, GLINT_BASIS_AUTO, &m);
     double low, high;
 
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
-    t.annulus = 1; /* The annulus begins at v = 1/2. */
+    t.annulus = 1; /* the annular pupil begins at v = 1/2 */
     assert_int_equal(glint_window_narrow_to_stop(&nodes, &t, ONE / 20), 1);
     low = ldexp(glint_transfer_v(&t, 0, 8), -30);
     high = ldexp(glint_transfer_v(&t, 8, 8), -30);

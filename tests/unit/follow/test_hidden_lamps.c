@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests tracking of lamps that are hidden or that meet: the displayed energy
- * must not jump, and tracks must keep their ids.
+ * must not change abruptly, and tracks must keep their ids.
  */
 #include "glint/lamp_tracker.h"
 
@@ -22,7 +22,7 @@ static void open_night_without_noise(int width, int height, double sigma)
     assert_true(night_open_tracker(&night));
 }
 
-/* Last energy, largest step from frame to frame, and largest energy. */
+/* Energy in the last frame, largest step between frames, and largest energy. */
 struct steps {
     double last, most, largest;
     int n;
@@ -37,7 +37,7 @@ static void record_energy_step(struct steps *s, double energy)
 }
 
 /* Returns the energy of all tracks in the lower half of the image. Checks that
- * their id is *ID; if *ID is 0, sets it to their id. */
+ * all have the id *ID, which is set to their id if it is 0. */
 static double sum_energy_of_lower_half(const struct night *n, uint32_t *id)
 {
     double energy = 0;
@@ -54,10 +54,10 @@ static double sum_energy_of_lower_half(const struct night *n, uint32_t *id)
     return energy;
 }
 
-/* Moves a lamp behind a pole of 20 pixels at several speeds. Checks that the
+/* Moves a lamp behind a pole 20 pixels wide at several speeds. Checks that the
  * energy of its track changes by less than a quarter per frame, although the
- * energy of its spot drops to 0 at once, and that the track keeps its id. If
- * N_LAMPS is 2, there is a second, stationary lamp. */
+ * energy of its spot drops to 0 in one frame, and that the track keeps its id.
+ * N_LAMPS 2: there is a second, stationary lamp. */
 static void move_lamp_behind_pole(int n_lamps)
 {
     static const double speeds[] = {0.7, 1, 2, 4, 6};
@@ -94,15 +94,15 @@ TEST(pole_causes_no_jump)
     move_lamp_behind_pole(2);
 }
 
-/* Checks that the glow around a hidden lamp does not count as white, although
- * it is the brightest part of the image. */
+/* Checks that the glow around a hidden lamp does not define the white level,
+ * although it is then the brightest part of the image. */
 TEST(glow_of_a_hidden_lamp_is_not_white)
 {
     move_lamp_behind_pole(1);
 }
 
-/* Checks that the white level is remembered as long as the hidden lamp's track,
- * and decays meanwhile. */
+/* Checks that the tracker remembers the white level as long as it keeps the
+ * track of the hidden lamp, and that the level decays meanwhile. */
 TEST(white_level_is_remembered_and_decays)
 {
     const struct night_lamp lamp = {160, 100, 5, 3};
@@ -123,8 +123,9 @@ TEST(white_level_is_remembered_and_decays)
     night_close_tracker(&night);
 }
 
-/* Checks two lamps that meet until the finder merges them, and part again:
- * their total energy stays within limits, and neither jumps. */
+/* Moves two lamps together until the finder merges them, and apart again.
+ * Checks that their total energy stays within limits, and that neither track
+ * jumps. */
 TEST(merging_lamps_keep_their_energy)
 {
     struct steps energy = {0, 0, 0, 0};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests tracking of lamps in synthetic night scenes with the real finder: noise
- * must be suppressed, motion followed, and nothing may jump.
+ * Tests tracking of lamps in synthetic night scenes with the real finder:
+ * tracks must suppress noise and follow motion without abrupt changes.
  */
 #include "glint/lamp_tracker.h"
 
@@ -113,8 +113,8 @@ static double compute_mean(const struct moments *m)
     return m->sum / m->n;
 }
 
-/* Checks that six lamps stay in place over 300 frames with noise of 3 codes.
- * Prints columns of spots and tracks. */
+/* Checks that the tracks of six lamps do not move in 300 frames with noise of 3
+ * codes. Prints the deviation of spots and of tracks, in columns. */
 TEST(static_lamps_stay_in_place_in_noise)
 {
     static const struct night_lamp lamp[] = {
@@ -175,8 +175,8 @@ TEST(static_lamps_stay_in_place_in_noise)
     night_close_tracker(&night);
 }
 
-/* Returns the RMS change per frame of the axis of a track, degrees, for a
- * tube at DEGREES observed with noise of 3.5 degrees. */
+/* Returns the RMS change per frame, degrees, of the axis of the track of a tube
+ * at DEGREES, which is observed with noise of 3.5 degrees. */
 static double measure_axis_rotation_deg(double degrees)
 {
     struct moments turn = {0, 0, 0};
@@ -223,9 +223,9 @@ TEST(axes_are_steady_in_any_orientation)
     assert_true(lying < 1 && standing < 1);
 }
 
-/* Returns the max distance that the track of a dim lamp of 8 x 8 pixels
- * moves, pixels, while in every EVERY-th frame another of its pixels is 41
- * times as bright (code 255 against 43, linear 1 against 0.0242). */
+/* Returns the max distance, pixels, that the track of a dim lamp of 8 x 8
+ * pixels moves while in every EVERY-th frame a different pixel of the lamp is
+ * 41 times as bright (code 255 instead of 43, linear 1 instead of 0.0242). */
 static double measure_motion_of_dim_lamp_px(int every, uint32_t seed)
 {
     double furthest = 0;
@@ -270,9 +270,10 @@ TEST(sparkle_moves_less_than_a_pixel)
     assert_true(rarely < 1);
 }
 
-/* Checks that the track stays if the lamp's brightest pixels are near the
- * upper threshold, so that its spot is often faint. White is fixed, as a lamp
- * relative to the white of the picture would not be faint. */
+/* Checks a lamp whose brightest pixels are near the upper threshold, so that
+ * its spot is often classified as faint: its track must continue. The white
+ * level is fixed, as relative to the white of the picture the lamp would not be
+ * faint. */
 TEST(faint_spots_keep_a_track)
 {
     uint32_t id = 0;
@@ -298,9 +299,9 @@ TEST(faint_spots_keep_a_track)
     night_close_tracker(&night);
 }
 
-/* Checks that a spot that is faint from the start begins no track, and that
- * a faint spot much larger than a lamp, such as a wall, does not continue
- * its track. */
+/* Checks that a spot that is faint from the start begins no track, and that a
+ * faint spot much larger than a lamp, such as a wall, does not continue the
+ * lamp's track. */
 TEST(faint_spots_begin_no_track)
 {
     struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
@@ -344,7 +345,7 @@ static bool track_equals_spot(const struct glint_lamp_track *t,
            memcmp(t->rgb_q15, s->rgb_q15, sizeof t->rgb_q15) == 0;
 }
 
-/* Returns whether each track equals its spot, and each spot that is not
+/* Returns whether each track equals its spot, and each spot that is not marked
  * faint has a track. */
 static bool tracks_equal_spots(void)
 {
@@ -363,9 +364,9 @@ static bool tracks_equal_spots(void)
     return night.n_tracks >= n_lights;
 }
 
-/* Checks that for a repeated image tracks converge exactly to its spots,
- * whatever noise or motion preceded: after attack + 1 s or five frames, at
- * any frame rate. */
+/* Checks that on a repeated image tracks become exactly equal to the spots,
+ * whatever noise or motion preceded: after attack + 1 s or five frames, at any
+ * frame rate. */
 TEST(tracks_converge_exactly_to_a_still)
 {
     static const int32_t rates[] = {1000, FPS60, FPS30, 200000, 1000000};
@@ -406,8 +407,8 @@ TEST(tracks_converge_exactly_to_a_still)
 
 /* ------------------------------------------------------------------ motion */
 
-/* Checks that a lamp is followed within half a pixel at speeds of 0.05 to 12
- * pixels per frame, with and without noise. */
+/* Checks that the track of a moving lamp is within half a pixel of the lamp at
+ * speeds of 0.05 to 12 pixels per frame, with and without noise. */
 TEST(moving_lamp_does_not_lag)
 {
     static const double speeds[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 4, 8, 12};
@@ -442,8 +443,8 @@ TEST(moving_lamp_does_not_lag)
     }
 }
 
-/* Checks that a wide lamp in a shaky pan, whose direction reverses twice per
- * second, is followed within a pixel, with and without noise. */
+/* Checks that a wide lamp in a shaky pan, which reverses its direction twice
+ * per second, is tracked within a pixel, with and without noise. */
 TEST(shaken_lamp_does_not_lag)
 {
     for (int k = 0; k < 2; k++) {
@@ -482,9 +483,9 @@ TEST(starting_lamp_is_followed_at_once)
     }
 }
 
-/* Returns the max distance between the track and the centroid of a lamp of
- * RADIUS, pixels, over 20 frames in which it moves by SPEED pixels per frame
- * from frame FIRST to frame LAST. */
+/* Moves a lamp of RADIUS by SPEED pixels per frame from frame FIRST to frame
+ * LAST. Returns the max distance, pixels, between its track and its centroid
+ * over 20 frames. */
 static double measure_lag_in_pan_px(double radius, double speed, int first,
                                     int last)
 {
@@ -511,8 +512,9 @@ static double measure_lag_in_pan_px(double radius, double speed, int first,
     return furthest;
 }
 
-/* Checks that a lamp in a pan of up to 3 % of the width per frame is followed
- * within a pixel from its second frame on, and when the pan starts or stops. */
+/* Checks that a lamp in a pan of up to 3 % of the image width per frame is
+ * tracked within a pixel from its second frame on, also when the pan starts or
+ * stops. */
 TEST(lamps_are_followed_in_a_pan)
 {
     static const double speeds[] = {3, 13, 40}, radii[] = {1.5, 3, 8};
@@ -529,9 +531,9 @@ TEST(lamps_are_followed_in_a_pan)
     }
 }
 
-/* Returns the max distance between the track and the centroid of a lamp of
- * RADIUS, pixels, in its first eight frames, in which it enters the picture at
- * SPEED pixels per frame. */
+/* Moves a lamp of RADIUS into the picture at SPEED pixels per frame. Returns
+ * the max distance, pixels, between its track and its centroid in its first
+ * eight frames. */
 static double measure_lag_at_entry_px(double radius, double speed)
 {
     double furthest = 0;
@@ -560,8 +562,8 @@ static double measure_lag_at_entry_px(double radius, double speed)
 }
 
 /* Checks that a lamp that enters the picture in a fast pan is followed from its
- * second frame on. At 3 pixels per frame its shape changes in many frames,
- * which is not a motion. */
+ * second frame on. At 3 pixels per frame its visible shape changes in many
+ * frames, which must not count as motion. */
 TEST(lamp_entering_in_a_pan_is_followed)
 {
     static const double speeds[] = {3, 13, 40}, radii[] = {1.5, 3, 8, 20};
@@ -575,9 +577,9 @@ TEST(lamp_entering_in_a_pan_is_followed)
     }
 }
 
-/* Checks a lamp that returns after a second, 25 pixels off, which is too far
- * for one frame (0.06 of 320 is 19 pixels): its track fades in at the new
- * position. */
+/* Checks a lamp that returns after a second, 25 pixels from its last position.
+ * That is too far for one frame (0.06 of 320 is 19 pixels), so a new track
+ * fades in there. */
 TEST(returning_lamp_gets_a_new_track)
 {
     for (int k = 0; k < 2; k++) {
@@ -609,8 +611,8 @@ TEST(returning_lamp_gets_a_new_track)
     }
 }
 
-/* Checks that two lamps that meet and pass keep their ids, as their motion
- * distinguishes them. */
+/* Checks that two lamps that meet and pass each other keep their ids, as the
+ * tracker predicts their motion. */
 TEST(passing_lamps_keep_their_ids)
 {
     uint32_t id[2] = {0, 0};
@@ -634,8 +636,8 @@ TEST(passing_lamps_keep_their_ids)
     night_close_tracker(&night);
 }
 
-/* Checks a fast lamp that leaves to the right: its track continues
- * off-screen at that speed and fades in 400 ms by steps of at most 1 / 12. */
+/* Checks a fast lamp that leaves to the right: its track continues off-screen
+ * at the same speed and fades out in 400 ms, by steps of at most 1 / 12. */
 TEST(leaving_lamp_continues_and_fades)
 {
     double last_x = 0, last_power = 0;
@@ -670,8 +672,8 @@ TEST(leaving_lamp_continues_and_fades)
 
 /* ---------------------------------------------------------- rise, fade, cut */
 
-/* Returns the level of a lamp US microseconds after it was switched on, with
- * a frame every ELAPSED_US. */
+/* Returns the level (0 .. 1) of a lamp US microseconds after it was switched
+ * on, with a frame every ELAPSED_US. */
 static double measure_level_after_switching_on(int32_t us, int32_t elapsed_us,
                                                int32_t attack_ms)
 {
@@ -711,8 +713,8 @@ TEST(rise_does_not_depend_on_the_frame_rate)
     assert_true(measure_level_after_switching_on(4 * 50000, 50000, 200) == 1);
 }
 
-/* Checks that if all lamps are elsewhere in the next frame, old tracks end
- * and new ones have full level at once. */
+/* Checks that if all lamps are at other positions in the next frame, old tracks
+ * end and new tracks have full level immediately. */
 TEST(cut_restarts_in_one_frame)
 {
     static const struct night_lamp before[] = {
@@ -748,8 +750,9 @@ TEST(cut_restarts_in_one_frame)
     night_close_tracker(&night);
 }
 
-/* Checks that three lamps that vanish or appear together are a cut to or
- * from a dark scene, and that two, which may be hidden, fade instead. */
+/* Checks that three lamps vanishing or appearing together are treated as a
+ * cut to or from a dark scene, while two, which may just be hidden, fade
+ * instead. */
 TEST(cut_to_a_dark_scene_is_detected)
 {
     static const struct night_lamp lamp[] = {
@@ -774,8 +777,8 @@ TEST(cut_to_a_dark_scene_is_detected)
     }
 }
 
-/* Checks that these are not cuts: one of three lamps vanishes, another
- * appears, a pan. */
+/* Checks that the following are not treated as cuts: one of three lamps
+ * vanishes, another appears, the camera pans. */
 TEST(single_changes_are_not_cuts)
 {
     open_night_tracker(640, 200, 3);
@@ -796,8 +799,8 @@ TEST(single_changes_are_not_cuts)
 /* -------------------------------------------------------------------- many */
 
 /* Returns the quantity that determines the star of a clipped lamp
- * (engine/frame/frame_star.c): at most 32 times its power, or the cube of
- * the width of its white spot. */
+ * (engine/frame/frame_star.c): the smaller of 32 times its power and the cube
+ * of the width of its white spot. */
 static double star_power_of_track(const struct glint_lamp_track *t)
 {
     const double photo_airy = 0.55e-3 * 22 / 43.27 * hypot(160, 120);
@@ -808,8 +811,8 @@ static double star_power_of_track(const struct glint_lamp_track *t)
 }
 
 /* Checks the power of a clipped lamp in noise of 8 codes, which is estimated
- * from the rest of its rim: it neither jumps nor drifts, and if it halves
- * permanently the tracks follow within a second. */
+ * from the visible part of its rim: it neither jumps nor drifts, and if it is
+ * halved for good the tracks adapt within a second. */
 TEST(power_of_a_clipped_lamp_is_steady_in_noise)
 {
     static const struct night_lamp lamps[] = {
@@ -850,7 +853,7 @@ TEST(power_of_a_clipped_lamp_is_steady_in_noise)
     }
 }
 
-/* Checks that of ten lamps the same four are shown, while noise makes the
+/* Checks that the same four of ten lamps are drawn, although noise makes the
  * finder rank different lamps fourth. A lamp that becomes much brighter fades
  * in while another one fades out. */
 TEST(limited_lamps_do_not_flicker)
@@ -888,8 +891,8 @@ TEST(limited_lamps_do_not_flicker)
     night_close_tracker(&night);
 }
 
-/* Checks that with more lights than tracks the five brightest are shown in
- * each frame. */
+/* Checks that if there are more lights than tracks, the five brightest are
+ * drawn in each frame. */
 TEST(brightest_lights_get_tracks)
 {
     static struct glint_spot spot[NIGHT_MAX];

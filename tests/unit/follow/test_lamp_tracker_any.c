@@ -75,7 +75,7 @@ static void assert_tracks_are_valid(int n)
     }
 }
 
-/* Sets MIXED to the N spots of SPOT in random order. */
+/* Sets MIXED to the spots SPOT[N] in random order. */
 static void shuffle_spots(struct glint_spot *mixed,
                           const struct glint_spot *spot, int n)
 {
@@ -87,8 +87,8 @@ static void shuffle_spots(struct glint_spot *mixed,
     }
 }
 
-/* Checks that two trackers give the same tracks for the same spots in
- * different order. Some spots return in the next step, slightly moved. */
+/* Checks that two trackers give the same tracks for the same spots in different
+ * order. Some spots recur in the next step, slightly moved. */
 TEST(order_of_spots_changes_nothing)
 {
     static struct glint_spot spot[NIGHT_MAX], mixed[NIGHT_MAX];
@@ -123,7 +123,8 @@ TEST(order_of_spots_changes_nothing)
                     spot[i].x_q8 += rng_int_below(&night.seed, 2048);
             }
             n = n_new;
-            /* equal spots, and one that differs only in its faint flag */
+            /* some equal spots, and one that differs from them only in its
+             * faint flag */
             if (n > 3)
                 spot[1] = spot[0], spot[2] = spot[0], spot[2].faint ^= 1;
             shuffle_spots(mixed, spot, n);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the pairing of tracks and spots, nearest first, with a search of all
- * pairs.
+ * Compares the library's pairing of seekers (tracks that need a spot) with
+ * spots, cheapest pair first, with a slow search of all pairs.
  */
 #include "support/rng.h"
 #include "follow/match.h"
@@ -54,8 +54,8 @@ static void place_seekers_and_spots(int n_seekers, int n_spots, int side_q8)
                                       .faint = rng_int_below(&seed, 4) == 0};
 }
 
-/* Returns the cost of pairing S with P by the definition in the header; -1:
- * out of reach. */
+/* Returns the cost of pairing S with P by the definition in the header; -1: P
+ * is out of reach. */
 static int64_t compute_pairing_cost(const struct glint_seeker *s,
                                     const struct glint_spot *p)
 {
@@ -70,9 +70,9 @@ static int64_t compute_pairing_cost(const struct glint_seeker *s,
     return p->faint || s->is_lost ? 4 * (d2 + 65536) : d2;
 }
 
-/* Pairs seekers and spots by repeatedly choosing the cheapest remaining
- * pair. Sets PARTNER[i] to the spot of seeker i, or -1. Returns the number
- * of pairs. */
+/* Pairs seekers and spots by repeatedly choosing the cheapest of all remaining
+ * pairs. Sets PARTNER[i] to the spot of seeker i, or -1. Returns the number of
+ * pairs. */
 static int match_by_cheapest_pairs(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
@@ -100,7 +100,7 @@ static int match_by_cheapest_pairs(int n_spots, int32_t *partner)
     }
 }
 
-/* Checks the pairs against those of the slow search; no two costs are equal. */
+/* Compares the pairs with those of the slow search; no two costs are equal. */
 TEST(pairs_match_the_slow_search)
 {
     static int32_t partner[MAX];
@@ -140,9 +140,8 @@ static int count_nearer_spots(const struct glint_seeker *s, int at)
     return n;
 }
 
-/* Checks the max number of seekers and spots, all within reach of each
- * other: no spot is used twice, and each is one of its seeker's eight
- * nearest. */
+/* Checks the max number of seekers and spots, all within reach of each other:
+ * no spot is used twice, and each seeker has one of its eight nearest spots. */
 TEST(crowded_seekers_get_distinct_spots)
 {
     static uint8_t seen[MAX];
@@ -167,8 +166,8 @@ TEST(crowded_seekers_get_distinct_spots)
     assert_in_range(n, MAX / 2, MAX);
 }
 
-/* Checks that a spot exactly at a seeker's max distance is paired, and one
- * further away is not. */
+/* Checks that a spot exactly at the max distance of a seeker is paired, and
+ * that a spot further away is not. */
 TEST(reach_includes_the_max_distance)
 {
     static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -187,7 +186,7 @@ TEST(reach_includes_the_max_distance)
 }
 
 /* Places N seekers and N spots at a few positions, so that most costs are
- * equal. All spots of a position differ in one member. */
+ * equal. Spots at the same position differ in one member. */
 static void place_with_equal_costs(int n)
 {
     match.n_seekers = n;
@@ -203,7 +202,7 @@ static void place_with_equal_costs(int n)
     }
 }
 
-/* Shuffles the first N elements of THINGS, each of BYTES bytes. */
+/* Shuffles the first N elements of THINGS. BYTES: size of an element. */
 static void shuffle_items(void *things, int n, size_t bytes)
 {
     uint8_t *const at = things, kept[sizeof(struct glint_spot)];
@@ -218,7 +217,8 @@ static void shuffle_items(void *things, int n, size_t bytes)
     }
 }
 
-/* Sets POWER, by seeker id, to the power of the seeker's spot; -1: no spot. */
+/* Sets POWER[id] to the power of the spot paired with the seeker of that id;
+ * -1: no spot. */
 static void read_powers_of_matches(int64_t power[MAX + 1])
 {
     for (int i = 0; i < match.n_seekers; i++) {
@@ -228,8 +228,8 @@ static void read_powers_of_matches(int64_t power[MAX + 1])
     }
 }
 
-/* Checks that ties of cost are decided by ids and the members of spots, not
- * by their order. */
+/* Checks that equal costs are decided by ids and by the members of spots, not
+ * by their order in the array. */
 TEST(ties_do_not_depend_on_order)
 {
     static int64_t power[MAX + 1], again[MAX + 1];

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests compositing a program's own light: it is added in linear light as
- * defined, in every format and size, and changes nothing else.
+ * Tests adding light that a program computed itself to an image: it is added
+ * in linear light as defined, in every format and size, and changes nothing
+ * else.
  */
 #include <math.h>
 #include <stdint.h>
@@ -16,8 +17,8 @@ enum { MOST = 150, N_MOST = MOST * MOST };
 
 static uint16_t light[3][N_MOST];
 
-/* Returns a layer with a lamp of three colours near (30, 20) and no light
- * from column 100 on. */
+/* Returns a layer with a lamp near (30, 20) that has different light in R, G
+ * and B. From column 100 on it has no light. */
 static struct glint_layer make_lamp_layer(int width, int height)
 {
     static const int most[3] = {65535, 30000, 900};
@@ -91,8 +92,8 @@ TEST(composite_matches_its_definition)
     }
 }
 
-/* Checks that all instruction sets give the same bits, and that pixels
- * without light and guard bytes are unchanged. */
+/* Checks that the image is bit-identical with all instruction sets, and that
+ * pixels without light and guard bytes are unchanged. */
 TEST(all_instruction_sets_give_the_same_bits)
 {
     enum { GUARD = 256, BYTES = 3 * N_MOST + 2 * GUARD };

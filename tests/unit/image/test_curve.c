@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares transfer curves, and codes after light is added, with libm, and
- * colour matrices with the standards' colours.
+ * Compares transfer curves, and the codes after adding light, with results
+ * computed by libm, and colour matrices with the colours in the standards.
  */
 #include "image/curve.h"
 
@@ -14,8 +14,8 @@
 
 static const enum glint_tone transfers[2] = {GLINT_TONE_SRGB, GLINT_TONE_BT709};
 
-/* Returns the linear light of V, both 0 .. 1, by IEC 61966-2-1 or the
- * inverse of ITU-R BT.709. */
+/* Returns the linear light of code value V, both 0 .. 1, by IEC 61966-2-1 or
+ * the inverse of ITU-R BT.709. */
 static double decode_value(enum glint_tone transfer, double v)
 {
     if (transfer == GLINT_TONE_SRGB)
@@ -37,12 +37,13 @@ TEST(codes_match_hand_computation)
 
     glint_curve_init(&curve, GLINT_TONE_SRGB);
     assert_int_equal(curve.decode_q20[0], 0);
-    assert_int_equal(curve.decode_q20[10], 3183);    /* 10 / 255 / 12.92 */
+    /* code 10: 10 / 255 / 12.92 */
+    assert_int_equal(curve.decode_q20[10], 3183);
     assert_int_equal(curve.decode_q20[128], 226346); /* 0.2158605 */
     assert_int_equal(curve.decode_q20[255], 1 << 20);
     glint_curve_init(&curve, GLINT_TONE_BT709);
     assert_int_equal(curve.decode_q20[0], 0);
-    assert_int_equal(curve.decode_q20[20], 18276); /* 20 / 255 / 4.5 */
+    assert_int_equal(curve.decode_q20[20], 18276); /* code 20: 20 / 255 / 4.5 */
     assert_int_equal(curve.decode_q20[255], 1 << 20);
 }
 
@@ -74,8 +75,8 @@ TEST(decoding_is_monotone)
     }
 }
 
-/* Errors after light is added to each code, against unrounded codes in
- * double precision. */
+/* Errors of codes after light was added to each code, against unrounded codes
+ * in double precision. */
 struct errors {
     double worst, squares;
     int n;
@@ -113,8 +114,8 @@ static struct errors measure_curve_errors(enum glint_tone transfer)
     return e;
 }
 
-/* Checks that added light is right within 0.62 code and 0.3 code RMS;
- * rounding alone gives 0.5 and 0.289. */
+/* Checks that codes after adding light are right within 0.62 code, and within
+ * 0.3 code RMS; rounding alone causes 0.5 and 0.289. */
 TEST(added_light_is_within_rounding)
 {
     for (int t = 0; t < 2; t++) {
@@ -139,8 +140,8 @@ static void assert_ycc_gives_rgb(const struct glint_ycc *ycc, int y, int cb,
     assert_true(abs(rgb_q7[2] - b * 128) <= within);
 }
 
-/* Checks the standards' 100 % colour bars, which are rounded to whole codes,
- * within 1.5 codes. */
+/* Checks the conversion of the standards' 100 % colour bars, whose published
+ * codes are rounded, within 1.5 codes. */
 TEST(colour_bars_convert_within_rounding)
 {
     struct glint_ycc ycc;
@@ -162,8 +163,8 @@ TEST(colour_bars_convert_within_rounding)
     assert_ycc_gives_rgb(&ycc, 76, 85, 255, 255, 0, 0, 192);
 }
 
-/* Checks the row sums of the matrices, Y_Q15 for luma and 0 for chroma, and
- * that their product is 1. */
+/* Checks that the rows of the matrices sum to Y_Q15 for luma and to 0 for
+ * chroma, and that the product of both matrices is 1. */
 static void check_matrices_are_inverse(const struct glint_ycc *ycc, int y_q15)
 {
     for (int i = 0; i < 3; i++) {

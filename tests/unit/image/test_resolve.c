@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds light to images of every format and compares the codes with double
- * precision, which uses the standards' curves and matrices instead of tables.
+ * Adds light to images of every format and compares the codes with those
+ * computed in double precision from the curves and matrices of the standards
+ * instead of tables.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -25,8 +26,8 @@ enum {
 
 #define WHITE_Q20 INT64_C(1048576)
 
-/* An image with guard bytes around and between its rows, its bytes before
- * light is added, and the light to add. */
+/* An image with guard bytes around it and between its rows, a copy of its bytes
+ * before light is added, and the light to add. */
 struct fixture {
     struct glint_image image;
     uint8_t plane[3][PLANE_BYTES], before[3][PLANE_BYTES];
@@ -37,8 +38,8 @@ static struct fixture fixture;
 static struct glint_resolve resolve;
 static uint32_t seed = 1;
 
-/* Makes an image of guard bytes. Strides are 5 bytes more than a row,
- * negative if UPSIDE_DOWN. */
+/* Makes an image of guard bytes. Rows are 5 bytes further apart than their
+ * length; strides are negative if UPSIDE_DOWN. */
 static void make_guarded_image(enum glint_pixel_format format, int width,
                                int height, int upside_down)
 {
@@ -68,7 +69,7 @@ static uint8_t *sample_address(int plane, int x, int y)
            x;
 }
 
-/* Returns the bytes per row of plane PLANE. */
+/* Returns the number of bytes per row of plane PLANE, without padding. */
 static int row_bytes_of_plane(int plane)
 {
     const struct glint_image *image = &fixture.image;
@@ -91,7 +92,7 @@ static void fill_with_random_codes(int plane, int low, int high)
                 (uint8_t)(low + rng_int_below(&seed, high - low + 1));
 }
 
-/* Converts light from Q20 to the 0 .. 65535 that kernels receive. */
+/* Converts light from Q20 to the range 0 .. 65535 of the kernels' input. */
 static uint16_t convert_light_to_q16(int32_t light_q20)
 {
     const int32_t l = (light_q20 >> 4) + (light_q20 >> 3 & 1);
@@ -117,7 +118,7 @@ static void add_light_in_strips(const struct glint_image *image, int dither,
             const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
             const int y1 = y0 + 2 < image->height ? y0 + 2 : image->height;
 
-            /* bright where light must not be read */
+            /* this light is bright, to reveal where it is read in error */
             memset(&light, 0x55, sizeof light);
             for (int i = 0; i < 3; i++)
                 for (int y = y0; y < y1; y++)
@@ -158,7 +159,7 @@ static void assert_guard_bytes_unchanged(void)
 
 /* --------------------------------------------------------------- reference */
 
-/* Returns the change of the encoded value V (1 = white) when the linear light
+/* Returns how much the encoded value V (1 = white) changes when linear light
  * LIGHT is added. */
 static double expected_code_change(double v, double light)
 {
@@ -189,7 +190,8 @@ static struct coding coding_of_image(void)
     return c;
 }
 
-/* Sets RGB to the change of R'G'B' of pixel (X, Y) in a Y'CbCr image. */
+/* Sets RGB to the measured change of R'G'B' of pixel (X, Y) in a Y'CbCr
+ * image. */
 static void measured_rgb_change(const struct coding *c, int x, int y, int cx,
                                 int cy, double rgb[3])
 {
@@ -311,7 +313,7 @@ static const int sizes[][2] = {{1, 1}, {3, 1}, {1, 3}, {7, 5}, {33, 18}};
 
 enum { N_SIZES = sizeof sizes / sizeof *sizes };
 
-/* Fills the fixture with random light of all magnitudes, a third of it
+/* Fills the fixture with random light of all magnitudes; a third of it is
  * negative. */
 static void fill_with_random_light(void)
 {
@@ -325,7 +327,8 @@ static void fill_with_random_light(void)
         }
 }
 
-/* Sets transfer curve, range and matrix of the image by the bits of K. */
+/* Selects the transfer curve, range and matrix of the image by the bits of
+ * K. */
 static void set_coding_by_bits(int k)
 {
     fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
@@ -361,7 +364,8 @@ TEST(light_adds_up)
         check_random_images(40, 0.65);
 }
 
-/* Checks all codes, including colours far outside the RGB cube. */
+/* Checks that light is added correctly to all codes, including those of colours
+ * far outside the RGB cube. */
 TEST(codes_outside_the_rgb_cube_resolve)
 {
     for (int round = 0; round < 4; round++)
@@ -401,7 +405,8 @@ TEST(faint_light_changes_nothing)
             fill_with_random_codes(i, 128, 128);
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 33 * 18; k += 4)
-                fixture.light_q20[i][k] = 1500; /* 0.4 code at 128 */
+                /* light of 0.4 code at code 128 */
+                fixture.light_q20[i][k] = 1500;
         add_light_to_image(0);
         assert_memory_equal(fixture.plane, fixture.before,
                             sizeof fixture.plane);
@@ -431,8 +436,9 @@ TEST(strong_light_saturates_at_white)
         }
 }
 
-/* Checks sRGB codes computed by hand: code 128 has light 226346 / 2^20; 2.5
- * times that is code 194, 4 times is 239, and a quarter of white is 137. */
+/* Checks results of sRGB codes computed by hand. Code 128 has light 226346 /
+ * 2^20; 2.5 times this light is code 194, 4 times is 239, and a quarter of
+ * white is 137. */
 TEST(codes_match_hand_computation)
 {
     make_guarded_image(GLINT_RGB24, 1, 1, 0);
@@ -446,9 +452,9 @@ TEST(codes_match_hand_computation)
     assert_int_equal(*sample_address(0, 2, 0), 137);
 }
 
-/* Checks that one lit pixel of four changes their chroma sample by a
- * quarter, and that a single pixel in the corner of an image with odd sides
- * changes it completely. */
+/* Checks that one lit pixel of four changes their common chroma sample by a
+ * quarter, and that the only pixel of the last sample in an image with odd
+ * sides changes it completely. */
 TEST(chroma_is_the_mean_of_existing_pixels)
 {
     make_guarded_image(GLINT_I420, 3, 3, 0);
@@ -460,14 +466,15 @@ TEST(chroma_is_the_mean_of_existing_pixels)
     assert_int_equal(*sample_address(0, 0, 0), 29); /* 0.114 * 255 */
     assert_int_equal(*sample_address(0, 1, 0), 0);
     assert_int_equal(*sample_address(0, 2, 2), 29);
-    assert_int_equal(*sample_address(1, 0, 0), 160); /* 128 + 127.5 / 4 */
+    /* luma of a quarter of white: 128 + 127.5 / 4 */
+    assert_int_equal(*sample_address(1, 0, 0), 160);
     assert_int_equal(*sample_address(1, 1, 0), 128);
     assert_int_equal(*sample_address(1, 1, 1), 255); /* 128 + 127.5 */
     assert_int_equal(*sample_address(2, 1, 1),
                      107); /* 128 - 0.114 * 127.5 / 0.701 */
 }
 
-/* Checks that with dither the mean of a uniform image is right within 0.1
+/* Checks that with dither the mean over a uniform image is right within 0.1
  * code. */
 TEST(dither_keeps_the_mean)
 {
@@ -490,8 +497,8 @@ TEST(dither_keeps_the_mean)
     }
 }
 
-/* Checks that the dither pattern has each of 64 thresholds once, and that
- * neighbouring thresholds differ much. */
+/* Checks that the dither pattern contains each of its 64 thresholds once, and
+ * that neighbouring thresholds differ strongly. */
 TEST(dither_pattern_has_all_thresholds)
 {
     int seen[64] = {0};
@@ -527,7 +534,7 @@ TEST(dither_in_ycc_stays_within_a_code)
 
 TEST(linear_light_adds_and_saturates)
 {
-    /* rows of three pixels, the third of which is padding */
+    /* rows of three pixels, of which the third is padding */
     static int32_t px_q20[2][9];
     const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
                                         {{-9, INT32_MIN}, {1 << 20, 2}},
@@ -607,8 +614,8 @@ TEST(layouts_give_the_same_codes)
         }
 }
 
-/* Checks that a row of packed pixels, drawn in one span (where SIMD vectors
- * end anywhere), equals one drawn in spans of eight. */
+/* Checks that a row of packed pixels drawn in one span, which SIMD vectors do
+ * not divide evenly, equals one drawn in spans of eight. */
 TEST(long_spans_equal_short_spans)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
@@ -644,7 +651,8 @@ TEST(long_spans_equal_short_spans)
         }
 }
 
-/* Makes the image uniform in each 2 x 2 pixels, where shared light is exact. */
+/* Makes each 2 x 2 pixels of the image uniform: sharing light is exact for
+ * these. */
 static void make_blocks_uniform(void)
 {
     const struct glint_image *image = &fixture.image;
@@ -713,9 +721,9 @@ TEST(quads_of_uniform_blocks_are_exact)
         }
 }
 
-/* Checks 2 x 2 pixels that differ: shared light changes bright pixels less;
- * none becomes darker or exceeds white, their order is preserved, and strong
- * light makes all four white. */
+/* Checks blocks of 2 x 2 different pixels that share light: bright pixels
+ * change less; none becomes darker or exceeds white, their order is preserved,
+ * and strong light makes all four white. */
 TEST(quads_of_edges_stay_ordered)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
@@ -741,9 +749,9 @@ TEST(quads_of_edges_stay_ordered)
     }
 }
 
-/* Returns the RMS difference, codes, between light shared by 2 x 2 pixels
- * and light per pixel, over images whose pixels differ by up to DIFFER
- * codes. */
+/* Returns the RMS difference, codes, between light shared by 2 x 2 pixels and
+ * light computed per pixel, over images whose pixels differ by up to DIFFER
+ * codes within a block. */
 static double rms_of_quads_and_pixels(int differ)
 {
     static uint8_t want[PLANE_BYTES];
@@ -784,8 +792,8 @@ TEST(quads_are_near_single_pixels)
     assert_true(rms_of_quads_and_pixels(40) < 1.5);
 }
 
-/* Checks that a span of 2 x 2 pixels equals several short ones, for any
- * remainder at its end. */
+/* Checks that one span of 2 x 2 blocks equals several short spans, for any
+ * number of blocks that remain after the last SIMD vector. */
 TEST(long_quad_spans_equal_short_spans)
 {
     static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
@@ -829,7 +837,7 @@ TEST(long_quad_spans_equal_short_spans)
 }
 
 /* Checks that all codes of RGB565 are unchanged without light, and reach the
- * max green under strong green light. */
+ * max green code under strong green light. */
 TEST(writes_rgb565)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
@@ -854,7 +862,7 @@ TEST(writes_rgb565)
     }
 }
 
-/* Checks that fixed images have the same bytes on every machine. */
+/* Checks that fixed images have the expected hashes on every machine. */
 TEST(images_match_their_hashes)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */

@@ -37,7 +37,7 @@ static void set_grey_row(const struct glint_image *image, int y, int code)
                    (size_t)glint_image_plane_height(image->format, p, HEIGHT));
 }
 
-/* Checks samples of an image with three parts, from the top: black, grey,
+/* Checks the samples of an image of three stripes, from the top: black, grey,
  * bright. */
 static void check_samples_of_format(enum glint_pixel_format format,
                                     enum glint_range range)
@@ -71,8 +71,8 @@ TEST(samples_every_format)
     check_samples_of_format(GLINT_GREY, GLINT_RANGE_LIMITED);
 }
 
-/* Checks the sample of three pixels, of which the middle one is orange,
- * stored as BYTES[N]. */
+/* Checks the samples of an image of three pixels, stored as BYTES[N], of which
+ * the middle one is orange. */
 static void check_orange_sample(enum glint_pixel_format format,
                                 const uint8_t *bytes, size_t n)
 {
@@ -91,7 +91,7 @@ TEST(samples_colours_of_every_layout)
 {
     static const uint8_t rgb[] = {255, 96, 24}, bgrx[] = {24, 96, 255, 0};
     static const uint8_t rgbx[] = {255, 96, 24, 0};
-    /* RGB565 with the codes 31, 24, 3 */
+    /* RGB565 pixel with R, G, B = 31, 24, 3 */
     static const uint8_t packed[] = {0x03, 0xfb};
 
     check_orange_sample(GLINT_RGB24, rgb, 3);
@@ -101,8 +101,8 @@ TEST(samples_colours_of_every_layout)
     check_orange_sample(GLINT_RGB565, packed, 2);
 }
 
-/* Checks that an image smaller than the number of samples returns its pixel
- * everywhere, and that a linear image, which has no codes, returns 0. */
+/* Checks that an image with fewer pixels than samples returns one of its pixels
+ * for each sample, and that a linear image, which has no codes, returns 0. */
 TEST(samples_tiny_images)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 1, 1);

@@ -41,7 +41,7 @@ static uint32_t random_bits(void)
 static void *blocks[400];
 static int n_blocks;
 
-/* Returns BYTES bytes whose end is at the border of an inaccessible page. */
+/* Returns an array of BYTES bytes that ends at an inaccessible page. */
 static void *allocate_fenced(size_t bytes)
 {
     void *mem;
@@ -72,7 +72,7 @@ static const struct variant variants[] = {{"sse41", GLINT_SET_SSE41},
                                           {"avx2", GLINT_SET_AVX2},
                                           {"neon", GLINT_SET_NEON}};
 
-/* The C definitions of all kernels. */
+/* The kernels as defined in C. */
 static const struct glint_kernels kernels_c = {
     glint_add_luma_c, glint_add_pairs_c, glint_add_packed_c, glint_add_code_c,
     glint_run_sum_c};
@@ -89,8 +89,8 @@ static double read_clock_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* If GLINT_BENCH is set, prints the min time of many rounds for C and for
- * the variant. */
+/* Prints, if GLINT_BENCH is set, the min time of many rounds for the C
+ * definition and for the variant. */
 #define BENCH(what, name, of_c, of_variant)                                \
     do {                                                                   \
         double best[2] = {1e9, 1e9};                                       \
@@ -111,7 +111,7 @@ static double read_clock_ns(void)
                name, N, best[0] / 20, best[1] / 20, best[0] / best[1]);    \
     } while (0)
 
-/* Returns random light: often 0, often the max, else of any magnitude. */
+/* Returns random light: often 0, often the max, otherwise of any magnitude. */
 static uint16_t random_light(void)
 {
     const uint32_t x = random_bits();
@@ -270,7 +270,7 @@ static void add_light_to_packed_pixels(const struct glint_kernels *k,
     k->add_packed(pixels, rgb, n, luma_at, mix, round, round + 8);
 }
 
-/* Checks packed pixels at odd addresses, with dark spans among them. */
+/* Checks packed pixels at odd addresses, including spans without light. */
 static void check_packed_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
@@ -325,8 +325,8 @@ static void add_light_to_quads(const struct glint_quad_kernels *k,
         k->add(rows->luma, rows->chroma, rgb, n, mix, r, r_chroma);
 }
 
-/* Checks blocks of 2 x 2 pixels with dark spans among them; the two rows may
- * be the same row or share their chroma. */
+/* Checks blocks of 2 x 2 pixels, including spans without light. The two rows
+ * may be the same row, or share their chroma. */
 static void check_quad_kernel(const struct glint_quad_kernels *k,
                               const char *name)
 {
@@ -376,7 +376,7 @@ static void check_quad_kernel(const struct glint_quad_kernels *k,
           add_light_to_quads(k, &b, light, N, 1, &mix, round));
 }
 
-/* Checks every code with every light. */
+/* Checks all pairs of a code and a light. */
 static void check_code_kernel(const struct glint_kernels *k, const char *name)
 {
     const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
@@ -439,8 +439,8 @@ static void check_sum_kernel(const struct glint_kernels *k, const char *name)
           k->run_sum(got, &carry[1], light[1], N, 8));
 }
 
-/* Checks polynomials whose coefficients' magnitudes sum to less than 2^30,
- * which the bake guarantees. */
+/* Checks polynomials whose coefficients have magnitudes that sum to less than
+ * 2^30, as in baked models. */
 static void check_horner_kernel(const struct glint_horner *k, const char *name)
 {
     const struct glint_horner *plain = glint_choose_horner_kernels(0);
@@ -473,7 +473,7 @@ static void check_horner_kernel(const struct glint_horner *k, const char *name)
           k->across(got, c, 32, 4, x[0], 16));
 }
 
-/* Returns a random number of magnitude below MOST, often MOST - 1. */
+/* Returns a random number whose magnitude is below MOST, often MOST - 1. */
 static int32_t random_signed_below(int64_t most)
 {
     const uint32_t x = random_bits();
@@ -495,7 +495,7 @@ static void check_turn_kernel(glint_turn_fn *turn, const char *name)
     int n_lost = 0, n_kept = 0;
 
     for (int round = 0; round < 5 * ROUNDS; round++) {
-        /* results of every second round are close to the max */
+        /* in every second round results are close to the max */
         const int near = (int)(random_bits() % 62) + 1;
 
         t = (struct glint_turn){random_signed_below(2 * most),
@@ -522,8 +522,8 @@ static void check_turn_kernel(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
-/* Checks convolutions whose taps and values have the max of a baked translucent
- * medium, so that sums in any order are below 2^31. */
+/* Checks convolutions whose taps and values have the max magnitude in a baked
+ * translucent medium, for which sums in any order are below 2^31. */
 static void check_convolution_kernel(glint_convolve_fn *convolve,
                                      const char *name)
 {
@@ -581,8 +581,8 @@ static void test_kernels_are_identical(void)
     }
 }
 
-/* Checks that a code is unchanged without light, and that more light never
- * makes it darker. */
+/* Checks that a code does not change without light, and that more light never
+ * gives a darker code. */
 static void test_code_kernel_in_c(void)
 {
     const int16_t round[8] = {64, 64, 64, 64, 64, 64, 64, 64};

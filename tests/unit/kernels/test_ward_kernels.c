@@ -41,8 +41,8 @@ static double random_unit(void)
     return random_below(1 << 24) / (double)(1 << 24);
 }
 
-/* Returns 4 CODES bytes of texels whose end is at the border of an
- * inaccessible page. */
+/* Returns an array of 4 CODES bytes of texels that ends at an inaccessible
+ * page. */
 static uint8_t *allocate_texels(void)
 {
     void *mem;
@@ -54,8 +54,8 @@ static uint8_t *allocate_texels(void)
     return at;
 }
 
-/* Makes random levels of Gaussians or mipmaps; the last code is the last
- * texel of a level. */
+/* Makes random texels of Gaussian levels or mipmap levels. The last code is the
+ * last texel of a level. */
 static void make_random_texels(struct glint_texels *t, uint8_t *code)
 {
     uint32_t used = 0;
@@ -101,7 +101,8 @@ static void make_random_lobe(struct glint_ward_lobe *l)
     }
 }
 
-/* Makes a random rotation, and a view direction that is often grazing. */
+/* Makes a random rotation of the surface, and a view direction that is often
+ * grazing. */
 static void make_random_view(struct glint_ward_place *p)
 {
     const double no = pow(random_unit(), random_below(3) ? 1 : 8) + 0x1p-13;
@@ -138,7 +139,8 @@ static double read_clock_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* Prints the min time of many rounds of 8 samples, in C and by SUM. */
+/* Prints the min time of many rounds of 8 samples, for the C definition and for
+ * SUM. */
 static void print_kernel_time(const char *name, glint_ward_sum_fn *sum,
                               struct glint_ward_lobe *l,
                               const struct glint_texels *t)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Compares the search for bright pixels in random images of every format and
- * threshold with a check of each pixel, and checks the length of runs of equal
- * pixels.
+ * threshold with a test of each pixel, and checks the detected lengths of runs
+ * of equal pixels.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -20,7 +20,7 @@ enum { HEIGHT = 6 };
 
 static uint32_t seed = 1;
 
-/* Fills IMAGE with random bytes; one in RARE of them may exceed 63. */
+/* Fills IMAGE with random bytes. Only one byte in RARE may exceed 63. */
 static void fill_with_random_bytes(const struct glint_image *image, int rare)
 {
     const size_t bytes =
@@ -57,8 +57,8 @@ static int widen_code_to_8_bits(int v, int bits)
     return v << (8 - bits) | v >> (2 * bits - 8);
 }
 
-/* Sets *LARGEST to the largest RGB channel and *LUMA to the luma of a pixel,
- * by the definition of YCbCr. */
+/* Sets *LARGEST to the largest of R, G, B and *LUMA to the luma of a pixel, by
+ * the definition of YCbCr. */
 static void compute_ycc_brightness(const struct glint_image *image,
                                    const int code[3], double *largest,
                                    int *luma)
@@ -125,8 +125,8 @@ static int compute_rgb_brightness(int r, int g, int b)
 }
 
 /* Sets *LEAST and *MOST to the brightness of pixel (X, Y) by the definition of
- * its format. They differ by 1 if the exact value is so close to a half that
- * either rounding is correct. */
+ * its format. They differ by 1 if the exact value is nearly half-way between
+ * integers, so that either rounding is correct. */
 static void compute_brightness_range(const struct glint_image *image, int x,
                                      int y, int *least, int *most)
 {
@@ -223,9 +223,9 @@ TEST(scan_matches_a_test_of_every_pixel)
     }
 }
 
-/* Checks that the padding of the last block is set, as the runs of a row are
- * searched in whole words. create_bright_scanner() fills all memory with 0x5a.
- */
+/* Checks that the padding of a row's last block is cleared, as runs are
+ * searched in whole words. create_bright_scanner() fills all memory with
+ * 0x5a. */
 TEST(padding_is_cleared)
 {
     for (int width = 1; width <= 2 * BRIGHT_BLOCK; width++) {
@@ -246,8 +246,8 @@ TEST(padding_is_cleared)
     }
 }
 
-/* Checks that a single pixel of exactly the threshold is found anywhere, and
- * one a code below it is not. */
+/* Checks that a single pixel exactly at the threshold is found anywhere, and a
+ * pixel one code below is not. */
 TEST(finds_a_pixel_at_the_threshold)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 96, HEIGHT);
@@ -275,8 +275,8 @@ TEST(finds_a_pixel_at_the_threshold)
     free(image.plane[0]);
 }
 
-/* Checks that in a row of dim grey the one code that differs is detected, in
- * the four blocks that are tested together and in the fifth. */
+/* Checks that the one different code in a row of dim grey is detected, in the
+ * four blocks that are tested together and in the fifth block. */
 TEST(finds_a_differing_code_in_grey)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};

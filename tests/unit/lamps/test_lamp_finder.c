@@ -16,7 +16,7 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* Returns nearly Gaussian noise of standard deviation SIGMA, a sum of eight
+/* Returns nearly Gaussian noise of standard deviation SIGMA: a sum of eight
  * uniform numbers. */
 static double random_noise(double sigma)
 {
@@ -118,8 +118,8 @@ TEST(finds_a_lamp_in_an_image_of_one_pixel)
     free(image.plane[0]);
 }
 
-/* Checks moments computed by hand: sRGB code 188 is linear 0.5029; three
- * such pixels touch a white one. */
+/* Checks the moments of a white pixel and three adjacent pixels of sRGB code
+ * 188 (linear 0.5029) against values computed by hand. */
 TEST(moments_match_hand_computation)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 16, 8);
@@ -138,7 +138,7 @@ TEST(moments_match_hand_computation)
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 2.5087) < 1e-3);
     assert_true(fabs(finder_spot_x(0) - 11.5) < 1.0 / 256);
     assert_true(fabs(finder_spot_y(0) - (5.5 + 0.5029 / 2.5087)) < 1.0 / 256);
-    /* Variances: x 2 * 0.5029 / 2.5087, y 0.2005 - 0.2005^2. */
+    /* Variance along x: 2 * 0.5029 / 2.5087; along y: 0.2005 - 0.2005^2. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(0.4009 + 0.1603)) <
                 1.0 / 128);
     free(image.plane[0]);
@@ -167,8 +167,8 @@ TEST(finds_discs_within_a_sixteenth_pixel)
     }
 }
 
-/* Adds a lamp of RADIUS to a grey image: four times white, falling by a
- * factor e per FALL pixels outside the radius. */
+/* Adds a lamp of RADIUS to a grey image: light of four times white inside the
+ * radius; outside it falls by a factor e per FALL pixels. */
 static void draw_lamp_with_glare(const struct glint_image *image, double cx,
                                  double cy, double radius, double fall)
 {
@@ -187,8 +187,8 @@ static void draw_lamp_with_glare(const struct glint_image *image, double cx,
         }
 }
 
-/* Checks that with the default configuration, which cuts off the rim evenly,
- * a lamp is found within 0.35 pixels. */
+/* Checks that a lamp is found within 0.35 pixels with the default
+ * configuration, which cuts off its rim evenly. */
 TEST(finds_discs_with_default_configuration)
 {
     for (int round = 0; round < 100; round++) {
@@ -207,8 +207,8 @@ TEST(finds_discs_with_default_configuration)
 
 /* --------------------------------------------------------------- stability */
 
-/* Checks that a lamp with a blurred rim is found within 0.25 pixels RMS in
- * 100 frames with camera noise of 3 codes. */
+/* Checks that the position of a lamp with a blurred rim is right within 0.25
+ * pixels RMS, in 100 frames with camera noise of 3 codes. */
 TEST(noise_does_not_move_a_light)
 {
     double square = 0;
@@ -236,8 +236,8 @@ TEST(noise_does_not_move_a_light)
     assert_true(sqrt(square / 100) < 0.25);
 }
 
-/* Checks that any one pixel of a lamp of 8 x 8 that flickers to white moves
- * the lamp by less than 0.1 pixels. */
+/* Checks a lamp of 8 x 8 pixels in which any one pixel flickers to white: its
+ * position changes by less than 0.1 pixels. */
 TEST(sparkle_does_not_move_a_light)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
@@ -257,8 +257,8 @@ TEST(sparkle_does_not_move_a_light)
     free(image.plane[0]);
 }
 
-/* Checks that one hot pixel, 40 times brighter than the other 63 of the
- * darkest lamp that can be found, moves the lamp by less than a pixel. */
+/* Checks the darkest lamp that can be found, with one hot pixel 40 times
+ * brighter than the other 63: its position changes by less than a pixel. */
 TEST(hot_pixel_among_dim_ones)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
@@ -378,8 +378,8 @@ TEST(largest_regions_are_measured_right)
     }
 }
 
-/* Checks that lamps at both ends of the longest images are found at their
- * positions. */
+/* Checks that lamps at both ends of the longest possible images are found at
+ * their positions. */
 TEST(finds_lamps_at_both_ends_of_long_images)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, OFF = 20, SIDE = 6 };
@@ -420,7 +420,8 @@ TEST(sky_is_not_a_lamp)
     struct glint_lamp_finder_config cfg =
         finder_config_without_filters(&image, 200, 250);
 
-    cfg.max_share_q15 = 32768 / 10; /* max area of 999.8 pixels, rounded up */
+    /* max area: 32768 / 10 of the image, 999.8 pixels, rounded up */
+    cfg.max_share_q15 = 32768 / 10;
     canvas_fill_grey_box(&image, 0, 0, 100, 10, 255);
     canvas_fill_grey_box(&image, 40, 50, 44, 54, 255);
     assert_int_equal(finder_find_lamps(&cfg, &image), 2);
@@ -430,8 +431,8 @@ TEST(sky_is_not_a_lamp)
     free(image.plane[0]);
 }
 
-/* Checks that a lit surface is not a lamp if fewer than one pixel in 8
- * reaches the upper threshold; the glow of a lamp has that many. */
+/* Checks that a lit surface is not a lamp if fewer than one in 8 of its pixels
+ * reach the upper threshold; in the glow of a lamp at least one in 8 does. */
 TEST(surface_with_few_bright_pixels_is_not_a_lamp)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 100);
@@ -439,7 +440,7 @@ TEST(surface_with_few_bright_pixels_is_not_a_lamp)
         finder_config_without_filters(&image, 200, 250);
 
     canvas_fill_grey_box(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
-    /* a box of 128 bright pixels */
+    /* a box whose 128 pixels are bright */
     canvas_fill_grey_box(&image, 10, 10, 42, 14, 255);
     canvas_set_grey_pixel(&image, 41, 13, 240);
     assert_int_equal(finder_find_lamps(&cfg, &image), 0);
@@ -448,8 +449,9 @@ TEST(surface_with_few_bright_pixels_is_not_a_lamp)
     free(image.plane[0]);
 }
 
-/* Checks that a ring around a core belongs to the lamp, but not a darker
- * ring around it, nor a bright ring outside that, which has no seed. */
+/* Checks that a ring around a core belongs to the lamp, but a darker ring
+ * around it does not, nor a bright ring outside that, which contains no seed
+ * pixel. */
 TEST(ring_around_a_core_belongs_to_the_lamp)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
@@ -474,8 +476,8 @@ TEST(ring_around_a_core_belongs_to_the_lamp)
     free(image.plane[0]);
 }
 
-/* Checks that if faint regions are returned too, the lamps are unchanged,
- * and faint regions follow them, marked as faint. */
+/* Checks that if faint regions are requested, the lamps do not change, and the
+ * faint regions follow them, marked as faint. */
 TEST(faint_regions_come_last)
 {
     static struct glint_spot light[FINDER_SPOTS];
@@ -520,8 +522,8 @@ TEST(faint_regions_come_last)
     assert_true(most_faint > 20);
 }
 
-/* Checks the sums of a region that fills the image, made of noise and
- * patches of one code, against double precision. */
+/* Checks the sums of a region that fills the image and consists of noise and
+ * uniform patches, against double precision. */
 TEST(sums_of_a_large_region_match_doubles)
 {
     for (int round = 0; round < 20; round++) {
@@ -610,8 +612,9 @@ TEST(ties_are_sorted_by_position)
     free(image.plane[0]);
 }
 
-/* Checks that regions of nine and three white pixels, 4 pixels apart, are
- * merged into one lamp, 1 pixel from the larger. */
+/* Checks that two regions of nine and three white pixels, 4 pixels apart,
+ * are merged into one lamp, whose centre is 1 pixel from that of the larger
+ * region. */
 TEST(near_regions_are_merged)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 128, 64);
@@ -628,8 +631,8 @@ TEST(near_regions_are_merged)
     assert_true(finder_spot_x(0) == 22.5 && finder_spot_y(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
     assert_true(finder_spot[0].flux_q16 == 12 << 16);
-    /* the squared RMS radius is (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5 in
-     * x, and 2 / 3 in y */
+    /* the squared RMS radius is (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5 along
+     * x, and 2 / 3 along y */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(3.5 + 0.6667)) <
                 0.01);
     free(image.plane[0]);
@@ -659,8 +662,9 @@ TEST(merged_regions_keep_the_merge_distance)
     free(image.plane[0]);
 }
 
-/* Checks a limit of two lights of four: the third is near the first and is
- * merged with it; the fourth is far from all and is dropped. */
+/* Checks a limit of two lights for an image of four: the third light is near
+ * the first and is merged with it; the fourth is far from all and is
+ * dropped. */
 TEST(limit_keeps_the_brightest)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 64);
@@ -671,7 +675,7 @@ TEST(limit_keeps_the_brightest)
     cfg.merge_q15 = 4 * 32768 / 256;
     canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
     canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
-    /* a region of 12 pixels at a distance of 13 pixels */
+    /* a region of 12 pixels, 13 pixels from the others */
     canvas_fill_grey_box(&image, 35, 20, 37, 26, 255);
     canvas_fill_grey_box(&image, 200, 20, 202, 22, 255); /* 4 px */
     assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 2, &dropped), 2);
@@ -700,7 +704,7 @@ TEST(merging_can_change_the_order)
     free(image.plane[0]);
 }
 
-/* Checks that of 4096 lights the finder stores the 2048 brightest and
+/* Checks an image of 4096 lights: the finder stores the 2048 brightest and
  * returns 1024. */
 TEST(stores_the_brightest_of_4096_lights)
 {

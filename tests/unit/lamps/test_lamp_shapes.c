@@ -30,8 +30,9 @@ static void assert_one_region(const struct glint_image *image)
     free(image->plane[0]);
 }
 
-/* Checks that a pixel is connected to those at its corners, on both sides
- * and across the blocks in which runs are found, and to none further away. */
+/* Checks that a pixel is connected to diagonal neighbours, on both sides and
+ * across the blocks in which runs are searched, and to no pixel further
+ * away. */
 TEST(corner_pixels_are_connected)
 {
     for (int x = 4; x < 68; x++)
@@ -82,7 +83,7 @@ TEST(spiral_is_one_region)
 }
 
 /* Checks rows with the max number of runs: a checkerboard, connected only by
- * corners, and a comb, connected by its last row, are one region each. */
+ * corners, and a comb, connected by its last row, must each be one region. */
 TEST(checkerboard_and_comb_are_one_region)
 {
     for (int width = 254; width <= 255; width++) {
@@ -100,7 +101,7 @@ TEST(checkerboard_and_comb_are_one_region)
     }
 }
 
-/* Clears the region at (X, Y) and returns its area, pixels. */
+/* Clears the region connected to (X, Y) and returns its area, pixels. */
 static int clear_and_measure_region(const struct glint_image *image, int x,
                                     int y)
 {
@@ -191,8 +192,8 @@ TEST(unclipped_lamp_has_its_colour)
     free(image.plane[0]);
 }
 
-/* Checks that a core clipped to white gets the colour of its rim, and
- * without a rim is white. */
+/* Checks that a core clipped to white gets the colour of its rim; without a rim
+ * it is white. */
 TEST(clipped_core_gets_the_colour_of_its_rim)
 {
     struct glint_image image = canvas_allocate_image(GLINT_RGB24, 60, 40);
@@ -203,15 +204,16 @@ TEST(clipped_core_gets_the_colour_of_its_rim)
     fill_rgb_box(&image, 10, 10, 20, 20, 255, 255, 255);
     fill_rgb_box(&image, 30, 10, 39, 19, 255, 255, 255);
     assert_int_equal(finder_find_lamps(&cfg, &image), 2);
-    /* red of the rim: 1.42, in Q15 46531 */
+    /* red of the rim is 1.42 (46531 in Q15) */
     assert_true(finder_spot[0].rgb_q15[0] > 45000);
-    /* blue of the rim: 0.31, in Q15 10158 */
+    /* blue of the rim is 0.31 (10158 in Q15) */
     assert_true(finder_spot[0].rgb_q15[2] < 13000);
     assert_spot_colour(1, 1, 1, 1);
     free(image.plane[0]);
 }
 
-/* Checks that the colour is the mean if one channel is clipped everywhere. */
+/* Checks a lamp of which one channel is clipped everywhere: its colour is the
+ * mean colour of its pixels. */
 TEST(partly_clipped_lamp_has_its_mean_colour)
 {
     struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
@@ -224,8 +226,8 @@ TEST(partly_clipped_lamp_has_its_mean_colour)
     free(image.plane[0]);
 }
 
-/* Checks YCbCr formats in limited range, where 235 is white and code 200 of
- * 255 becomes 16 + 219 * 200 / 255 = 187.8. */
+/* Checks YCbCr formats in limited range, where white is code 235 and the
+ * full-range code 200 is 16 + 219 * 200 / 255 = 187.8. */
 TEST(ycc_formats_in_limited_range)
 {
     static const enum glint_pixel_format formats[3] = {GLINT_I420, GLINT_I422,
@@ -238,8 +240,8 @@ TEST(ycc_formats_in_limited_range)
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
-        /* light of codes 199.5 and 249.5: ((C / 255 + 0.099) / 1.099)^(1 /
-         * 0.45) */
+        /* threshold: the light of full-range code 199.5, ((C / 255 + 0.099) /
+         * 1.099)^(1 / 0.45); likewise 249.5 */
         cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
         cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
         canvas_fill_grey_box(&image, 0, 0, 41, 31, 16);
@@ -247,7 +249,8 @@ TEST(ycc_formats_in_limited_range)
             memset(image.plane[i], 128,
                    glint_image_row_bytes(formats[f], i, 41) *
                        (size_t)glint_image_plane_height(formats[f], i, 31));
-        /* equals code 199.1 of 255: below the threshold */
+        /* limited-range code 187 equals code 199.1 of 255: below the
+         * threshold */
         canvas_fill_grey_box(&image, 36, 26, 41, 31, 187);
         canvas_fill_grey_box(&image, 38, 28, 41, 31, 188);
         canvas_fill_grey_box(&image, 39, 29, 41, 31, 235);
@@ -255,15 +258,16 @@ TEST(ycc_formats_in_limited_range)
         assert_int_equal(finder_spot[0].area, 9);
         assert_int_equal(finder_spot[0].n_clipped, 4);
         assert_spot_colour(0, 1, 1, 1);
-        /* ((172 / 219 + 0.099) / 1.099)^(1 / 0.45) = 0.6171 */
+        /* linear light of the region: ((172 / 219 + 0.099) / 1.099)^(1 / 0.45)
+         * = 0.6171 */
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 -
                          (4 + 5 * 0.6171)) < 0.005);
         free(image.plane[0]);
     }
 }
 
-/* Checks the colour of BT.601 limited Y, Cb, Cr = 169, 90, 166, which is
- * R'G'B' 238.8, 162.1, 101.5. */
+/* Checks the colour of a region of Y, Cb, Cr = 169, 90, 166 (BT.601, limited
+ * range), which is R'G'B' = 238.8, 162.1, 101.5. */
 TEST(ycc_colour_matches_hand_computation)
 {
     struct glint_image image = canvas_allocate_image(GLINT_I444, 20, 20);
@@ -282,7 +286,7 @@ TEST(ycc_colour_matches_hand_computation)
                                       : 166);
     }
     assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-    /* linear 0.8615, 0.3620, 0.1315; luminance 0.4515 */
+    /* linear R, G, B = 0.8615, 0.3620, 0.1315; luminance 0.4515 */
     assert_spot_colour(0, 1.908, 0.802, 0.291);
     free(image.plane[0]);
 }

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests two optimisations of the lamp finder: the light of runs as differences
- * of sums against pixel-by-pixel sums, and scores without the surroundings
- * against full scores.
+ * Tests two optimisations of the lamp finder: the light of pixel runs,
+ * computed as differences of row sums, is compared with pixel-by-pixel sums;
+ * brief scores of lamp candidates, which ignore their surroundings, with full
+ * scores.
  */
 #include "support/region_pixels.h"
 #include "support/rng.h"
@@ -34,12 +35,14 @@ static void make_random_image(struct fixture *f, enum glint_pixel_format format)
     struct glint_arena arena = glint_arena_begin_measuring();
     const size_t bytes = glint_image_bytes(format, WIDTH, HEIGHT);
     const int dark =
-        /* right shift of random codes, bits: 0, or 4 for dark images */
+        /* number of bits by which random codes are shifted right: 0, or 4 for
+         * dark images */
         4 * rng_int_below(&seed, 2);
     uint8_t *codes = malloc(bytes);
     const size_t pixel = /* bytes per pixel, or per two pixels */
         format == GLINT_RGB24 || format == GLINT_BGR24 ? 3 : 4;
-    int alike = 0; /* number of bytes that still repeat the previous pixel */
+    /* number of bytes that will still repeat the previous pixel */
+    int alike = 0;
 
     assert_non_null(codes);
     for (size_t i = 0; i < bytes; i++, alike--) {
@@ -98,8 +101,7 @@ static void add_light_by_pixel(const struct fixture *f,
     }
 }
 
-/* Checks the light of some runs of pixels in two spans of row Y; the spans may
- * overlap. */
+/* Checks the light of random runs in two spans of row Y, which may overlap. */
 static void check_runs_of_row(struct fixture *f, int y)
 {
     const int from = rng_int_below(&seed, 20),
@@ -121,8 +123,7 @@ static void check_runs_of_row(struct fixture *f, int y)
 
         if (x0 >= x1)
             continue;
-        /* The first run is the whole span; the other three runs are parts of
-         * the span. */
+        /* The first run is the whole span; the other three lie inside it. */
         for (int j = 0; j < 4; j++) {
             const int begin = j ? x0 + rng_int_below(&seed, x1 - x0) : x0;
             const int end =
@@ -148,8 +149,8 @@ TEST(light_of_runs_equals_sum_of_pixels)
     }
 }
 
-/* Returns a random region in the image, with any light and any fill of its
- * box. */
+/* Returns a random candidate region in the image, with any light and filling
+ * any fraction of its box. */
 static struct glint_candidate make_random_candidate(void)
 {
     const int x0 = rng_int_below(&seed, WIDTH - 1),
@@ -169,7 +170,8 @@ static struct glint_candidate make_random_candidate(void)
         region_add_pixels(&c.sum, &light, x0, x1, y);
     }
     if (rng_int_below(&seed,
-                      2)) { /* some fill most of their box, as lamps do */
+                      /* some regions fill most of their box, as lamps do */
+                      2)) {
         c.sum.area -= rng_int_below(&seed, c.sum.area) / 8;
         c.sum.n_clipped = c.sum.area - rng_int_below(&seed, c.sum.area);
     } else
@@ -177,8 +179,9 @@ static struct glint_candidate make_random_candidate(void)
     return c;
 }
 
-/* Checks that the brief score equals the full one if that is -SCORE_DOUBT or
- * more, and otherwise lies between it and -SCORE_DOUBT. */
+/* Checks that the brief score equals the full score if the full score is at
+ * least -SCORE_DOUBT; otherwise the brief score lies between the full score and
+ * -SCORE_DOUBT. */
 TEST(brief_score_bounds_the_full_score)
 {
     int n_kept = 0, n_brief = 0;

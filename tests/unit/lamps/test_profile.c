@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks the power, colour and extent that are estimated for lamps clipped to
- * white from the light profile around them.
+ * Checks the power, colour and extent of lamps clipped to white, which are
+ * estimated from the light profile around them.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -22,8 +22,8 @@ static uint32_t seed = 1;
 
 /* --------------------------------------------------------------- by hand */
 
-/* Returns a lamp of SHAPE in the centre of the image, with the other parameters
- * at typical values. */
+/* Returns a lamp of SHAPE in the centre of the image; all other parameters have
+ * typical values. */
 static struct power_lamp make_default_lamp(enum power_shape shape,
                                            double radius)
 {
@@ -81,8 +81,8 @@ static struct glint_image make_grey_image(uint8_t *px, int width, int height)
     return glint_image_over(px, GLINT_RGB24, width, height);
 }
 
-/* Draws light[] times POWER over BLACK with noise of SIGMA codes, and finds
- * the spots. Returns their number. */
+/* Draws the shape in light[], times POWER, over BLACK with noise of SIGMA
+ * codes, and finds the spots. Returns their number. */
 static int draw_and_find_spots(const struct power_lamp *lamp, double power,
                                double black, double sigma)
 {
@@ -136,7 +136,7 @@ TEST(rejects_too_little_memory)
     free(mem);
 }
 
-/* Checks that the power of an unclipped lamp is its flux: 13 and 45 white
+/* Checks that the power of an unclipped lamp is its flux, for 13 and 45 white
  * pixels, blurred by Gaussians of 1.6 and 3 pixels. */
 TEST(unclipped_power_is_the_flux)
 {
@@ -157,9 +157,9 @@ TEST(unclipped_power_is_the_flux)
                 compute_spot_power() < 1.1 * 45);
 }
 
-/* Checks that a tube 36 pixels long, rotated clockwise by 30 degrees, has a
- * longer RMS semi-axis of 18 / sqrt(3), and that a disc has two of half its
- * radius. */
+/* Checks the RMS semi-axes of a lamp's extent: 18 / sqrt(3) along a tube 36
+ * pixels long that is rotated clockwise by 30 degrees; half the radius along
+ * both axes of a disc. */
 TEST(extent_of_a_tube_is_its_axis)
 {
     struct power_lamp lamp = make_default_lamp(POWER_TUBE, 18);
@@ -182,8 +182,9 @@ TEST(extent_of_a_tube_is_its_axis)
     assert_true(abs(spot[0].axis_q8[1] - 6 * 256) < 200);
 }
 
-/* Checks that the extent of a lamp two pixels wide with the light of 16384
- * white pixels excludes its core of clipped glare, some pixels wide. */
+/* Checks a lamp two pixels wide with the light of 16384 white pixels, whose
+ * glare is clipped over some pixels: the extent does not include the clipped
+ * glare. */
 TEST(extent_excludes_glare)
 {
     struct power_lamp lamp = make_default_lamp(POWER_DISC, 1);
@@ -197,8 +198,8 @@ TEST(extent_excludes_glare)
     assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
 }
 
-/* Sets light[] to 4 inside RADIUS; outside it starts at RIM and falls as 1 /
- * r^FALL. */
+/* Sets light[] to 4 inside RADIUS. Outside, it begins at RIM and falls with
+ * distance r as 1 / r^FALL. */
 static void draw_core_and_glare(double radius, double rim, double fall)
 {
     for (int y = 0; y < H; y++)
@@ -209,8 +210,8 @@ static void draw_core_and_glare(double radius, double rim, double fall)
         }
 }
 
-/* Checks that sodium light, clipped to yellow and white, gets the colour of
- * its fringe: 1.99, 0.79, 0.04 at luminance 1. */
+/* Checks that a sodium lamp, whose core is clipped to yellow and white, gets
+ * the colour of its unclipped fringe: 1.99, 0.79, 0.04 at luminance 1. */
 TEST(clipped_lamp_gets_the_colour_of_its_fringe)
 {
     struct power_lamp lamp = make_default_lamp(POWER_DISC, 3);
@@ -232,8 +233,8 @@ TEST(clipped_lamp_gets_the_colour_of_its_fringe)
 }
 
 /* Checks lamps of 2^4 .. 2^14 white pixels in several sizes and shapes: the
- * error of each power is at most 4.5 stops, and half of them are within one
- * stop. */
+ * error of each estimated power is at most 4.5 stops, and half of the errors
+ * are below one stop. */
 TEST(clipped_power_is_within_4_stops)
 {
     int n = 0, n_near = 0;
@@ -259,9 +260,9 @@ TEST(clipped_power_is_within_4_stops)
     assert_true(n > 40 && 2 * n_near > n);
 }
 
-/* Checks, while the exposure rises by 1/32 stop per step from no clipping to
- * complete clipping, that each step raises the power by less than 0.4 stops
- * or lowers it by less than 0.1. */
+/* Raises the exposure by 1/32 stop per step, from no clipping to complete
+ * clipping. Checks that no step raises the estimated power by 0.4 stops or
+ * lowers it by 0.1. */
 TEST(power_rises_smoothly)
 {
     for (int shape = 0; shape < POWER_SHAPES; shape++)
@@ -286,9 +287,9 @@ TEST(power_rises_smoothly)
         }
 }
 
-/* Checks, while a sun enters over the left border by half a pixel per step,
- * that each step raises its power by less than 0.1 of the total or lowers it
- * by less than 0.13. */
+/* Moves a sun into the image over its left border by half a pixel per step.
+ * Checks that no step raises its power by 0.1 of the total or lowers it by
+ * 0.13. */
 TEST(entering_sun_rises_smoothly)
 {
     enum { OUT = 48, WIDE = W + OUT };
@@ -334,7 +335,7 @@ TEST(noise_changes_power_little)
     assert_true(sum2 - sum * sum < 0.01 * sum * sum);
 }
 
-/* Checks that each of two adjacent lamps has the power of a single one, not
+/* Checks that each of two adjacent lamps gets the power of a single one, not
  * twice as much. */
 TEST(adjacent_lamps_have_single_powers)
 {
@@ -356,8 +357,8 @@ TEST(adjacent_lamps_have_single_powers)
                     0.7);
 }
 
-/* Checks that a white lamp has nearly the same power in all formats: within
- * 0.1 stops, in RGB565 within one. */
+/* Checks that a white lamp gets nearly the same power in all formats: within
+ * 0.1 stops, in RGB565 within one stop. */
 TEST(power_is_the_same_in_all_formats)
 {
     static uint8_t px[4 * W * H];
@@ -439,7 +440,8 @@ TEST(measures_a_lamp_of_one_pixel)
     assert_int_equal(spot[0].axis_q8[1], 0);
 }
 
-/* Checks that results are within their limits, for any spots and images. */
+/* Checks that results are within their allowed ranges, for any spots and
+ * images. */
 TEST(results_stay_in_range_for_any_spots)
 {
     static const int32_t any[] = {INT32_MIN, -1, 0, 1, 256, 40000, INT32_MAX};
@@ -473,8 +475,8 @@ TEST(results_stay_in_range_for_any_spots)
 }
 
 /* Checks the width of a large lamp that lights its surroundings to half of
- * white: 18 pixels, or up to twice as much with that light. The glare of a
- * point that clips as far has a smaller extent. */
+ * white: 18 pixels, or up to twice as much including that light. For a point
+ * lamp whose glare clips as far, the width is smaller. */
 TEST(width_excludes_a_lamps_own_light)
 {
     const struct power_lamp lamp = make_default_lamp(POWER_DISC, 36);
@@ -492,9 +494,9 @@ TEST(width_excludes_a_lamps_own_light)
     }
 }
 
-/* Checks that a ring which lights its surroundings does not get a larger extent
- * because of its dark middle: light missing in the middle does not count as
- * missing at a rim. */
+/* Checks that the dark middle of a ring that lights its surroundings does not
+ * enlarge the ring's extent: light missing in the middle does not count as
+ * missing at the rim. */
 TEST(ring_is_not_widened_by_its_middle)
 {
     const struct power_lamp lamp = make_default_lamp(POWER_DISC, 50);

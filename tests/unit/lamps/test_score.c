@@ -2,7 +2,7 @@
  *
  * Tests which bright regions of drawn images count as lamps: coloured lamps in
  * three formats, underexposed nights, lamps in front of walls and in haze; and
- * paper, text, snow, skies and noise, which have none.
+ * paper, text, snow, skies and noise, which contain no lamp.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -17,15 +17,18 @@ enum { MOST = 64 };
 
 struct settings {
     int width, height;
-    double *light; /* linear light, three values per pixel */
+    double *light; /* linear light, R, G, B per pixel */
 };
 
 static struct glint_spot spot[MOST];
 static uint32_t seed;
-/* number of video frames that draw_and_find_lamps() passes before the image */
+/* number of video frames that draw_and_find_lamps() gives to the finder before
+ * the image */
 static int n_before;
-static int n_video; /* number of lamps in the last of these frames */
-static int n_lower; /* stops by which find() lowers the thresholds, _q8 */
+/* number of lamps found in the last of these video frames */
+static int n_video;
+/* number of stops by which draw_and_find_lamps() lowers the thresholds, Q8 */
+static int n_lower;
 
 static struct settings make_settings(int width, int height, double light)
 {
@@ -39,8 +42,9 @@ static struct settings make_settings(int width, int height, double light)
     return s;
 }
 
-/* Adds a lamp at (X, Y) with a face of LIGHT, whose light falls by a factor
- * e per FALL outside RADIUS; all lengths are fractions of the width. */
+/* Adds a lamp at (X, Y) with light LIGHT inside RADIUS; outside it the light
+ * falls by a factor e per FALL. All lengths are fractions of the image
+ * width. */
 static void add_lamp_with_glare(const struct settings *s, double x, double y,
                                 double radius, double fall,
                                 const double light[3])
@@ -56,7 +60,8 @@ static void add_lamp_with_glare(const struct settings *s, double x, double y,
         }
 }
 
-/* Fills a box, in fractions of the width, with uniform LIGHT. */
+/* Fills a box with uniform LIGHT. Its coordinates are fractions of the image
+ * width. */
 static void fill_box_with_light(const struct settings *s, double x0, double y0,
                                 double x1, double y1, double light)
 {
@@ -170,9 +175,9 @@ static void assert_no_lamp_is_found(struct settings *s)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Checks that a lamp of any colour is found, and nothing else. Most of them
- * clip one or two channels; only the yellow and the white lamp have a luma
- * near white. */
+/* Checks that a lamp of any colour is found, and nothing else. Most colours
+ * clip one or two channels; only the yellow and the white lamp have a luma near
+ * white. */
 TEST(finds_lamps_of_every_colour)
 {
     static const double colours[][3] = {
@@ -193,8 +198,8 @@ TEST(finds_lamps_of_every_colour)
     }
 }
 
-/* Checks that two lamps of 0.1 to 0.4 of white are found in an image without
- * clipping. */
+/* Checks that two lamps whose light is 0.1 to 0.4 of white are found in an
+ * image without clipping. */
 TEST(finds_lamps_in_an_underexposed_night)
 {
     static const double colour[3] = {0.25, 0.22, 0.15};
@@ -224,8 +229,8 @@ TEST(finds_a_lamp_before_a_bright_wall)
     free(s.light);
 }
 
-/* Checks that the sun is found in a sky brighter than the glow of any lamp,
- * with red clipped far around the sun. */
+/* Checks that the sun is found in haze: the sky is brighter than the glow of
+ * any lamp, and its red is clipped far around the sun. */
 TEST(finds_the_sun_in_haze)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
@@ -238,8 +243,8 @@ TEST(finds_the_sun_in_haze)
     free(s.light);
 }
 
-/* Checks that the same scene has the same lamps at widths of 320 to 2000
- * pixels. */
+/* Checks that the same lamps are found in a scene drawn at widths of 320 to
+ * 2000 pixels. */
 TEST(finds_the_same_lamps_at_every_resolution)
 {
     static const double lamp[3] = {4, 3, 1.5};
@@ -260,7 +265,7 @@ TEST(finds_the_same_lamps_at_every_resolution)
 
 /* --------------------------------------------------------------- none there */
 
-/* Draws lines of words in LIGHT. */
+/* Draws lines of words whose ink has LIGHT. */
 static void draw_lines_of_text(const struct settings *s, double light)
 {
     for (int line = 0; line < 18; line++)
@@ -292,8 +297,8 @@ TEST(paper_and_text_give_no_lamp)
     assert_no_lamp_is_found(&desk);
 }
 
-/* Draws the eight bars of a test pattern into the first ROWS rows: white,
- * then yellow to black at codes of 75 % (0.52 in linear light). */
+/* Draws the eight bars of a test pattern into the first ROWS rows: white, then
+ * yellow to black with codes of 75 % (0.52 in linear light). */
 static void draw_colour_bars(const struct settings *s, int rows)
 {
     for (int y = 0; y < rows; y++)
@@ -309,7 +314,8 @@ static void draw_colour_bars(const struct settings *s, int rows)
 }
 
 /* Checks that neither the white bar of a test pattern nor a white box below
- * the bars is a lamp, but a round lamp in place of the box is. */
+ * the bars is taken for a lamp, but that a round lamp in place of the box is
+ * found. */
 TEST(test_patterns_give_no_lamp)
 {
     static const double white[3] = {1, 1, 1};
@@ -334,7 +340,8 @@ TEST(test_patterns_give_no_lamp)
     }
 }
 
-/* Checks that grains of every brightness, many of them white, give no lamp. */
+/* Checks that snow, grains of every brightness of which many are white, gives
+ * no lamp. */
 TEST(snow_gives_no_lamp)
 {
     struct settings s = make_settings(600, 400, 0.7);
@@ -347,8 +354,8 @@ TEST(snow_gives_no_lamp)
     assert_no_lamp_is_found(&s);
 }
 
-/* Checks that a sky from blue to white at the horizon over dark ground, and
- * a uniform sky, give no lamp. */
+/* Checks that no lamp is found in a sky from blue to white at the horizon over
+ * dark ground, nor in a uniform sky. */
 TEST(skies_give_no_lamp)
 {
     struct settings s = make_settings(600, 400, 0.03);
@@ -366,7 +373,8 @@ TEST(skies_give_no_lamp)
     assert_no_lamp_is_found(&overcast);
 }
 
-/* Checks that noise of up to 9 codes with the lens cap on gives no lamp. */
+/* Checks that noise of up to 9 codes, as with the lens cap on, gives no
+ * lamp. */
 TEST(noise_in_the_dark_gives_no_lamp)
 {
     struct settings s = make_settings(600, 400, 0.001);
@@ -378,8 +386,9 @@ TEST(noise_in_the_dark_gives_no_lamp)
 
 /* ----------------------------------------------------------------- company */
 
-/* Returns a candidate with score SCORE_Q8 and level LEVEL in a box of 4 x 4
- * pixels at X. It lies inside candidates of lower levels at the same X. */
+/* Returns a candidate with score SCORE_Q8, found at threshold level LEVEL, in a
+ * box of 4 x 4 pixels at X. It lies inside candidates of lower levels at the
+ * same X. */
 static struct glint_candidate make_scored_candidate(int x, int level,
                                                     int32_t score_q8)
 {
@@ -404,8 +413,9 @@ static int32_t find_score_limit(struct glint_candidate *candidate, int n)
     return least_q8;
 }
 
-/* Checks that only two sure lamps lower the limit for others, neither one
- * lamp, nor a lamp and its own core, nor a lamp and a faint one. */
+/* Checks that two sure lamps lower the score limit for other candidates, but
+ * that one lamp does not, nor a lamp and its own core, nor a lamp and a faint
+ * one. */
 TEST(two_sure_lamps_lower_the_limit)
 {
     struct glint_candidate c[4] = {
@@ -422,9 +432,9 @@ TEST(two_sure_lamps_lower_the_limit)
     assert_int_equal(find_score_limit(c, 4), -SCORE_COMPANY);
 }
 
-/* Checks that if no lamp is sure, the best candidate passes slightly below
- * the limit, unless it is faint; the second best does not, nor one next to a
- * sure lamp. */
+/* Checks that if no lamp is sure, the best candidate may be slightly below the
+ * score limit, unless it is faint. The second best may not, nor a candidate
+ * next to a sure lamp. */
 TEST(best_candidate_passes_slightly_below_the_limit)
 {
     struct glint_candidate c[4] = {make_scored_candidate(0, 0, -300),
@@ -442,9 +452,9 @@ TEST(best_candidate_passes_slightly_below_the_limit)
     assert_int_equal(find_score_limit(c, 0), 0);
 }
 
-/* Checks, while the wall behind a lamp becomes brighter, that a still image
- * shows the lamp longer than a video, and that a video before the image does
- * not matter. */
+/* Makes the wall behind a lamp brighter step by step. Checks that the lamp is
+ * found longer in a still image than in a video, and that video frames before a
+ * still image do not matter. */
 TEST(video_needs_a_higher_score)
 {
     static const double white[3] = {4, 4, 4};
@@ -466,8 +476,8 @@ TEST(video_needs_a_higher_score)
     assert_in_range(n_of_video, 1, n_alone - 1);
 }
 
-/* Checks that lower thresholds add a dim lamp to two lamps, whose glow they
- * would otherwise unite to one region. */
+/* Checks that lower thresholds find a dim lamp in addition to two brighter
+ * lamps. At these thresholds alone, the glow of the two would be one region. */
 TEST(lower_thresholds_find_more)
 {
     static const double white[3] = {4, 4, 4}, dim[3] = {0.7, 0.7, 0.7};
@@ -487,8 +497,8 @@ TEST(lower_thresholds_find_more)
     free(s.light);
 }
 
-/* Checks that a faint region does not replace the lamp that contains it, not
- * even a lamp of a level with a high cost. */
+/* Checks that a faint region does not replace the lamp that contains it, even
+ * if the lamp was found at a level with a high cost. */
 TEST(faint_regions_replace_no_lamp)
 {
     static const struct glint_level level[2] = {{.cost_q8 = 4096}, {0}};
@@ -503,8 +513,8 @@ TEST(faint_regions_replace_no_lamp)
     assert_int_equal(c[1].gone, 1);
 }
 
-/* Checks that a region which differs from a lamp in a single measure is
- * doubted for that measure. */
+/* Checks that a region that differs from a lamp in a single measure gets doubts
+ * for that measure. */
 TEST(differing_measure_is_doubted)
 {
     static const struct {

@@ -48,8 +48,8 @@ TEST(accepts_a_valid_model)
 
 /* ------------------------------------------------------------------- damage */
 
-/* Checks truncated copies; each has memory of exactly its size, so that an
- * overread is detected. */
+/* Checks truncated copies of a model. Each copy has exactly its size allocated,
+ * so that an overread is detected. */
 TEST(rejects_truncated_models)
 {
     struct model_image m = model_make_auto();
@@ -122,8 +122,8 @@ TEST(rejects_files_that_are_not_models)
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX };
 
-/* Bytes to change, and the error expected; NULL: none. Outputs are those of
- * system 0, terms and coefficients those of output 0. */
+/* Bytes to change in a model, and the error expected; NULL: none. Outputs are
+ * those of system 0; terms and coefficients those of output 0. */
 struct rule {
     enum table table;
     size_t at, bytes;
@@ -228,7 +228,7 @@ static const struct rule auto_rules[] = {
     {GHOST_(0, n_systems), 5, no_systems},
     {GHOST_(0, first_system), UINT32_MAX, no_systems},
     {GHOST_(2, n_systems), UINT32_MAX, no_systems},
-    /* ignored, as ghost 1 has no systems */
+    /* not used, as ghost 1 has no systems */
     {GHOST_(1, first_system), UINT32_MAX, NULL},
     {GHOST_(2, first_system), 1, shared},
     {GHOST_(0, n_systems), 1, NULL},
@@ -266,10 +266,10 @@ static const struct rule auto_rules[] = {
     {BOX, 0, 4, (1 << 30) - (1 << 19), far_box},
     {BOX, 0, 4, (1 << 30) - (1 << 19) - 1, NULL},
     {BOX, 3 * 4, 4, 0, small_box}, /* half width -s */
-    /* half width of the box: 1 - s, which is 0 at s = 1 */
+    /* half width of the box 1 - s, which is 0 at s = 1 */
     {BOX, 3 * 4, 4, 1 << 20, NULL},
     {BOX, 3 * 4, 4, (1 << 20) - 1, small_box},
-    /* half width of the box: 4 - s + 3 w, which is 0 at s = 1, w = -1 */
+    /* half width of the box 4 - s + 3 w, which is 0 at s = 1, w = -1 */
     {BOX, 5 * 4, 4, 3 << 20, NULL},
     {BOX, 5 * 4, 4, (3 << 20) + 1, small_box},
     {BOX, 5 * 4, 4, -(3 << 20) - 1, small_box},
@@ -370,8 +370,8 @@ TEST(accepts_a_model_without_ghosts)
     free(m.data);
 }
 
-/* Checks that systems which share too many tables are rejected, as checking
- * them would take quadratic time. */
+/* Checks that a model whose systems share too many tables is rejected, as
+ * checking it would take quadratic time. */
 TEST(rejects_too_many_shared_tables)
 {
     enum { N = 1000 };
@@ -412,8 +412,8 @@ static void check_corpus_model(const char *path, struct model_image m)
     free(m.data);
 }
 
-/* Checks that the models in the fuzzer's corpus have the present layout;
- * GLINT_GOLDEN_UPDATE=1 rewrites them. */
+/* Checks that the models in the corpus of the fuzzer have the present file
+ * layout; GLINT_GOLDEN_UPDATE=1 rewrites them. */
 TEST(corpus_models_have_the_present_layout)
 {
     check_corpus_model("tests/fuzz/corpus/model/auto", model_make_auto());

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares a model's polynomials, evaluated for rays and vertices, with
+ * Compares a model's polynomials, evaluated for rays and grid vertices, with
  * integers computed by hand.
  */
 #include <stdint.h>
@@ -27,8 +27,8 @@ static struct glint_outputs evaluate_ray(const struct glint_transfer *t,
     return out;
 }
 
-/* Checks rays of the first range of angles: s is -1 .. 1 over sines of 0 ..
- * 1/4. */
+/* Checks rays of the first range of angles, in which s is -1 .. 1 for sines of
+ * 0 .. 1/4. */
 TEST(rays_match_hand_computation)
 {
     struct model_image m = model_make_auto();
@@ -36,7 +36,7 @@ TEST(rays_match_hand_computation)
     static struct glint_transfer t;
     struct glint_outputs out;
 
-    /* s = -1, w = -1: sensor x is 0.25 + 0.5 u + 0.125 v^2 */
+    /* at s = -1 and w = -1, sensor x is 0.25 + 0.5 u + 0.125 v^2 */
     assert_int_equal(glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24),
                      1);
     out = evaluate_ray(&t, 0, 0);
@@ -58,7 +58,7 @@ TEST(rays_match_hand_computation)
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 33554432);  /* 0.125 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], -268435456);
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 125829120); /* 0.234375 */
-    /* s = 0, w = 1 */
+    /* the middle of the range of angles (s = 0), and w = 1 */
     glint_transfer_init(&t, &lens, 0, ONE / 8, MODEL_WAVE_HI_Q24);
     out = evaluate_ray(&t, ONE, -ONE);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 mm */
@@ -67,13 +67,13 @@ TEST(rays_match_hand_computation)
     free(m.data);
 }
 
-/* Checks the decoding of energies. An energy is the polynomial, its square
- * or its fourth power, times 2^head: half of the max polynomial must give
- * 1/2, 1/4 or 1/16, and negative values 0. */
+/* Checks how energies are decoded. An energy is the value of its polynomial,
+ * its square or its fourth power, times 2^head. Half of the max polynomial must
+ * give 1/2, 1/4 or 1/16; negative values must give 0. */
 TEST(energies_are_decoded_from_roots)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
-    /* The polynomial is 2^-8, so energies are 2^-8, 2^-16 and 2^-32. */
+    /* The polynomial is 2^-8; its powers are 2^-8, 2^-16 and 2^-32. */
     static const int scale[3] = {-8 - 28, -16 - 27, -32 - 25};
 
     for (int roots = 0; roots <= 2; roots++)
@@ -103,7 +103,8 @@ TEST(energies_are_decoded_from_roots)
         }
 }
 
-/* Converts the last N coefficients of output O to int16, in the same place. */
+/* Converts the last N coefficients of output O to int16, at the same
+ * address. */
 static void convert_coefficients_to_int16(struct model_image *m,
                                           struct glint_model_output *o, int n,
                                           int shift)
@@ -159,8 +160,8 @@ TEST(int16_coefficients_give_the_same_rays)
     free(m.data);
 }
 
-/* Checks that a transfer uses the system and box of the range of angles and
- * band of wavelengths. */
+/* Checks that a ray is evaluated by the system and box for its range of angles
+ * and band of wavelengths. */
 TEST(uses_the_system_of_angle_and_wavelength)
 {
     struct model_image m = model_make_auto();
@@ -187,7 +188,7 @@ TEST(uses_the_system_of_angle_and_wavelength)
     assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle), 0);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
     assert_ptr_equal(t.system, &lens.system[1]);
-    /* s = 1, w = 0, coefficients halved */
+    /* at s = 1 and w = 0, with halved coefficients */
     assert_int_equal(evaluate_ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X],
                      5 << 24);
     assert_int_equal(evaluate_ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
@@ -198,9 +199,9 @@ TEST(uses_the_system_of_angle_and_wavelength)
     free(m.data);
 }
 
-/* Checks a half width of (s - 1/32)^2 - 1/2048, which is positive at all
- * positions that the check of a model tests, and negative between two of
- * them. */
+/* Checks a box of half width (s - 1/32)^2 - 1/2048: it is positive at all s
+ * that the validity check tests, and negative between two of them, where it
+ * must be clamped to 0. */
 TEST(half_width_below_0_is_clamped)
 {
     struct model_image m = model_make_auto();
@@ -226,8 +227,8 @@ TEST(half_width_below_0_is_clamped)
     free(m.data);
 }
 
-/* Sets the coefficients of the first system to random values with the
- * largest sums of magnitudes allowed. SEED gives sizes and signs. */
+/* Sets the coefficients of the first system to random values with the largest
+ * allowed sums of magnitudes. SEED determines sizes and signs. */
 static void set_largest_coefficients(struct model_image *m, uint32_t *seed)
 {
     const struct glint_model_header *h = model_header_of(m);
@@ -250,8 +251,8 @@ static void set_largest_coefficients(struct model_image *m, uint32_t *seed)
     model_seal_checksum(m);
 }
 
-/* Checks that no output leaves its range; CONFIG=qcheck checks every step as
- * well. */
+/* Checks that no output leaves its range; with CONFIG=qcheck every intermediate
+ * step is checked as well. */
 TEST(extreme_coefficients_stay_in_range)
 {
     struct model_image m = model_make_auto();
@@ -303,7 +304,7 @@ TEST(grid_covers_the_pupil_box)
 
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_HI_Q24);
     glint_transfer_grid(&t, &place, 2, v);
-    /* u = v = 1: sensor (0.875, 0.75) mm, stop (0.5, 0.375) */
+    /* at u = v = 1: sensor (0.875, 0.75) mm, stop (0.5, 0.375) */
     assert_int_equal(v[8].x_q8, (1000 + 56) << 8);
     assert_int_equal(v[8].y_q8, (500 - 48) << 8);
     assert_int_equal(v[8].stop_x_q16, 32768);
@@ -311,10 +312,11 @@ TEST(grid_covers_the_pupil_box)
     assert_int_equal(v[8].barrel_q16[0], 65536);
     assert_int_equal(v[8].barrel_q16[1], 0);
     assert_int_equal(v[8].energy_q16, 49152);
-    /* u = -1, v = 1: sensor (-0.125, 0.25) mm; v increases from row to row */
+    /* at u = -1, v = 1: sensor (-0.125, 0.25) mm; v increases from row to
+     * row */
     assert_int_equal(v[6].x_q8, (1000 - 8) << 8);
     assert_int_equal(v[6].y_q8, (500 - 16) << 8);
-    /* The first row is the last one mirrored at the plane of the light. */
+    /* the first row is the last row mirrored at the plane of the light */
     for (int i = 0; i < 3; i++) {
         assert_int_equal(v[i].x_q8, v[6 + i].x_q8);
         assert_int_equal(v[i].y_q8 - (500 << 8), (500 << 8) - v[6 + i].y_q8);
@@ -323,7 +325,7 @@ TEST(grid_covers_the_pupil_box)
         assert_int_equal(v[3 + i].y_q8, 500 << 8);
     }
     place.cos_q30 = 0;
-    /* azimuth 90 degrees: sensor x points up, y to the left */
+    /* at an azimuth of 90 degrees, sensor x points up and y to the left */
     place.sin_q30 = ONE;
     glint_transfer_grid(&t, &place, 2, turned);
     for (int k = 0; k < 9; k++) {
@@ -337,8 +339,8 @@ TEST(grid_covers_the_pupil_box)
 }
 
 /* Checks that the rows of an annular grid lie between the inner rim and the
- * edge of the box, on both sides of the middle, and that their vertices
- * equal those of a finer grid of the whole box. */
+ * edge of the pupil box, on both sides of the middle, and that their vertices
+ * equal those of a finer grid over the whole box. */
 TEST(annular_grid_rows_leave_the_hole_out)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
@@ -382,7 +384,7 @@ TEST(positions_out_of_range_are_invalid)
     place.pixels_per_mm.exponent = -10; /* a scale of 2^20 pixels per mm */
     glint_transfer_grid(&t, &place, 1, v);
     assert_true(v[1].energy_q16 < 0 && v[3].energy_q16 < 0);
-    /* rays that land 0.25 mm off the centre */
+    /* rays that land 0.25 mm from the sensor's centre */
     assert_true(v[0].energy_q16 > 0 && v[2].energy_q16 > 0);
     for (int e = -200; e <= 200; e++) {
         place.pixels_per_mm.exponent = e;

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the interpolation of two positions of a zoom lens, with models whose
- * polynomials can be interpolated by hand: barrels are matched to similar ones,
- * others open gradually towards the position that lacks them, and energies are
- * interpolated in the coordinates of their roots.
+ * polynomials can be interpolated by hand: each barrel is matched to a similar
+ * one of the other position, a barrel without a match opens gradually towards
+ * the position that lacks it, and energies are interpolated as the roots that
+ * the file stores.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -19,8 +20,8 @@ enum { ONE = MODEL_ONE_Q30, MOST = 3, EXPONENT = -28 };
 
 #define P(u, v) MODEL_POWER(u, v, 0, 0)
 
-/* A barrel's polynomial: its value in the middle, and the coefficients of u
- * and v^2. */
+/* Polynomial of a barrel's value at a pupil position: constant, and
+ * coefficients of u and v^2. */
 struct barrel {
     double middle, u, v2;
 };
@@ -30,11 +31,11 @@ static int32_t encode_q28(double x)
     return (int32_t)lrint(ldexp(x, 28));
 }
 
-/* Heads (scale bits) of the energies at both positions, and their number of
- * roots. */
+/* Heads (scale bits) of the energies at both zoom positions, and number of
+ * square roots that the file stores. */
 static uint8_t head[2], roots;
 
-/* centre of the boxes, units of 2^-20 */
+/* centre of the pupil boxes, units of 2^-20 mm */
 static int32_t box_middle;
 
 /* Polynomial of the ray's position in the stop: constant, coefficients of u
@@ -45,8 +46,8 @@ struct stop {
 static const struct stop usual = {0, 0.5, 0.5};
 static struct stop stop = {0, 0.5, 0.5};
 
-/* Makes a system with N barrels; sensor x is SENSOR u, mm; energy is ENERGY,
- * squared if there are roots. */
+/* Makes a system with N barrels. Sensor x is SENSOR times u, mm; the polynomial
+ * of the energy is ENERGY, which is squared if there are roots. */
 static struct glint_model_system
 make_system(struct model_image *m, double sensor, double energy,
             uint8_t head_bits, const struct barrel *barrel, uint32_t n)
@@ -101,7 +102,7 @@ open_model_of_system(struct model_image *m, double sensor, double energy,
 
 static struct glint_transfer mixed;
 
-/* Interpolates models A and B at the fraction PART of the way. */
+/* Interpolates models A and B at PART, a fraction of the way from A to B. */
 static void interpolate_models(const struct glint_lens *a,
                                const struct glint_lens *b, double part)
 {
@@ -113,7 +114,8 @@ static void interpolate_models(const struct glint_lens *a,
                      1);
 }
 
-/* Interpolates between the barrels A[N_A] and B[N_B] at PART. */
+/* Interpolates between the barrels A[N_A] and B[N_B] at PART, a fraction of the
+ * way. */
 static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
                                 const struct barrel *b, uint32_t n_b,
                                 double part)
@@ -138,7 +140,7 @@ static double evaluate_output(int kind, double u, double v)
     return ldexp(out.at[kind], mixed.exponent[kind]);
 }
 
-/* Checks that output KIND is X at (U, V). */
+/* Checks that output KIND of the interpolated model is X at (U, V). */
 static void check_output_at(int kind, double u, double v, double x)
 {
     const double got = evaluate_output(kind, u, v);
@@ -172,7 +174,8 @@ TEST(outputs_are_interpolated)
     }
 }
 
-/* Checks that each barrel is matched to the most similar one, in any order. */
+/* Checks that each barrel is matched to the most similar barrel of the other
+ * position, whatever their order. */
 TEST(barrels_match_the_most_similar)
 {
     const struct barrel a[] = {right, left};
@@ -187,7 +190,7 @@ TEST(barrels_match_the_most_similar)
     }
 }
 
-/* Checks that a barrel missing at the first position is complete from a
+/* Checks a barrel that the first position lacks: it clips completely from a
  * quarter of the way on, and opens to 1/2 before that. */
 TEST(missing_first_barrel_closes_gradually)
 {
@@ -202,16 +205,18 @@ TEST(missing_first_barrel_closes_gradually)
     check_barrel_values(1, (struct barrel){0.35, 0, 0.6});
     interpolate_barrels(a, 1, twice, 2, 0.5);
     check_barrel_values(0, (struct barrel){0.32, 0.52, 0.1});
-    /* starts as the most similar barrel */
+    /* an added barrel begins as the most similar barrel */
     check_barrel_values(1, (struct barrel){0.32, 0.52, 0.1});
     interpolate_barrels(a, 1, other, 1,
-                        0.5); /* the only other barrel is not similar */
+                        /* the only other barrel is not similar, so it is not
+                         * used */
+                        0.5);
     check_barrel_values(0, right);
     check_barrel_values(1, left);
 }
 
-/* Checks that a barrel missing at the second position opens after three
- * quarters of the way. */
+/* Checks a barrel that the second position lacks: it opens after three quarters
+ * of the way. */
 TEST(missing_second_barrel_opens_gradually)
 {
     const struct barrel a[] = {high, right}, b[] = {more_right};
@@ -223,9 +228,9 @@ TEST(missing_second_barrel_opens_gradually)
     check_barrel_values(0, (struct barrel){0.35, 0, 0.6});
 }
 
-/* Interpolates at PART between a position without barrels and with stop
- * positions OURS, and one with the barrel B and stop positions THEIRS; in the
- * opposite order if TURNED is set. */
+/* Interpolates at PART between a position without barrels, with stop positions
+ * OURS, and a position with the barrel B and stop positions THEIRS. TURNED: in
+ * the opposite order. */
 static void interpolate_stops(const struct stop *ours,
                               const struct stop *theirs, struct barrel b,
                               double part, bool turned)
@@ -259,9 +264,10 @@ static void check_clipped_fraction(struct stop ours, struct stop theirs,
     }
 }
 
-/* Checks that a barrel missing at one position starts so that it clips the same
- * part of the stop as at the other position; or the same part of the box, if
- * that is less or if the stop moves by more than half a box. */
+/* Checks a barrel that one position lacks: it begins such that it clips the
+ * same part of the stop as at the other position; or the same part of the
+ * pupil box, if that is less or if the stop position moves by more than half
+ * a box. */
 TEST(missing_barrel_clips_as_much_of_the_stop)
 {
     const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
@@ -282,7 +288,7 @@ TEST(missing_barrel_clips_as_much_of_the_stop)
 }
 
 /* Checks that the two most similar barrels are matched, in either order, and
- * that a remaining one starts as the most similar barrel. */
+ * that a remaining barrel begins as the most similar barrel. */
 TEST(most_similar_barrels_are_matched)
 {
     const struct barrel one[] = {right};
@@ -296,8 +302,8 @@ TEST(most_similar_barrels_are_matched)
     check_barrel_values(1, (struct barrel){0.33, 0.53, 0.1});
 }
 
-/* Checks that interpolated energies fit only under the smaller of both
- * heads. */
+/* Checks that interpolated energies fit into the range of only the smaller of
+ * both heads. */
 TEST(energies_keep_the_smaller_head)
 {
     const double value = 0.375;
@@ -317,9 +323,9 @@ TEST(energies_keep_the_smaller_head)
 
 /* -------------------------------------------------------------------- boxes */
 
-/* Writes a model to M and opens it. Its box is centred at MIDDLE with the
- * half sides HALF and RISE, mm; its sensor x and y are the pupil coordinates
- * times SLOPE; its barrel is a circle of 4 mm in the pupil. */
+/* Writes a model to M and opens it. Its pupil box is centred at MIDDLE and has
+ * the half sides HALF and RISE, mm. Its sensor x and y are the pupil
+ * coordinates times SLOPE. Its barrel is a circle of 4 mm in the pupil. */
 static struct glint_lens open_model_of_box(struct model_image *m, double middle,
                                            double half, double rise,
                                            double slope)
@@ -358,8 +364,8 @@ static struct glint_lens open_model_of_box(struct model_image *m, double middle,
     return model_open_image(m);
 }
 
-/* Checks that linear functions of the pupil position are interpolated at
- * each position, even if the boxes differ in position and size. */
+/* Checks that outputs that are linear in the pupil position are interpolated at
+ * each pupil position, even if the boxes differ in position and size. */
 TEST(outputs_are_interpolated_across_moving_boxes)
 {
     struct model_image at[2];
@@ -381,8 +387,8 @@ TEST(outputs_are_interpolated_across_moving_boxes)
     free(at[1].data);
 }
 
-/* Checks that the first barrel is that circle at (U, V), which is the pupil
- * position (X, Y) mm, as closely as boxes this different can be
+/* Checks that the first barrel at (U, V), which is the pupil position (X, Y)
+ * mm, is the circle of 4 mm, as closely as boxes as different as these can be
  * interpolated. */
 static void check_first_barrel_is_circle(double u, double v, double x, double y)
 {
@@ -392,7 +398,7 @@ static void check_first_barrel_is_circle(double u, double v, double x, double y)
         fail_msg("the barrel is %g at %g, %g mm", got, x, y);
 }
 
-/* Checks that a barrel moves with its box. */
+/* Checks that a barrel moves with the pupil box of its ghost. */
 TEST(barrels_move_with_their_box)
 {
     const struct barrel a = {0.3, 0.5, 0.1}, b = {0.3, 0.9, 0.1};
@@ -411,9 +417,9 @@ TEST(barrels_move_with_their_box)
     free(at[1].data);
 }
 
-/* Checks that barrels with equal shape in the pupil are matched even if
- * their boxes, and so their polynomials, differ much; one in a distant box
- * is not. */
+/* Checks that barrels of equal shape in the pupil are matched even if their
+ * boxes, and so their polynomials, differ much; a barrel in a distant box is
+ * not matched. */
 TEST(barrels_match_by_shape_in_the_pupil)
 {
     struct model_image at[3];
@@ -434,8 +440,8 @@ TEST(barrels_match_by_shape_in_the_pupil)
         free(at[k].data);
 }
 
-/* Writes a model to M and opens it; its BOX is unrealistic, in units of
- * 2^EXPONENT, with one barrel. */
+/* Writes a model to M and opens it. Its pupil box BOX, in units of 2^EXPONENT,
+ * is unrealistic; it has one barrel. */
 static struct glint_lens
 open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
                            int16_t exponent,
@@ -460,8 +466,8 @@ open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
     return model_open_image(m);
 }
 
-/* Checks a box half a unit wide, in which rounding moves positions by more
- * than its width: barrels are still evaluated inside it. */
+/* Checks a pupil box half a unit wide, in which rounding moves positions by
+ * more than the width: barrels are still evaluated inside the box. */
 TEST(narrow_boxes_evaluate_barrels_inside)
 {
     static const int32_t wide[3] = {0, 5, 5};
@@ -490,8 +496,8 @@ TEST(narrow_boxes_evaluate_barrels_inside)
 
 enum { WHOLE = 2 };
 
-/* A ghost or a part of its pupil: its pair of surfaces, sensor x = SENSOR u
- * (0: dark), and the annulus of its box. */
+/* A ghost, or one part of its pupil: its pair of surfaces, the factor of sensor
+ * x = SENSOR u (0: the ghost is dark), and the annulus of its box. */
 struct part {
     int i, j;
     double sensor;
@@ -530,8 +536,8 @@ static struct glint_lens open_model_of_ghosts_and_parts(struct model_image *m,
 
 static struct glint_zoom_lens zoom;
 
-/* Expected ghost at the fraction PART of the way: sensor x = SENSOR u and
- * ENERGY, or dark if SENSOR is 0. */
+/* Expected ghost at PART, a fraction of the way: sensor x = SENSOR u and its
+ * energy, or dark if SENSOR is 0. */
 struct sight {
     int ghost;
     double part, sensor, energy;
@@ -555,8 +561,8 @@ static void check_interpolated_ghosts(const struct sight *sight, size_t n)
 #define SHOWS(sights) \
     check_interpolated_ghosts(sights, sizeof(sights) / sizeof *(sights))
 
-/* A zoom position: its fraction of the way, its ghosts and parts, and the
- * centre of their boxes. */
+/* A zoom position: its fraction of the way, the ghosts and parts of its model,
+ * and the centre of their boxes. */
 struct position {
     double along;
     const struct part *part;
@@ -590,7 +596,8 @@ static void free_position_models(const struct model_image *at, int n)
         free(at[k].data);
 }
 
-/* Checks that a ghost that is dark at one position fades towards it. */
+/* Checks that a ghost that is dark at one zoom position fades out towards that
+ * position. */
 TEST(dark_ghosts_fade)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
@@ -611,8 +618,8 @@ TEST(dark_ghosts_fade)
     free_position_models(at, 2);
 }
 
-/* Checks that a ghost continues (is extrapolated) into the dark position if
- * two positions define its motion. */
+/* Checks that a ghost is extrapolated towards a zoom position at which it is
+ * dark if two other positions define its motion. */
 TEST(ghosts_are_extrapolated_into_the_dark)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
@@ -634,9 +641,9 @@ TEST(ghosts_are_extrapolated_into_the_dark)
     free_position_models(at, 3);
 }
 
-/* Checks that a ghost is not extrapolated over more than the distance of
- * both positions, nor with parts, whose number may change, nor if boxes are
- * too far apart. */
+/* Checks that a ghost is not extrapolated further than the distance of the two
+ * positions that define its motion, nor if its pupil is divided into parts,
+ * whose number may change, nor if its boxes are too far apart. */
 TEST(unsafe_ghosts_are_not_extrapolated)
 {
     static const struct part a[] = {
@@ -660,9 +667,9 @@ TEST(unsafe_ghosts_are_not_extrapolated)
     }
 }
 
-/* Checks that sums of magnitudes stay below 2^30, as vectors and heads
- * require, even if extrapolation moves a ghost to three times the max of a
- * model. */
+/* Checks that sums of magnitudes of coefficients stay below 2^30, as SIMD code
+ * and heads require, even if extrapolation would move a ghost to three times
+ * the max of a model. */
 TEST(extrapolated_sums_stay_in_range)
 {
     static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};
@@ -687,9 +694,9 @@ TEST(extrapolated_sums_stay_in_range)
     free_position_models(at, 3);
 }
 
-/* Checks that if two positions divide a pupil differently, the nearer one is
- * drawn, and that parts are interpolated with those of the same ghost, in
- * any order. */
+/* Checks that if two zoom positions divide a pupil differently, that of the
+ * nearer one is drawn, and that parts are interpolated with parts of the same
+ * ghost, in any order. */
 TEST(parts_are_interpolated_with_their_ghost)
 {
     static const struct part a[] = {
@@ -715,13 +722,13 @@ static double interpolate_linearly(double a, double b)
     return 0.75 * a + 0.25 * b;
 }
 
-/* Checks that the numbers of the whole lens are interpolated, each by its
- * own rule. */
+/* Checks that the numbers of the lens header are interpolated, each by its own
+ * rule. */
 TEST(lens_numbers_are_interpolated)
 {
     static const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
     static const struct position both[] = {{0, part, 2, 0}, {1, part, 2, 0}};
-    /* second time with coefficients 96 times as large, so with other
+    /* repeats with coefficients 96 times as large, which have other
      * exponents */
     static const double by[2] = {1, 96};
     struct model_image at[MOST_POSITIONS];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests a zoom of two lenses, baked at three positions: at these it equals the
- * model of that position, between them its rays land where exact rays do, and
- * files that are not zooms are rejected.
+ * Tests a zoom of two lenses, baked at three positions: at each of them it
+ * equals the model of that position; between them its rays land where exact
+ * rays do; files that are not zooms are rejected.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -112,8 +112,8 @@ TEST(zoom_at_a_position_equals_its_model)
     }
 }
 
-/* RMS errors of the zoom's rays that pass the stop against exact rays:
- * pixels of an image 1920 wide, and relative energy. */
+/* RMS errors, against exact rays, of the zoom's rays that pass the stop:
+ * position, pixels of an image 1920 wide; energy, relative. */
 struct off {
     double pixels, energies;
 };
@@ -193,8 +193,8 @@ TEST(interpolation_is_accurate_between_positions)
 /* --------------------------------------------------------------- some ghosts
  */
 
-/* Checks that ghost G is equal in the zooms A and B half-way between the
- * positions and beyond. */
+/* Checks that ghost G is equal in the zooms A and B at positions from half-way
+ * between two models onwards. */
 static void check_ghosts_are_equal(struct glint_zoom_lens *a,
                                    struct glint_zoom_lens *b, int g)
 {
@@ -215,8 +215,8 @@ static void check_ghosts_are_equal(struct glint_zoom_lens *a,
     }
 }
 
-/* Checks that if only one ghost is baked at the middle position, that ghost
- * is interpolated between three positions, the others between two. */
+/* Checks that if only one ghost is baked at the middle position, this ghost is
+ * interpolated between three positions, the others between two. */
 TEST(partly_baked_position_interpolates_its_ghosts)
 {
     static struct glint_zoom_lens some, two;

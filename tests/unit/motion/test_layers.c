@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests shells and lines of recorded motion, pixel by pixel, against their
- * definition in double precision, and that nearer objects occlude them.
+ * Tests shells and lines of recorded motion, (spheres of transparent material,
+ * and trajectories) pixel by pixel against their definition in double
+ * precision, and that nearer objects occlude them.
  */
 #include <math.h>
 #include <stdint.h>
@@ -14,9 +15,9 @@
 
 enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
 
-/* Returns the cosine between ray and normal where the ray through (X, Y), Q8
- * pixels from the image centre, enters a ball of RADIUS at C in camera
- * coordinates; -1: it misses the ball. */
+/* Returns the cosine between ray and surface normal where the ray through (X,
+ * Y), Q8 pixels from the image centre, enters a ball of RADIUS at C in camera
+ * coordinates; -1: the ray misses the ball. */
 static double compute_cosine_to_normal(const struct glint_scene *s,
                                        const int32_t c[3], double radius,
                                        double x_q8, double y_q8)
@@ -105,7 +106,8 @@ static void compare_layers_with_definition(struct moving *d)
                     fabs(rgb[c] -
                          ldexp(d->light_q20[3 * (y * WIDTH + x) + c], -20)));
         }
-    /* each layer is rounded to 1/256, the coverage of a rim to one sample */
+    /* each layer is rounded to 1/256, and the coverage of a rim to one
+     * sample */
     if (worst > (m->n_layers + 2) / 256.)
         fail_msg("%d layers, off by %.4f", m->n_layers, worst);
 }
@@ -138,8 +140,8 @@ TEST(layers_are_as_defined)
         }
 }
 
-/* Checks an undetected food inside or in front of the shell of a detected food:
- * it occludes the shell. */
+/* Checks a food (landmark) that is not detected, inside or in front of the
+ * shell of a detected food: the food occludes the shell. */
 TEST(nearer_objects_hide_layers)
 {
     double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};
@@ -163,7 +165,7 @@ TEST(nearer_objects_hide_layers)
         assert_int_equal(d->frame.scene->motion->n_layers, 1);
         if (i)
             assert_memory_equal(with[0], with[1], sizeof with[0]);
-        else /* a shell so wide that the food is inside */
+        else /* the shell is so wide that the food is inside it */
             assert_memory_not_equal(with[0], with[1], sizeof with[0]);
         moving_close_scene(d);
     }

@@ -2,7 +2,7 @@
  *
  * Tests the localisation of a body by the foods that it observes: requirements
  * D1 to D6 of recorded motion, for the four body motions of
- * tests/support/tracks. Foods are the landmarks.
+ * tests/support/tracks. "Foods" are the landmarks.
  */
 #include <math.h>
 #include <stdint.h>
@@ -20,13 +20,14 @@ struct errors {
     /* RMS error of the first and of the last tenth of the track */
     double first, last;
     double worst;
-    /* correlation of the error with the mean distance of foods */
+    /* correlation of the position error with the mean distance of foods from
+     * the body */
     double correlation;
     int n; /* number of frames until localisation failed */
 };
 
-/* Localises the body on a track, by FOUR foods if not NULL, else by ALL
- * foods. */
+/* Localises the body on a track: by the method of four foods if FOUR is not
+ * NULL, otherwise by all foods. */
 static struct errors measure_pose_errors(const struct track_options *options,
                                          struct glint_localiser *all,
                                          struct four *four)
@@ -97,8 +98,8 @@ static struct track_options make_track_options(int motion, int reset_every,
         motion, FRAMES, 5, reset_every, digits, (uint32_t)(SEED + motion)};
 }
 
-/* Row D1: errors with weights of four foods are about 1e-6 in float32 and do
- * not grow. */
+/* D1: with the weights of four foods, errors are about 1e-6 in float32 and do
+ * not grow with time. */
 TEST(row_d1_four_foods_do_not_drift)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -117,7 +118,7 @@ TEST(row_d1_four_foods_do_not_drift)
     }
 }
 
-/* Row D2: chaining motions from frame to frame drifts. */
+/* D2: the error of chaining the motions from frame to frame grows with time. */
 TEST(row_d2_the_chain_drifts)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -135,9 +136,9 @@ TEST(row_d2_the_chain_drifts)
     }
 }
 
-/* Row D5: foods end and others appear. Rigid fits and averages over a food's
- * lifetime keep the error below 1e-4; the published solution has a thousand
- * times more. */
+/* D5: foods end and others appear. Rigid fits, and averages over a food's
+ * lifetime, keep the error below 1e-4. The error of the published solution is a
+ * thousand times as large. */
 TEST(row_d5_resets_keep_the_error_small)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -159,7 +160,7 @@ TEST(row_d5_resets_keep_the_error_small)
     }
 }
 
-/* Row D6: errors correlate weakly with mean distances of foods. */
+/* D6: errors correlate only weakly with the mean distance of foods. */
 TEST(row_d6_error_depends_weakly_on_food_distance)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -172,8 +173,8 @@ TEST(row_d6_error_depends_weakly_on_food_distance)
     }
 }
 
-/* Checks that two of five foods may vanish at once, leaving three, and one
- * of four. */
+/* Checks that two of five foods may vanish in one frame, which leaves three,
+ * and one of four. */
 TEST(two_foods_may_vanish_at_once)
 {
     struct track_options o = make_track_options(0, 0, 0);
@@ -205,8 +206,8 @@ TEST(two_foods_may_vanish_at_once)
         "four foods"));
 }
 
-/* Checks that collinear foods, or coplanar foods for the method of four, are
- * rejected within 2^-20 of the limit. */
+/* Checks that collinear foods, and coplanar foods with the method of four
+ * foods, are rejected within 2^-20 of the limit. */
 TEST(rejects_collinear_and_coplanar_foods)
 {
     const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};
@@ -237,7 +238,8 @@ TEST(rejects_collinear_and_coplanar_foods)
     }
 }
 
-/* Checks that float32, emulated by rounding doubles, has the bits of float. */
+/* Checks that float arithmetic emulated by rounding doubles is bit-identical
+ * with float. */
 TEST(rounded_doubles_equal_floats)
 {
     uint32_t seed = 3;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the file of a motion: any frame is read with few blocks, reading from
- * memory and by blocks is the same, and damage is detected.
+ * memory and reading by blocks give the same frames, and damage is detected.
  */
 #include <math.h>
 #include <stdint.h>
@@ -117,8 +117,8 @@ TEST(poses_are_the_true_ones)
     free(baked.data);
 }
 
-/* Checks that a frame read by blocks equals that in memory, and that frames
- * at the end need as few blocks as those at the beginning. */
+/* Checks that a frame read by blocks equals the frame read from memory, and
+ * that frames at the end need as few blocks as those at the beginning. */
 TEST(any_frame_needs_few_blocks)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
@@ -143,7 +143,7 @@ TEST(any_frame_needs_few_blocks)
         assert_ok(glint_motion_frame(&streamed, k, &f));
         assert_ok(glint_motion_frame(&baked.motion, k, &g));
         assert_memory_equal(&f, &g, sizeof f);
-        /* at most one block each of poses, index, events and intensities */
+        /* at most one block each of the poses, index, events and intensities */
         assert_true(baked.reads <= 4);
     }
     assert_int_equal(glint_motion_frame(&streamed, FRAMES, &f),
@@ -151,8 +151,8 @@ TEST(any_frame_needs_few_blocks)
     free(baked.data);
 }
 
-/* Checks that a changed byte is detected: in memory when opening, by blocks
- * when its block is read. */
+/* Checks that a changed byte is detected: in memory, on opening the file; by
+ * blocks, when its block is read. */
 TEST(damage_is_found)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
@@ -184,7 +184,7 @@ TEST(damage_is_found)
 
             found = glint_motion_frame(&streamed, k, &f) != GLINT_OK;
         }
-        /* The checksum of the whole file (bytes 12 .. 15) is not checked when
+        /* Bytes 12 .. 15, the checksum of the whole file, are not checked when
          * reading by blocks. */
         assert_true(found || (at >= 12 && at < 16 && at < header));
         baked.data[at] = was;
@@ -198,7 +198,7 @@ TEST(damage_is_found)
 }
 
 /* Checks reading by blocks: a name with control characters is rejected as in
- * a whole file, and a frame with an unreadable block returns an error,
+ * memory, and a frame that needs an unreadable block returns an error,
  * whichever block it is. */
 TEST(blocks_are_validated)
 {
@@ -249,8 +249,8 @@ TEST(blocks_are_validated)
     free(baked.data);
 }
 
-/* Checks that a file with random words and a valid checksum is rejected or
- * can be read. */
+/* Checks that a file with random words and a valid checksum is either rejected,
+ * or all its frames can be read. */
 TEST(random_words_are_rejected_or_readable)
 {
     struct baked baked;
@@ -264,7 +264,7 @@ TEST(random_words_are_rejected_or_readable)
     for (int i = 0; i < 3000; i++) {
         struct glint_motion motion;
         const char *reason;
-        /* Every second change is in the header. */
+        /* every second change is in the file header */
         const size_t at =
             4 * (size_t)rng_int_below(&seed, i % 2 ? 46 : (int)baked.bytes / 4);
         uint32_t word = rng_bits32(&seed) >> rng_int_below(&seed, 32);
@@ -287,7 +287,8 @@ TEST(random_words_are_rejected_or_readable)
     free(baked.data);
 }
 
-/* Checks that tracks scaled by 1e-6 to 1e4 keep their relative precision. */
+/* Checks that tracks scaled by 1e-6 to 1e4 keep their relative precision, as
+ * the bake adapts the unit. */
 TEST(unit_adapts_to_the_size)
 {
     for (int power = -6; power <= 4; power++) {

@@ -15,7 +15,7 @@
 
 struct text {
     const char *at;
-    size_t left, most; /* bytes left; max bytes per read */
+    size_t left, most; /* bytes not yet read; max bytes per read */
 };
 
 static long read_recording_text(void *ctx, char *to, size_t n)
@@ -63,8 +63,8 @@ static enum glint_status bake_recording_text(const char *text, size_t most,
     return status;
 }
 
-/* A recording of two frames with the alternative key names. The two %s are
- * STRUCTURE and FRAMES. */
+/* A recording of two frames with the alternative key names. The two %s are the
+ * values of its keys STRUCTURE and FRAMES. */
 #define BODY                                                                 \
     "\"structure\": {\"size\": .5e0, \"sensors\": [{\"theta\": 0, \"phi\": " \
     "0}], \"angleofview\": 60}"
@@ -148,8 +148,8 @@ TEST(rejects_invalid_recordings)
     bake_must_fail("{\"a\": , }", "expected a JSON value");
 }
 
-/* Checks that collinear foods, and three foods that vanish at once, are
- * rejected. */
+/* Checks that collinear foods are rejected, and that three foods may not vanish
+ * in one frame. */
 TEST(rejects_recordings_that_cannot_be_localised)
 {
 #define LINE                                                             \
@@ -171,8 +171,9 @@ TEST(rejects_recordings_that_cannot_be_localised)
     free(baked.data);
 }
 
-/* Checks unknown keys (also nested), trailing commas, any order, pieces of
- * any size, and brackets and escapes in strings. */
+/* Checks that unknown keys (also nested), trailing commas, any order of keys,
+ * input in pieces of any size, and brackets and escapes in strings are
+ * accepted. */
 TEST(accepts_deviations_of_syntax)
 {
     static const char text[] =
@@ -213,8 +214,8 @@ static char *write_recording_file(const struct track_options *o, bool is_second)
     return text;
 }
 
-/* Checks that both sets of key names give the same motion, that `reset` in
- * the first frame has no effect, and row D11: the sums of rv and tv. */
+/* Checks that both sets of key names give the same motion, and that `reset` in
+ * the first frame has no effect. D11: checks the sums of rv and tv. */
 TEST(both_sets_of_key_names_are_equal)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};
@@ -251,7 +252,8 @@ TEST(both_sets_of_key_names_are_equal)
     free(second);
 }
 
-/* Checks that a food that moves without a reset is reported as a residual. */
+/* Checks that a food that moves without a `reset` in the recording is reported
+ * as a residual. */
 TEST(moving_food_is_reported)
 {
     struct baked baked;

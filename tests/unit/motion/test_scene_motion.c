@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests recorded motion in scenes: rows D7 to D10.
+ * Tests recorded motion in scenes: requirements D7 to D10.
  */
 #include <math.h>
 #include <stdint.h>
@@ -43,8 +43,8 @@ static uint64_t hash_image(const struct moving *d)
 /* -------------------------------------------------------------------- row D8
  */
 
-/* Row D8: a frame is the same whether it is reached by playing, stepping or
- * jumping forth and back, for all tile sizes. */
+/* D8: checks that a frame is the same whether it is reached by playing, by
+ * single steps or by jumps, for all tile sizes. */
 TEST(row_d8_seek_is_play)
 {
     enum { N = 40 };
@@ -86,7 +86,7 @@ TEST(row_d8_seek_is_play)
 /* -------------------------------------------------------------------- row D7
  */
 
-/* Sets AT to V rotated by the unit quaternion Q. */
+/* Sets AT to vector V rotated by the unit quaternion Q. */
 static void rotate_vector(const double q[4], const double v[3], double at[3])
 {
     const double c[3] = {q[2] * v[2] - q[3] * v[1], q[3] * v[0] - q[1] * v[2],
@@ -98,7 +98,7 @@ static void rotate_vector(const double q[4], const double v[3], double at[3])
 }
 
 /* Returns the margin, radians, by which food F of FRAME is inside the detection
- * angle of sensor S (formula of requirement D7); negative: outside. */
+ * angle of sensor S; negative: outside (formula of requirement D7). */
 static double compute_detection_margin(const struct glint_motion_frame *frame,
                                        double size, int s, int f)
 {
@@ -122,9 +122,9 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
     return moving_food_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
 }
 
-/* Row D7: in 10 000 frames of random steps, rotations and foods, with six
- * sensors and five foods, detection by angle, and by angle and intensity,
- * equals brute force. */
+/* D7: checks that detection by angle, and by angle and intensity, equals brute
+ * force, in 10 000 frames of random steps, rotations and foods, with six
+ * sensors and five foods. */
 TEST(row_d7_detection_is_brute_force)
 {
     enum { N = 10000 };
@@ -152,7 +152,9 @@ TEST(row_d7_detection_is_brute_force)
                               s &
                           1)};
 
-                if (fabs(margin) < 1e-6) { /* positions are rounded to steps */
+                /* positions are rounded to steps, so nearly equal angles are
+                 * not compared */
+                if (fabs(margin) < 1e-6) {
                     close++;
                     continue;
                 }
@@ -169,8 +171,8 @@ TEST(row_d7_detection_is_brute_force)
     moving_close_scene(d[1]);
 }
 
-/* Checks that the comparison of angles by squares equals that in exact
- * integers, also for wide angles. */
+/* Checks that angles compared by their squared cosines give the same result as
+ * exact integers, also for wide angles. */
 TEST(angles_are_compared_exactly)
 {
     uint32_t seed = 5;
@@ -211,9 +213,8 @@ TEST(angles_are_compared_exactly)
     "material light ward diffuse .5 .5 .5 specular .2 .2 .2 alpha .1 .1\n" \
     "sphere a at 0 8 0 radius 1 material dark\n"
 
-/* Checks that a control line which fails leaves camera and appearances
- * unchanged (camera in a sensor, or free), and that the next line is
- * executed. */
+/* Checks that a control line that fails changes neither camera (in a sensor or
+ * free) nor appearances, and that the next line is executed. */
 TEST(failed_control_lines_change_nothing)
 {
     static const struct control_line bright = {
@@ -260,8 +261,8 @@ TEST(failed_control_lines_change_nothing)
 /* -------------------------------------------------------------------- row D9
  */
 
-/* Returns the mean column of pixels that are more red than blue, -1 if there
- * are none. Sets *N to their number. */
+/* Returns the mean column of the pixels with more red than blue; -1: there are
+ * none. Sets *N to their number. */
 static double compute_mean_red_column(const struct moving *d, int *n)
 {
     double sum = 0;
@@ -278,11 +279,12 @@ static double compute_mean_red_column(const struct moving *d, int *n)
     return *n ? sum / *n : -1;
 }
 
-/* Row D9: a camera in a sensor has the object ahead in the centre and the
- * sensor's field of view; leaving it restores the previous image. */
+/* D9: checks that a camera in a sensor has the object ahead in the image centre
+ * and the field of view of the sensor, and that leaving the sensor restores the
+ * previous image. */
 TEST(row_d9_camera_in_a_sensor)
 {
-    /* foods ahead of sensor 0, ahead of sensor 1, and two others */
+    /* foods: one ahead of sensor 0, one ahead of sensor 1, and two others */
     double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
     uint64_t outside;
     struct moving *d;
@@ -292,13 +294,14 @@ TEST(row_d9_camera_in_a_sensor)
     d = moving_open_scene(LOOK RUN, 5, 4);
     moving_draw_frame(d);
     outside = hash_image(d);
-    for (int k = 0; k < 2; k++) { /* sensor k is directed at food k */
+    for (int k = 0; k < 2; k++) { /* sensor k points at food k */
         assert_ok(glint_scene_enter(d->frame.scene, k));
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
         moving_draw_frame(d);
         assert_true(fabs(compute_mean_red_column(d, &n) - (WIDTH - 1) / 2.) <
                     .5);
-        /* radius .5 at a distance of 6 - .6, in an image 2 tan 30 wide */
+        /* radius .5 at a distance of 6 - .6, in an image whose width is 2 tan
+         * 30 degrees */
         assert_true(fabs(sqrt(n / GLINT_PI) -
                          .5 / 5.4 * WIDTH / (2 * tan(GLINT_PI / 6))) < 1);
     }
@@ -322,8 +325,8 @@ TEST(row_d9_camera_in_a_sensor)
 /* ------------------------------------------------------------------- row D10
  */
 
-/* Row D10: three foods that one sensor each detects, two that all detect,
- * and two that two detect. */
+/* D10: checks detections of foods: three by one sensor each, two by all
+ * sensors, and two by two sensors. */
 TEST(row_d10_detections)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -350,8 +353,8 @@ TEST(row_d10_detections)
     moving_close_scene(d);
 }
 
-/* Checks that each type of object is visible, can be hidden and shown again,
- * and can be resized. */
+/* Checks that each type of object is visible at first, can be hidden and shown
+ * again, and can be resized. */
 TEST(object_types_can_be_hidden_and_resized)
 {
     double food[4][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {-5, -4, 6}};
@@ -384,8 +387,8 @@ TEST(object_types_can_be_hidden_and_resized)
 }
 
 /* Checks that a shell over black has the fraction of light that its material
- * does not transmit, half of it in the middle, and that a food inside is
- * visible through it. */
+ * does not transmit, and half of that in its middle, and that a food inside the
+ * shell is visible through it. */
 TEST(shells_let_light_pass)
 {
     double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -399,7 +402,7 @@ TEST(shells_let_light_pass)
                           "motion run x size .6 foods .5 shells 4\n",
                           5, 4);
     moving_draw_frame(d);
-    /* food of red 1 behind a shell of coverage 1/4 */
+    /* a food of red 1 behind a shell whose coverage is 1/4 */
     assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
@@ -412,9 +415,9 @@ TEST(shells_let_light_pass)
     moving_close_scene(d);
 }
 
-/* Checks that lines leaving the widest image are drawn until their whole
- * width is off-screen: an edge of the box, 200 pixels wide, leaves it
- * obliquely. */
+/* Checks that lines that leave the widest image are drawn until their whole
+ * width is off-screen. An edge of the box, 200 pixels wide, leaves the image at
+ * an angle. */
 TEST(wide_lines_are_drawn_until_off_screen)
 {
     enum { WIDE = 8192, LOW = 16 };
@@ -458,7 +461,8 @@ TEST(wide_lines_are_drawn_until_off_screen)
     moving_close_scene(d);
 }
 
-/* Checks that lamps move with the body, by the positions passed to the lens. */
+/* Checks that lamps attached to the body move with it, by the positions that
+ * the flare receives. */
 TEST(lamps_move_with_the_body)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
@@ -506,8 +510,8 @@ TEST(missing_module_is_named)
     moving_close_scene(d);
 }
 
-/* Checks cameras anywhere, also inside shells and lines, and objects from
- * one step to a quarter of the space: no overflow (CONFIG=qcheck), no
+/* Checks cameras at any position, also inside shells and lines, and objects
+ * from one step to a quarter of the space: no overflow (CONFIG=qcheck) and no
  * endless loop. */
 TEST(extreme_positions_and_sizes_do_not_overflow)
 {
@@ -527,7 +531,7 @@ TEST(extreme_positions_and_sizes_do_not_overflow)
             at[k] = ((int32_t)rng_bits32(&seed) >> 4) >> shift;
             axis_q30[k][(k + turn) % 3] = 1 << 30;
         }
-        if (i % 4 == 1) /* inside a food, or in the body */
+        if (i % 4 == 1) /* camera inside a food, or in the body */
             memcpy(at, s->motion->food_at[i % FOODS], sizeof at);
         assert_ok(glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30));
         glint_scene_size_kind(s, (enum glint_scene_kind)rng_int_below(&seed, 6),

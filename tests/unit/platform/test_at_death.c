@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests glint_at_death_register(): registered functions run at every end of a
- * process: signal, fault, abort() and exit().
+ * Tests glint_at_death_register(): registered functions run however a process
+ * ends: by signal, fault, abort() or exit().
  */
 #include <stdint.h>
 
@@ -35,9 +35,9 @@ static void write_2_at_exit(void)
     write_child_pipe('2');
 }
 
-/* Runs DIE(NUMBER) in a child that has registered two functions. Checks that
- * the child ends with CODE, an exit code as a shell reports it (128 + N for
- * signal N), and that the functions wrote TEXT. */
+/* Runs DIE(NUMBER) in a child process that has registered two functions. Checks
+ * that the child ends with CODE, an exit code as a shell reports it (128 + N
+ * for signal N), and that the functions wrote TEXT. */
 static void expect_end_of_child(void (*die)(int), int number, int code,
                                 const char *text)
 {
@@ -117,7 +117,7 @@ static void end_by_quick_exit(int number)
     _exit(number);
 }
 
-/* Ends the process by a real page fault, which sanitizers do not intercept. */
+/* Ends the process by a page fault that sanitizers do not intercept. */
 static void end_by_page_fault(int number)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);
@@ -170,8 +170,8 @@ TEST(functions_run_at_faults)
     expect_end_of_child(end_by_abort, 0, 128 + SIGABRT, "21");
 }
 
-/* Checks that abort() in a library ends the process with exit code 1, abort()
- * in glint itself with SIGABRT. */
+/* Checks that abort() called in a library ends the process with exit code 1,
+ * and abort() called by glint with SIGABRT. */
 TEST(abort_in_a_library_ends_with_code_1)
 {
     expect_end_of_child(end_by_abort_in_library, 1, 1, "21r");
@@ -185,8 +185,8 @@ TEST(functions_run_at_exit)
     expect_end_of_child(end_by_quick_exit, 3, 3, "");
 }
 
-/* Checks that the functions run when a handler of the application ends the
- * process with glint_at_death_end_by_signal(). */
+/* Checks that the functions run if a signal handler of the application calls
+ * glint_at_death_end_by_signal(). */
 TEST(functions_run_from_own_handler)
 {
     expect_end_of_child(end_by_own_handler, SIGINT, 128 + SIGINT, "h21");

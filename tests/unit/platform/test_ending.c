@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that a file's type is found by the extension of its name.
+ * Checks that the type of a file is determined from the extension of its name.
  */
 #include <stdint.h>
 

@@ -60,8 +60,8 @@ static void reset_fake_to_one_page(void)
     fake_fb_calls = fake_fb_fail_at = fake_fb_maps = 0;
 }
 
-/* Sets the fake framebuffer to two screens with vertical panning in steps of
- * one row, as the vc4 driver has them. */
+/* Sets the fake framebuffer to two pages of screen memory with vertical panning
+ * in steps of one row, as the vc4 driver has. */
 static void reset_fake_to_two_pages(void)
 {
     reset_fake_to_one_page();
@@ -121,8 +121,8 @@ static void draw_and_free_image(struct glint_fbdev *fb,
         fail_msg("%s", error.text);
 }
 
-/* Checks six rows of 40 bytes from byte FIRST on: each pixel is CODE, CODE,
- * CODE, 0, and the 8 bytes of padding are unchanged. */
+/* Checks six rows of 40 bytes, from byte FIRST of the framebuffer on: each
+ * pixel is CODE, CODE, CODE, 0, and the 8 bytes of padding are unchanged. */
 static void expect_screen_rows(size_t first, int code)
 {
     const uint8_t *const mem = read_screen_byte() + first;
@@ -139,8 +139,8 @@ static void expect_screen_rows(size_t first, int code)
 
 /* ------------------------------------------------------------------- tests */
 
-/* Runs in a child process: shows the second screen, then ends by signal HOW,
- * or by exit() if HOW is 0. */
+/* In a child process: shows the second page, then ends by signal HOW, or by
+ * exit() if HOW is 0. */
 static void end_child_by_signal(int how)
 {
     static const struct glint_fbdev_options options = {.console = true};
@@ -149,14 +149,16 @@ static void end_child_by_signal(int how)
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
     open_framebuffer_sink(
-        &fb, NULL); /* a second sink, so that the list of open sinks changes */
+        /* opens a second sink, so that the list of open sinks changes */
+        &fb, NULL);
     fb.sink.close(&fb.sink);
     open_framebuffer_sink(&fb, &options);
     draw_and_free_image(&fb, make_grey_image(8, 6, 1));
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(99);
     if (fork() == 0)
-        exit(0); /* The end of this grandchild must not restore the console. */
+        /* the end of this grandchild process must not restore the console */
+        exit(0);
     while (wait(NULL) < 0)
         ;
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
@@ -171,8 +173,8 @@ TEST_BEFORE
     reset_fake_to_one_page();
 }
 
-/* Checks that the console returns to text mode and the first screen to view
- * after each end of a process. Runs first, as the first open installs the
+/* Checks that however a process ends, the console returns to text mode and
+ * shows the first page. This test runs first, as the first open installs the
  * signal handlers of the whole process. */
 TEST(console_is_restored_after_every_end)
 {
@@ -211,7 +213,8 @@ TEST(draws_a_grey_image)
     draw_and_free_image(&fb, make_grey_image(16, 12, 50));
     expect_screen_rows(0, 50);
     assert_int_equal(read_screen_byte()[6 * 40],
-                     0xaa); /* first byte of the row below the screen */
+                     /* the first byte below the screen's rows is unchanged */
+                     0xaa);
     fb.sink.close(&fb.sink);
     fb.sink.close(&fb.sink);
     assert_int_equal(fb.fd, -1);
@@ -231,7 +234,7 @@ TEST(border_around_the_image_is_black)
     mem = read_screen_byte();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
-    /* The border is not redrawn for an image of the same size. */
+    /* the border is not drawn again for an image of the same size */
     write_screen_byte(0, 123);
     draw_and_free_image(&fb, make_grey_image(8, 2, 50));
     assert_int_equal(read_screen_byte()[0], 123);
@@ -248,7 +251,7 @@ TEST(screen_may_start_inside_a_page)
     expect_screen_rows(0x64, 77);
     assert_int_equal(read_screen_byte()[0x63], 0xaa);
     fb.sink.close(&fb.sink);
-    /* A console that has scrolled shows rows further down. */
+    /* a console that was scrolled shows rows further down */
     reset_fake_to_one_page();
     fake_fb->var.yres_virtual = 20;
     fake_fb->var.yoffset = 5;
@@ -283,7 +286,7 @@ TEST(frames_alternate_between_two_pages)
     }
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
-    /* A killed glint left the second page in view. */
+    /* a glint that was killed left the second page visible */
     fake_fb->var.yoffset = 6;
     open_framebuffer_sink(&fb, NULL);
     draw_and_free_image(&fb, make_grey_image(8, 6, 1));
@@ -304,7 +307,8 @@ TEST(without_panning_one_page_is_used)
     fb.sink.close(&fb.sink);
 
     reset_fake_to_two_pages();
-    fake_fb->fix.smem_len = 11 * 40; /* less memory than two pages of 6 rows */
+    /* framebuffer memory is smaller than two pages of 6 rows */
+    fake_fb->fix.smem_len = 11 * 40;
     open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     assert_int_equal(fake_fb->n_pan, 0);
@@ -312,12 +316,13 @@ TEST(without_panning_one_page_is_used)
 
     reset_fake_to_two_pages();
     fake_fb->fix.ypanstep =
-        4; /* The 6 rows of a page are not a multiple of 4. */
+        /* the 6 rows of a page are not a multiple of the panning step of 4 */
+        4;
     open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
     fb.sink.close(&fb.sink);
 
-    /* The first panning request succeeds, later ones fail. */
+    /* the first panning request succeeds, later ones fail */
     reset_fake_to_two_pages();
     open_framebuffer_sink(&fb, NULL);
     draw_and_free_image(&fb, make_grey_image(8, 6, 9));
@@ -326,7 +331,7 @@ TEST(without_panning_one_page_is_used)
     draw_and_free_image(&fb, make_grey_image(8, 6, 11));
     assert_int_equal(read_screen_byte()[fake_fb->var.yoffset * 40], 11);
     draw_and_free_image(&fb, make_grey_image(8, 6, 12));
-    /* panning is not repeated after a failure */
+    /* after a failure the sink does not pan again */
     assert_int_equal(fake_fb->n_pan, 1);
     fb.sink.close(&fb.sink);
 }
@@ -339,7 +344,7 @@ TEST(failed_vsync_ends_waiting)
     open_framebuffer_sink(&fb, &options);
     for (int i = 0; i < 3; i++)
         draw_and_free_image(&fb, make_grey_image(8, 6, i));
-    /* After a failure the sink stops waiting for vsync. */
+    /* after a failure the sink no longer waits for vsync */
     assert_int_equal(fake_fb->n_vsync, 1);
     fb.sink.close(&fb.sink);
     reset_fake_to_one_page();
@@ -375,8 +380,8 @@ TEST(reports_a_removed_framebuffer)
     assert_int_equal(fake_fb_maps, 0);
 }
 
-/* Checks that the sink adopts the modes that another program sets: 16 bits
- * per pixel, then two screens of 32 bits. */
+/* Checks that the sink adapts to modes that another program sets: 16 bits per
+ * pixel, then two pages of 32 bits. */
 TEST(adopts_changed_modes)
 {
     struct glint_fbdev fb;
@@ -400,13 +405,12 @@ TEST(adopts_changed_modes)
     draw_and_free_image(&fb, make_grey_image(8, 6, 3));
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(read_screen_byte()[6 * 40], 3);
-    /* The page is mapped again and its old mapping removed. */
+    /* the page was mapped again, and its old mapping removed */
     assert_int_equal(fake_fb_maps, 0);
     fb.sink.close(&fb.sink);
 }
 
-/* Checks that the usual bit fields (XRGB8888) are used with a driver that
- * reports none. */
+/* Checks that XRGB8888 is assumed if a driver reports no bit fields. */
 TEST(missing_bit_fields_mean_xrgb8888)
 {
     static const struct fb_bitfield none;
@@ -524,10 +528,10 @@ static void check_console_modes(bool taken, int during, int after)
 TEST(console_mode_is_set_and_restored)
 {
     check_console_modes(true, KD_GRAPHICS, KD_TEXT);
-    /* A killed program left graphics mode set. */
+    /* a program that was killed left graphics mode set */
     fake_fb->tty_mode = KD_GRAPHICS;
     check_console_modes(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* An X server owns the console. */
+    fake_fb->tty_mode = KD_GRAPHICS; /* an X server owns the console */
     fake_fb->tty_switching = VT_PROCESS;
     check_console_modes(false, KD_GRAPHICS, KD_GRAPHICS);
     reset_fake_to_one_page();
@@ -535,8 +539,8 @@ TEST(console_mode_is_set_and_restored)
     check_console_modes(false, KD_TEXT, KD_TEXT);
 }
 
-/* Checks that a console which was released is not touched at the end of the
- * process, even if another file has reused its descriptor. */
+/* Checks that a console that was released is not changed at the end of the
+ * process, even if another file has got its descriptor. */
 TEST(released_console_is_not_touched)
 {
     int how;
@@ -557,8 +561,8 @@ TEST(released_console_is_not_touched)
 
 /* ---------------------------------------------------------------- failures */
 
-/* Draws three frames of two sizes. Returns false if a call failed; then an
- * error message is expected. */
+/* Draws three frames of two sizes. Returns false if a call failed; the sink
+ * must then give an error message. */
 static bool draw_three_frames(void)
 {
     static const struct glint_fbdev_options options = {.console = true,
@@ -605,7 +609,7 @@ static void check_every_failing_call(bool pages)
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);
-    /* Some failing calls have no effect, so not every run fails. */
+    /* some failing calls have no effect, so not every run fails */
     assert_true(n_failed >= 8);
     assert_true(n > 15);
 }

@@ -51,8 +51,8 @@ TEST(names_give_their_formats)
     expect_format_of_name("RGBP", GLINT_RGB565);
 }
 
-/* Expected FOURCCs are computed by hand: the first letter is the lowest
- * byte. */
+/* A FOURCC is a 32-bit word whose lowest byte is the first letter. Checks codes
+ * computed by hand. */
 TEST(fourccs_match_hand_computation)
 {
     assert_int_equal(glint_fourcc_from_format(GLINT_YUYV), 0x56595559);
@@ -116,8 +116,8 @@ TEST(undeclared_colour_has_defaults)
 {
     struct glint_image i;
 
-    /* vivid and most webcams report sRGB and leave the other fields at their
-     * defaults. */
+    /* vivid and most webcams report sRGB and leave the other colour fields at
+     * their defaults */
     assert_true(
         convert_v4l2_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);

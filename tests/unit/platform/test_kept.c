@@ -29,8 +29,8 @@ static void expect_file_bytes(const char *name, const char *data, size_t bytes)
     assert_memory_equal(got, data, bytes);
 }
 
-/* Opens NAME, adds LIGHT (1 = white) to all pixels, and writes the result to
- * TO. */
+/* Opens image NAME, adds LIGHT (1 = white) to all pixels, and writes the result
+ * to file TO. */
 static void add_light_to_file(const char *name, const char *to, float light)
 {
     struct glint_kept kept;
@@ -63,8 +63,8 @@ static void check_rewritten_file_is_identical(const char *name,
                       data, bytes);
 }
 
-/* Checks that comments, bit depth, byte order and bytes after the image are
- * preserved. */
+/* Checks that comments, bit depth, byte order and bytes after the image survive
+ * an edit in place. */
 TEST(comments_and_depth_are_preserved)
 {
     check_rewritten_file_is_identical("x.ppm",
@@ -91,8 +91,8 @@ TEST(light_is_added_to_float_files)
     expect_file_bytes("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
 }
 
-/* Checks conversion to another file type: the bit depth becomes one that the
- * type supports, and losses are reported. */
+/* Checks conversion to another file type: the bit depth is changed to one that
+ * the type supports, and losses are reported. */
 TEST(converts_to_other_file_types)
 {
     struct glint_kept kept;
@@ -153,7 +153,7 @@ TEST(rejects_invalid_files)
                            "is a video");
     assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
     assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
-    /* A plug-in that is loaded already cannot be made unavailable. */
+    /* a plug-in that is already loaded cannot be made unavailable */
     if (!stated) {
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
         check_file_is_rejected(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"),

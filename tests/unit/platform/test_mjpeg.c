@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the MJPEG decoder: frames that the test encodes by libjpeg decode to
- * their original planes and to libjpeg's own scan lines; deviations of real
- * cameras are accepted; damaged frames are handled.
+ * Tests the MJPEG decoder: frames that the test encodes with libjpeg must
+ * decode to their original planes and to the scan lines of libjpeg's own
+ * decoder; the decoder accepts the deviations of real cameras and rejects
+ * damaged frames.
  */
 #include <stdint.h>
 
@@ -27,11 +28,12 @@ static struct glint_error error;
 /* Parameters for encoding a frame. */
 struct coding {
     int width, height;
-    /* sampling factors of Y, Cb, Cr, horizontal and vertical, 1 .. 4; 0:
-     * component absent */
+    /* sampling factors of Y, Cb, Cr, horizontal and vertical, 1 .. 4; 0: the
+     * component is absent */
     int factor[3][2];
-    int restart;    /* MCUs between restart markers; 0: no markers */
-    bool optimised; /* optimised Huffman tables instead of the standard's */
+    int restart; /* number of MCUs between restart markers; 0: no markers */
+    /* true: optimised Huffman tables instead of the standard's */
+    bool optimised;
     bool noisy;
 };
 
@@ -40,7 +42,7 @@ static const struct coding y422 = {64, 48, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 0};
 static const struct coding grey = {64, 48, {{1, 1}, {0, 0}, {0, 0}}, 0, 0, 0};
 
 struct bytes {
-    /* N bytes, allocated exactly, so that ASan detects overreads */
+    /* N bytes, exactly allocated, so that ASan detects overreads */
     uint8_t *data;
     size_t n;
 };
@@ -54,8 +56,8 @@ static struct bytes allocate_copy_of_bytes(const void *data, size_t n)
     return b;
 }
 
-/* Returns the sample of plane P at (X, Y): a gradient per plane, plus noise
- * if C is noisy. */
+/* Returns the sample of plane P at (X, Y): a gradient that differs per plane,
+ * plus noise if C is noisy. */
 static uint8_t make_plane_sample(const struct coding *c, int p, int x, int y)
 {
     static const int base[] = {20, 60, 200}, dx[] = {2, 1, -1},
@@ -130,7 +132,7 @@ encode_jpeg_frame(const struct coding *c,
     return exact;
 }
 
-/* Returns the offset of the first segment MARKER at or after AT. */
+/* Returns the offset of the first segment with marker MARKER at or after AT. */
 static size_t find_jpeg_segment(const struct bytes *b, int marker, size_t at)
 {
     while (at + 1 < b->n && (b->data[at] != 0xff || b->data[at + 1] != marker))
@@ -139,7 +141,7 @@ static size_t find_jpeg_segment(const struct bytes *b, int marker, size_t at)
     return at;
 }
 
-/* Replaces CUT bytes at AT by INSERT[N]. */
+/* Replaces CUT bytes at offset AT by INSERT[N]. */
 static void replace_bytes(struct bytes *b, size_t at, size_t cut,
                           const void *insert, size_t n)
 {
@@ -224,7 +226,7 @@ static void expect_decoded_planes(const struct glint_image *i,
         assert_null(i->plane[p]);
 }
 
-/* Checks the planes against libjpeg's scan lines, decoded with chroma
+/* Compares the planes with the scan lines of libjpeg's decoder, where chroma is
  * replicated, not interpolated. */
 static void expect_libjpeg_scanlines(const struct glint_image *i,
                                      const struct bytes *b)
@@ -285,7 +287,7 @@ TEST(decodes_every_coding)
         {{{1, 2}, {1, 2}, {1, 2}}, GLINT_I444},
         {{{1, 3}, {1, 3}, {1, 3}}, GLINT_I444},
         {{{2, 1}, {1, 1}, {1, 1}}, GLINT_I422},
-        /* sampling factors by which ffmpeg encodes 4:2:2 */
+        /* sampling factors that ffmpeg uses for 4:2:2 */
         {{{2, 2}, {1, 2}, {1, 2}}, GLINT_I422},
         {{{2, 2}, {1, 1}, {1, 1}}, GLINT_I420},
     };
@@ -304,10 +306,10 @@ TEST(decodes_every_coding)
         }
 }
 
-/* A frame written by hand, without Huffman tables: one block of 8 x 8 and
- * quantiser steps of 1. The DC difference is 400: category 9 (code 1111110),
- * value 110010000, end of block 1010, padding. All samples decode to 128 +
- * 400 / 8 = 178. */
+/* Checks a frame written by hand, without Huffman tables: one block of 8 x 8
+ * samples, quantiser steps of 1. The DC difference is 400: category 9 (code
+ * 1111110), value 110010000, end of block 1010, padding. All samples must
+ * decode to 128 + 400 / 8 = 178. */
 TEST(decodes_a_frame_written_by_hand)
 {
     static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
@@ -352,7 +354,7 @@ TEST(missing_huffman_tables_are_the_standard_ones)
     image = decode_valid_frame(d, &other);
     expect_decoded_planes(&image, &own);
     image =
-        /* the decoder must not use the Huffman tables of OTHER */
+        /* the decoder must not use the Huffman tables of the frame OTHER */
         decode_valid_frame(d, &b);
     expect_decoded_planes(&image, &y422);
     free(other.data);
@@ -375,8 +377,8 @@ TEST(tables_are_not_kept_between_frames)
     glint_mjpeg_close(d);
 }
 
-/* Checks that frames decode with every combination of these deviations of
- * cameras. */
+/* Checks that frames decode with every combination of the following deviations
+ * of cameras. */
 TEST(decodes_deviations_of_cameras)
 {
     static const uint8_t avi1[] = {0xff, 0xe0, 0, 16, 'A', 'V', 'I', '1', 0,
@@ -526,7 +528,7 @@ TEST(rejects_other_depths_and_processes)
     b.data[frame + 1] = 0xc3;
     expect_decoding_fails(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
     b.data[frame + 1] = 0xc0;
-    b.data[frame + 6] = 0; /* height 0: a later DNL marker would set it */
+    b.data[frame + 6] = 0; /* height 0, as if a later DNL marker would set it */
     expect_decoding_fails(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
     free(b.data);
     glint_mjpeg_close(d);
@@ -592,8 +594,8 @@ TEST(every_truncation)
     check_every_truncation(c);
 }
 
-/* Redirects stderr to FILE. Returns a duplicate of the old stderr, to
- * restore it with. */
+/* Redirects stderr to FILE. Returns a duplicate of the old stderr, by which to
+ * restore it. */
 static int redirect_stderr(FILE *file)
 {
     const int kept = dup(STDERR_FILENO);
@@ -634,7 +636,7 @@ TEST(damaged_frames_print_nothing)
     assert_int_equal(fseek(said, 0, SEEK_END), 0);
     assert_int_equal(ftell(said), 0);
     fclose(said);
-    /* Some damage cannot be detected. */
+    /* some damage cannot be detected */
     assert_in_range(n_refused, 300, 2999);
     image = decode_valid_frame(d, &whole);
     expect_decoded_planes(&image, &c);
@@ -655,7 +657,7 @@ TEST(rejects_random_bytes)
             noise[i] = n % 3 ? (uint8_t)(rng_bits32(&seed) >> 8) : 0;
         replace_bytes(&b, 0, 0, noise, n);
         expect_decoding_fails(d, &b, GLINT_E_FORMAT, "");
-        /* Noise after a start-of-image marker may look like a large frame. */
+        /* noise after a start-of-image marker may look like a large frame */
         if (n > 2) {
             struct glint_image image;
 
@@ -668,8 +670,8 @@ TEST(rejects_random_bytes)
     glint_mjpeg_close(d);
 }
 
-/* Checks that a missing restart interval, which would shift all later
- * blocks, is detected by the numbers of the restart markers. */
+/* Checks that a missing restart interval, which would shift all later blocks,
+ * is detected by the numbers in the restart markers. */
 TEST(detects_a_missing_restart_interval)
 {
     struct coding c = y422;
@@ -687,8 +689,8 @@ TEST(detects_a_missing_restart_interval)
     glint_mjpeg_close(d);
 }
 
-/* Checks that the heap in use after 100 valid and damaged frames equals that
- * after 10. */
+/* Checks that the size of the heap after 100 valid and damaged frames equals
+ * that after 10. */
 TEST(decoding_does_not_grow_the_heap)
 {
     struct glint_mjpeg *const d = open_mjpeg_decoder(720, 405);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests output files: after any failure a file is either complete or absent.
+ * Tests output files: after any failure an output file is either complete or
+ * absent.
  */
 /* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
 #define _DEFAULT_SOURCE
@@ -25,7 +26,8 @@
 #include "support/test.h"
 
 static char path[64];
-static int close_errno; /* errno of the next close(); 0: close() succeeds */
+/* errno that the next close() sets; 0: close() succeeds */
+static int close_errno;
 
 int __wrap_close(int fd)
 {
@@ -108,15 +110,15 @@ static void check_no_file_after_signal(int signal_number, int handled)
     assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
-/* Checks that no file is left behind by a signal. Runs first, as the first
- * open installs the signal handlers of the whole process. */
+/* Checks that a signal leaves no file behind. This test runs first, as the
+ * first open installs the signal handlers of the whole process. */
 TEST(no_file_is_left_after_signals)
 {
     check_no_file_after_signal(SIGINT, 0);
     check_no_file_after_signal(SIGTERM, 0);
     check_no_file_after_signal(SIGHUP, 0);
     check_no_file_after_signal(SIGHUP,
-                               1); /* nohup sets SIGHUP to be ignored. */
+                               1); /* nohup makes the process ignore SIGHUP */
 }
 
 TEST(no_file_is_left_after_exit)
@@ -184,8 +186,8 @@ TEST(replaces_at_commit)
     unlink(path);
 }
 
-/* Checks that a temporary file is locked, which prevents other processes
- * from deleting it as left over. */
+/* Checks that a temporary file is locked, which prevents other processes from
+ * deleting it as an abandoned file. */
 TEST(temporary_file_is_locked)
 {
     struct glint_output out;
@@ -200,7 +202,8 @@ TEST(temporary_file_is_locked)
     close(fd);
 }
 
-/* Checks that an existing file with the temporary name is not overwritten. */
+/* Checks that an existing file with the name of the temporary file is not
+ * overwritten. */
 TEST(existing_temporary_name_is_not_overwritten)
 {
     struct glint_error error;
@@ -224,8 +227,8 @@ TEST(existing_temporary_name_is_not_overwritten)
     unlink(path);
 }
 
-/* Checks that flushed data is in the file before the commit, and only once
- * after it. */
+/* Checks that flushed data is in the file before the commit, and is not written
+ * again by the commit. */
 TEST(flushed_data_is_in_the_file)
 {
     struct glint_error error;
@@ -242,7 +245,7 @@ TEST(flushed_data_is_in_the_file)
     unlink(path);
 }
 
-/* Checks that data loss which a file system reports only at close() is an
+/* Checks that a loss of data that the file system reports only at close() is an
  * error. */
 TEST(failing_close_is_an_error)
 {
@@ -282,8 +285,8 @@ TEST(follows_links)
     unlink(path);
 }
 
-/* Checks that writes smaller than, larger than and equal to the buffer
- * arrive in order. */
+/* Checks that data arrives in order, from writes smaller than, equal to and
+ * larger than the buffer. */
 TEST(writes_of_any_size_keep_their_order)
 {
     static const size_t sizes[] = {1, 65535, 1, 65536, 3, 200000, 65537, 7};
@@ -325,7 +328,7 @@ TEST(full_device_is_an_error)
     assert_int_equal(glint_output_write(&out, data, 1, &error), GLINT_E_OUTPUT);
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
 
-    /* Data that fits into the buffer fails only at the commit. */
+    /* if all data fits into the buffer, writing fails only at the commit */
     assert_ok(glint_output_open(&out, "/dev/full", GLINT_OUTPUT_TEXT, &error));
     assert_ok(glint_output_write(&out, data, 10, &error));
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
@@ -441,8 +444,8 @@ TEST(rejects_paths_that_cannot_be_written)
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     check_path_is_rejected(scratch_dir, text);
 
-    /* The message truncates a long name at its beginning and keeps the
-     * cause. */
+    /* The message truncates a long file name at its beginning, and contains the
+     * whole cause. */
     snprintf(name, sizeof name, "/nowhere/%0250d/x\n.ppm", 1);
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
                      GLINT_E_OUTPUT);

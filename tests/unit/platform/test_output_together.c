@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks that a file is replaced even if another process replaces it at the
- * same moment, as when shards finish together.
+ * same moment, as when several shards of a render finish together.
  */
 #include <stdint.h>
 
@@ -12,8 +12,8 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
-/* number of times that another process still replaces the file while it is
- * being opened */
+/* how many more times another process replaces the file while it is being
+ * opened */
 static int others;
 
 char *__real_realpath(const char *path, char *resolved);

@@ -19,7 +19,7 @@ static const struct glint_pixel_layout xrgb8888 = {
 
 /* ------------------------------------------------------------------ colours */
 
-/* YCbCr to RGB coefficients of the standards, full range, 6 digits: Cr to
+/* Coefficients of the standards for YCbCr to RGB, full range, 6 digits: Cr to
  * R', Cb to G', Cr to G', Cb to B'. */
 static const double constants[2][4] = {
     [GLINT_MATRIX_BT601] = {1.402, -.344136, -.714136, 1.772},
@@ -51,7 +51,7 @@ struct tally {
 };
 
 /* Converts a row of all luma codes with chroma (CB, CR), compares each pixel
- * with compute_rgb_of_ycc() and adds the differences to tally T. */
+ * with compute_rgb_of_ycc(), and adds the differences to T. */
 static void check_row_of_all_luma_codes(struct tally *t,
                                         struct glint_row_rgb *row,
                                         struct glint_image *image, int cb,
@@ -212,8 +212,8 @@ TEST(writes_every_pixel_layout)
     }
 }
 
-/* Checks that RGB565 codes, widened to 8 bits in between, are unchanged on a
- * panel of 16 bits. */
+/* Checks that RGB565 codes, which are widened to 8 bits in between, are
+ * unchanged on a panel of 16 bits. */
 TEST(writes_565_there_and_back)
 {
     static uint8_t codes[2 * 65536], mem[2 * 65536];
@@ -237,7 +237,8 @@ TEST(writes_565_there_and_back)
     glint_panel_close(&panel);
 }
 
-/* Checks that each 8-bit code becomes the nearest code of 1 .. 8 bits. */
+/* Checks that each 8-bit code becomes the nearest code of a panel with 1 .. 8
+ * bits. */
 TEST(codes_become_the_nearest_of_fewer_bits)
 {
     uint8_t ramp[256], mem[2 * 256];
@@ -267,15 +268,17 @@ TEST(codes_become_the_nearest_of_fewer_bits)
 TEST(rejects_invalid_layouts)
 {
     static const struct glint_pixel_layout bad[] = {
-        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},      /* 8 bits per pixel */
-        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* 40 bits per pixel */
-        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},     /* red above the word */
-        {4, {16, 8}, {12, 8}, {0, 8}, {0, 0}},    /* green overlaps red */
-        {4, {16, 8}, {8, 8}, {0, 8}, {20, 8}},    /* alpha overlaps blue */
-        {4, {16, 8}, {8, 8}, {0, 0}, {0, 0}},     /* no blue */
-        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}},    /* red below the word */
-        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},    /* alpha above the word */
-        {4, {16, 2000}, {8, 8}, {0, 8}, {28, 8}}, /* red of 2000 bits */
+        {1, {5, 3}, {2, 3}, {0, 2}, {0, 0}},  /* 8 bits per pixel */
+        {5, {16, 8}, {8, 8}, {0, 8}, {0, 0}}, /* 40 bits per pixel */
+        /* red lies above the highest bit of the word */
+        {2, {16, 8}, {8, 8}, {0, 8}, {0, 0}},
+        {4, {16, 8}, {12, 8}, {0, 8}, {0, 0}}, /* green overlaps red */
+        {4, {16, 8}, {8, 8}, {0, 8}, {20, 8}}, /* alpha overlaps blue */
+        {4, {16, 8}, {8, 8}, {0, 0}, {0, 0}},  /* no blue */
+        {4, {-1, 8}, {8, 8}, {16, 8}, {0, 0}}, /* red lies below bit 0 */
+        /* alpha lies above the highest bit of the word */
+        {4, {16, 8}, {8, 8}, {0, 8}, {28, 8}},
+        {4, {16, 2000}, {8, 8}, {0, 8}, {28, 8}}, /* red is 2000 bits wide */
     };
     struct glint_panel_config cfg = {.width = 8,
                                      .height = 8,
@@ -304,9 +307,9 @@ TEST(rejects_invalid_layouts)
 
 /* ------------------------------------------------------------------ formats */
 
-/* Returns an image of random codes in FORMAT; the caller frees the memory.
- * Rows have |PAD| bytes of padding; the image is stored bottom row first if
- * PAD is negative. */
+/* Returns an image of random codes in FORMAT, whose memory the caller frees.
+ * PAD: bytes of padding per row; negative: |PAD| bytes, and the bottom row is
+ * stored first. */
 static uint8_t *make_random_picture(struct glint_image *image,
                                     enum glint_pixel_format format, int width,
                                     int height, int pad)
@@ -337,8 +340,8 @@ static uint8_t *make_random_picture(struct glint_image *image,
     return mem;
 }
 
-/* Returns Y', Cb or Cr (I = 0, 1, 2) of pixel (X, Y), read by the definition
- * of the image's format. */
+/* Returns Y', Cb or Cr (I = 0, 1, 2) of pixel (X, Y), read as the image's
+ * format defines. */
 static int read_picture_sample(const struct glint_image *im, int i, int x,
                                int y)
 {
@@ -396,7 +399,7 @@ static void compute_panel_pixel(int rgb[3], const struct glint_image *im, int x,
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
-        /* differs by at most 1 from widening by repeated bits */
+        /* by definition; differs by at most 1 from widening by repeated bits */
         rgb[0] = (word >> 11) * 255 / 31;
         rgb[1] = (word >> 5 & 63) * 255 / 63;
         rgb[2] = (word & 31) * 255 / 31;
@@ -452,8 +455,8 @@ static void check_drawing_of_format(enum glint_pixel_format format, int width,
     free(mem);
 }
 
-/* Checks that every format is drawn correctly. Each image is an exact
- * allocation, so that a sanitizer detects overreads. */
+/* Checks that every format is drawn correctly. Each image has exactly its size
+ * allocated, so that ASan detects overreads. */
 TEST(draws_every_format)
 {
     for (int f = GLINT_RGB24; f <= GLINT_XBGR8888; f++) {
@@ -517,8 +520,8 @@ TEST(image_areas_fit_the_panel)
                                480, 320);
 }
 
-/* Draws the grey ramp 0 .. 8 as an image of 9 x 1 pixels, or 3 x 3 if DOWN,
- * and stores the code of each panel pixel in SHOWN. */
+/* Draws the grey ramp 0 .. 8 as an image of 9 x 1 pixels, or of 3 x 3 pixels if
+ * DOWN, and stores the code of each panel pixel in SHOWN. */
 static void draw_and_read_grey_ramp(uint8_t *shown, bool down, int panel_width,
                                     int panel_height, int bytes)
 {
@@ -565,7 +568,7 @@ TEST(scales_by_nearest_pixel)
     }
 }
 
-/* Checks that bytes around the image and in the padding of rows are not
+/* Checks that neither bytes around the image nor the padding of rows are
  * written. */
 TEST(writes_only_inside_the_image_area)
 {

@@ -37,7 +37,7 @@ TEST(file_type_is_read_from_the_content)
 {
     expect_loaded_pixels("a.png", BYTES("P6 2 1 255 abcdef"), "abcdef");
     expect_loaded_pixels("a", BYTES("P5 2 1 255 ab"), "aaabbb");
-    /* Linear 0, 0.5 and 1; then -1, 2 and NaN. */
+    /* pixels of linear light 0, 0.5 and 1; then -1, 2 and NaN */
     expect_loaded_pixels("a.ppm",
                          BYTES("PF 2 1 1 \0\0\0\0\x3f\0\0\0\x3f\x80\0\0"
                                "\xbf\x80\0\0\x40\0\0\0\x7f\xc0\0\0"),
@@ -137,8 +137,8 @@ static void check_8bit_round_trip(const char *name)
     unlink(scratch_path_of(name));
 }
 
-/* Checks that floats are read back within 1 %: EXR and PFM are lossless, and
- * HDR's 8-bit mantissa resolves these values. */
+/* Checks that floats are read back within 1 %. EXR and PFM are lossless; the
+ * 8-bit mantissa of HDR is precise enough for these values. */
 static void check_float_round_trip(const char *name)
 {
     float values[] = {0, 0.5F, 1, 1000, 500, 250};

@@ -76,7 +76,7 @@ TEST(reads_every_pnm_type)
                       "abcdef");
     expect_pnm_pixels(BYTES("P5\n2 3\n255\nabcdef"), GLINT_GREY, 2, 3,
                       "abcdef");
-    /* Bytes after the first image are ignored. */
+    /* bytes after the first image are ignored */
     expect_pnm_pixels(BYTES("P5 1 1 255 aP5 1 1 255 b"), GLINT_GREY, 1, 1, "a");
     /* samples may look like white space */
     expect_pnm_pixels(BYTES("P5\n3 1\n255\n\n #"), GLINT_GREY, 3, 1, "\n #");
@@ -86,19 +86,20 @@ TEST(accepts_comments)
 {
     expect_pnm_pixels(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
                       GLINT_GREY, 2, 1, "ab");
-    /* A comment may end the header; its line feed is the separator. */
+    /* a comment may end the header; its line feed separates header and
+     * samples */
     expect_pnm_pixels(BYTES("P5 2 1 255#end\nab"), GLINT_GREY, 2, 1, "ab");
     expect_pnm_pixels(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
 }
 
 TEST(scales_samples_to_255)
 {
-    /* 1 of 2 is 127.5 and rounds up; 3 is clamped to 2. */
+    /* with maximum 2, sample 1 is 127.5 and rounds up; 3 is clamped to 2 */
     expect_pnm_pixels(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
                       "\x00\x80\xff\xff");
     expect_pnm_pixels(BYTES("P5 2 1 1 \x00\x01"), GLINT_GREY, 2, 1, "\x00\xff");
-    /* 16 bits: 128 of 65535 is 0.498 of an 8-bit step and rounds down; 129
-     * is 0.502 and rounds up. */
+    /* 16-bit samples: 128 of 65535 is 0.498 of an 8-bit step and rounds down;
+     * 129 is 0.502 and rounds up */
     expect_pnm_pixels(
         BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
         GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
@@ -140,7 +141,7 @@ TEST(rejects_invalid_headers)
     check_pnm_is_rejected(GLINT_E_UNSUPPORTED, BYTES("P6 1 32769 255 abc"));
     check_pnm_is_rejected(GLINT_E_UNSUPPORTED,
                           BYTES("P6 99999999999999999999 4294967297 255 abc"));
-    /* Nothing is allocated for a size whose samples are missing. */
+    /* no memory is allocated for a size whose samples are missing */
     check_pnm_is_rejected(GLINT_E_FORMAT, BYTES("P6 8192 8192 65535 abc"));
     assert_string_equal(
         error.text,
@@ -162,8 +163,9 @@ TEST(rejects_truncated_pnm)
 
 /* --------------------------------------------------------------------- PFM */
 
-/* PFM stores the bottom row first: two_pixels as a 1 x 2 image is stored as
- * 0, 3, 4, then 1, -2, 0.5. The macros are little-endian floats; TWO is -2. */
+/* PFM stores the bottom row first: two_pixels, as a 1 x 2 image, is stored
+ * as 0, 3, 4, then 1, -2, 0.5. These macros are little-endian floats; TWO is
+ * -2. */
 #define ONE   "\x00\x00\x80\x3f"
 #define TWO   "\x00\x00\x00\xc0"
 #define HALF  "\x00\x00\x00\x3f"
@@ -291,7 +293,7 @@ TEST(writes_ppm)
     assert_ok(glint_pnm_write(&out, &image, &error));
     expect_output_bytes(&out, BYTES("P6\n2 2\n255\nabcdefghijkl"));
 
-    image.plane[0] = padded + 8; /* bottom row first in memory */
+    image.plane[0] = padded + 8; /* in memory the bottom row is stored first */
     image.stride_bytes[0] = -8;
     open_output_file(&out);
     assert_ok(glint_pnm_write(&out, &image, &error));
@@ -311,8 +313,8 @@ TEST(writes_pfm)
                         BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
-/* Checks a round trip with an odd width and more rows than are encoded at a
- * time. */
+/* Checks that writing and reading preserves an image of odd width with more
+ * rows than are encoded at a time. */
 TEST(pfm_round_trip)
 {
     enum { W = 333, H = 3, N = W * H * 3 };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the thread pool: every job runs exactly once, for any number of
+ * Tests the thread pool: every job runs exactly once, with any number of
  * threads.
  */
 #include <stdint.h>
@@ -26,10 +26,10 @@
 
 struct tally {
     int runs[MAX_JOBS]; /* number of runs of each job */
-    /* atomic; number of threads that use each worker index at present */
+    /* atomic; number of threads that at present use each worker index */
     int busy[GLINT_MAX_WORKERS];
     int n_workers;
-    /* atomic; number of times that two threads used one worker index */
+    /* atomic; number of times that two threads used the same worker index */
     int clashes;
 };
 
@@ -82,8 +82,8 @@ static void add_job_number(void *ctx, int job, int worker)
     sums[worker] += (uint64_t)job;
 }
 
-/* Checks that the results of all jobs are visible when run() returns, in
- * many rounds. */
+/* Checks, in many rounds, that the results of all jobs are visible when run()
+ * returns. */
 TEST(results_are_visible)
 {
     struct glint_workers *workers;
@@ -132,7 +132,7 @@ TEST(default_pool_has_a_worker_per_processor)
 
 /* ------------------------------------------------------------------ threads */
 
-/* number of threads that pthread_create() still starts; -1: no limit */
+/* number of threads that pthread_create() can still start; -1: no limit */
 static int threads_left = -1;
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
@@ -149,7 +149,8 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
     return __real_pthread_create(thread, attr, start, arg);
 }
 
-/* Checks that a pool that could not start all threads still runs all jobs. */
+/* Checks that a pool that could not start all its threads still runs all
+ * jobs. */
 TEST(missing_threads_do_not_lose_jobs)
 {
     for (int left = 0; left < 4; left++) {
@@ -173,7 +174,7 @@ TEST(missing_threads_do_not_lose_jobs)
 /* ------------------------------------------------------------------- stacks */
 
 /* Uses as much stack as baking may need. Not inlined, so that its callers do
- * not need that much stack themselves. */
+ * not need as much stack themselves. */
 __attribute__((noinline)) static int use_stack(void *ctx)
 {
     volatile char hole[GLINT_BAKE_STACK_BYTES];
@@ -183,8 +184,8 @@ __attribute__((noinline)) static int use_stack(void *ctx)
     return *(int *)ctx + hole[512];
 }
 
-/* The calling thread waits, so that the helper thread runs use_stack() on its
- * own stack. */
+/* Makes the calling thread wait, so that the helper thread runs use_stack() on
+ * its own stack. */
 static void use_stack_in_helper(void *ctx, int job, int worker)
 {
     int *const dug = ctx;
@@ -196,7 +197,8 @@ static void use_stack_in_helper(void *ctx, int job, int worker)
         sched_yield();
 }
 
-/* Runs WORK in a child whose threads have 256 KiB of stack by default. */
+/* Runs WORK in a child process whose threads have 256 KiB of stack by
+ * default. */
 static void run_with_small_stack(int (*work)(void))
 {
     const struct rlimit little = {256 << 10, 256 << 10};
@@ -235,7 +237,8 @@ TEST(threads_have_enough_stack)
 {
     run_with_small_stack(use_stack_in_pool_thread);
     run_with_small_stack(use_stack_in_large_thread);
-    threads_left = 0; /* If no thread can start, dig() is called directly. */
+    /* if no thread can start, the calling thread runs the jobs */
+    threads_left = 0;
     assert_int_equal(
         glint_process_run_with_stack(SIZE_MAX / 4, use_stack, &(int){4}), 5);
     threads_left = -1;
@@ -251,7 +254,7 @@ static void write_child_pipe(void)
         _exit(98);
 }
 
-/* Causes a fault in the helper thread while the calling thread waits. */
+/* Causes a fault in the helper thread, while the calling thread waits. */
 static void fault_in_helper_thread(void *ctx, int job, int worker)
 {
     volatile char *const nowhere = ctx;
@@ -262,8 +265,8 @@ static void fault_in_helper_thread(void *ctx, int job, int worker)
     *nowhere = 1;
 }
 
-/* Checks that a fault in a helper thread runs the functions registered for
- * the end of the process. */
+/* Checks that a fault in a helper thread runs the functions that are registered
+ * for the end of the process. */
 TEST(fault_in_a_helper_runs_functions)
 {
     const size_t bytes = (size_t)sysconf(_SC_PAGESIZE);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that pixels of image files are read as linear light, that light is
- * added to them, and that everything else is preserved.
+ * Checks that the samples of image files are read as linear light, that adding
+ * light changes them correctly, and that everything else is preserved.
  */
 #include <stdint.h>
 
@@ -50,13 +50,13 @@ TEST(half_floats_round_trip)
     }
     assert_int_equal(glint_half_encode(1), 0x3c00);
     assert_int_equal(glint_half_encode(65520), 0x7c00);
-    /* Ties round to even. */
+    /* ties round to even */
     assert_int_equal(glint_half_encode(1.00048828125F), 0x3c00);
     assert_int_equal(glint_half_encode(-0x1p-25F), 0x8000);
     assert_true(isnan(glint_half_decode(glint_half_encode(NAN))));
 }
 
-/* Expected values are computed by hand: sRGB 0.5 is 0.21404 linear, BT.709
+/* Checks results computed by hand: sRGB 0.5 is 0.21404 in linear light, BT.709
  * 0.5 is 0.25959. */
 TEST(tone_curves_match_hand_computation)
 {
@@ -70,7 +70,8 @@ TEST(tone_curves_match_hand_computation)
     assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.25959) < 1e-5);
     glint_tone_curve_set(&t, GLINT_TONE_IS_GAMMA, 2);
     assert_true(fabs(glint_tone_curve_decode(&t, -0.5) + 0.25) < 1e-9);
-    /* 203 cd/m2 are code 0.58069 of PQ, 1000 are 0.75183 [ITU-R BT.2408]. */
+    /* In PQ 203 cd/m2 are code 0.58069, and 1000 cd/m2 are 0.75183 [ITU-R
+     * BT.2408]. */
     glint_tone_curve_set(&t, GLINT_TONE_IS_PQ, 0);
     assert_true(fabs(glint_tone_curve_decode(&t, 0.58069) - 1) < 1e-4);
     assert_true(fabs(glint_tone_curve_encode(&t, 1000 / 203.0) - 0.75183) <
@@ -89,8 +90,8 @@ static void write_be32(uint8_t *at, uint32_t v)
         at[i] = (uint8_t)(v >> (24 - 8 * i));
 }
 
-/* Writes an ICC profile with Adobe RGB's primaries and a gamma of GAMMA_Q8;
- * returns its size in bytes. */
+/* Writes an ICC profile with the primaries of Adobe RGB and a gamma of
+ * GAMMA_Q8. Returns its size in bytes. */
 static size_t write_icc_profile(uint8_t p[400], unsigned gamma_q8)
 {
     static const char *const names[] = {"rXYZ", "gXYZ", "bXYZ",
@@ -118,8 +119,8 @@ static size_t write_icc_profile(uint8_t p[400], unsigned gamma_q8)
     return 400;
 }
 
-/* Expected values are computed by hand: Adobe RGB 0.5 is 0.5^2.19922 =
- * 0.21776 linear, and Adobe green contributes -0.398 to sRGB red. */
+/* Checks results computed by hand: Adobe RGB 0.5 is 0.5^2.19922 = 0.21776 in
+ * linear light, and Adobe green contributes -0.398 to sRGB red. */
 TEST(icc_profile_matches_hand_computation)
 {
     struct glint_colours c;
@@ -136,7 +137,8 @@ TEST(icc_profile_matches_hand_computation)
     assert_false(glint_icc_read_colours(&c, p, 100));
     memcpy(p + 16, "CMYK", 4);
     assert_false(glint_icc_read_colours(&c, p, sizeof p));
-    for (size_t n = 0; n < 400; n++) { /* truncated at any byte */
+    /* a profile truncated at any byte is rejected */
+    for (size_t n = 0; n < 400; n++) {
         write_icc_profile(p, 563);
         uint8_t *const exact = malloc(n + 1);
 
@@ -146,8 +148,8 @@ TEST(icc_profile_matches_hand_computation)
     }
 }
 
-/* Checks that a tone curve table accepts any float and clamps those outside
- * its range. */
+/* Checks that the lookup table of a tone curve accepts any float, and clamps
+ * floats outside its range. */
 TEST(curve_table_accepts_any_float)
 {
     struct glint_tone_curve t = {
@@ -180,7 +182,7 @@ TEST(light_is_added)
     assert_memory_equal(mem + 3, before + 3, 6);
 }
 
-/* Checks that floats may exceed white and that NaN is preserved. */
+/* Checks that float samples may exceed white, and that NaN is preserved. */
 TEST(floats_keep_their_range)
 {
     float mem[] = {2, -0.25F, NAN};
@@ -191,7 +193,7 @@ TEST(floats_keep_their_range)
     double white;
 
     assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
-    assert_true(white >= 2); /* the brightest 1 % is this pixel */
+    assert_true(white >= 2); /* this pixel is the brightest 1 % */
     assert_int_equal(proxy.plane[0][1], 0);
     assert_int_equal(proxy.plane[0][2], 0);
     free(proxy.plane[0]);
@@ -201,8 +203,8 @@ TEST(floats_keep_their_range)
     assert_true(isnan(mem[2]));
 }
 
-/* Checks that transparent pixels count as dark unless alpha is
- * premultiplied, and that alpha is preserved. */
+/* Checks that transparent pixels count as dark unless colours are premultiplied
+ * by alpha, and that alpha is preserved. */
 TEST(transparent_pixels_count_as_dark)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
@@ -230,9 +232,9 @@ static void expect_float_near(float is, double wanted)
     assert_true(fabs((double)is - wanted) < 1e-6);
 }
 
-/* Checks the alpha of a pixel after an object is composited onto it,
- * straight and premultiplied: an object of coverage 0.5 and light 0.5 over a
- * pixel of alpha 0.25 and light 0.2. */
+/* Checks the alpha of a pixel after compositing an object of coverage 0.5 and
+ * light 0.5 over a pixel of alpha 0.25 and light 0.2, with straight and with
+ * premultiplied alpha. */
 TEST(alpha_after_compositing)
 {
     const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;
@@ -253,8 +255,7 @@ TEST(alpha_after_compositing)
         glint_samples_get_light(&s, 0, 0, seen);
         expect_float_near(seen[0], light);
         expect_float_near(mem[7], 0.5);
-        /* Light with coverage 0 changes neither
-         * alpha nor the colour of a fully
+        /* Light of coverage 0 changes neither alpha nor the colour of a fully
          * transparent pixel. */
         mem[3] = 0;
         glint_samples_set_pixel(&s, 0, 0, rgb, 0);
@@ -266,7 +267,8 @@ TEST(alpha_after_compositing)
 }
 
 /* Checks the 8 EXIF orientations of an image stored as 2 x 3 pixels. Each
- * string lists the letters of the pixels of the upright image. */
+ * string contains the letters of the stored pixels in the order of the upright
+ * image. */
 TEST(every_exif_orientation_is_upright)
 {
     static const char *const upright[] = {"abcdef", "badcfe", "fedcba",
@@ -291,7 +293,7 @@ TEST(every_exif_orientation_is_upright)
     }
 }
 
-/* Checks an EXR data window that is smaller than the display window and
+/* Checks an EXR image whose data window is smaller than the display window and
  * extends outside it. */
 TEST(exr_data_window_may_differ)
 {
@@ -302,7 +304,7 @@ TEST(exr_data_window_may_differ)
     struct glint_image image;
     float rgb[3];
 
-    s.x = -1; /* The second pixel is the first inside the display window. */
+    s.x = -1; /* the second pixel is the first one inside the display window */
     s.window_width = 1;
     s.window_height = 2;
     glint_samples_get_light(&s, 0, 0, rgb);
@@ -314,9 +316,9 @@ TEST(exr_data_window_may_differ)
     assert_true(mem[0] <= 1 && mem[3] >= 4.5F);
 }
 
-/* Checks conversion from 8 bits with straight alpha to premultiplied floats
- * and back. A destination without alpha receives the pixels composited over
- * black. */
+/* Checks conversion from 8 bits with straight alpha to floats with
+ * premultiplied alpha, and back. If the destination has no alpha, pixels are
+ * composited over black. */
 TEST(straight_and_premultiplied_alpha_convert)
 {
     uint8_t mem[] = {188, 0, 255, 128}, back[4], flat[3];
@@ -337,5 +339,5 @@ TEST(straight_and_premultiplied_alpha_convert)
     glint_samples_convert(&again, &to);
     assert_memory_equal(back, mem, 4);
     glint_samples_convert(&opaque, &from);
-    assert_int_equal(flat[2], 188); /* sRGB code of half of white */
+    assert_int_equal(flat[2], 188); /* the sRGB code of half of white */
 }

@@ -65,7 +65,7 @@ static void expect_converted_planes(enum glint_pixel_format format,
     assert_int_equal(mem[n], '-');
 }
 
-/* Letters are samples: luma a .., Cb A .., Cr 1 .. */
+/* Letters stand for samples: luma is a .., Cb is A .., Cr is 1 .. */
 TEST(converts_packed_to_planar)
 {
     expect_converted_planes(GLINT_YUYV,
@@ -84,7 +84,8 @@ TEST(converts_packed_to_planar)
                             GLINT_GREY, "abcdefghi");
 }
 
-/* Computes Y', Cb and Cr of an RGB colour with the standard's coefficients. */
+/* Computes Y', Cb and Cr of an RGB colour with the coefficients of the
+ * standard. */
 static void compute_ycc_of_rgb(int ycc[3], const int rgb[3],
                                const struct glint_image *as)
 {
@@ -131,12 +132,12 @@ static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
             }
         }
     }
-    /* Only ties may round differently. */
+    /* only ties may round differently */
     assert_true(n_off < 256 * 256 * 3 / 500);
 }
 
-/* Checks that pure blue and red of full range, whose chroma would be 255.5,
- * are clamped to 255. */
+/* Checks that the chroma of pure blue and pure red in full range, which would
+ * be 255.5, is clamped to 255. */
 static void check_clamped_chroma_codes(void)
 {
     uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
@@ -157,7 +158,8 @@ TEST(converts_rgb_to_ycc)
     static const uint8_t colours[] = {255, 255, 255, 0, 0, 0,   255, 0,   0,
                                       0,   255, 0,   0, 0, 255, 128, 128, 128,
                                       0,   0,   0,   0, 0, 0,   0,   0,   0};
-    /* white, black, red, green, blue, grey in BT.601, limited range */
+    /* Y, Cb, Cr of white, black, red, green, blue and grey in BT.601, limited
+     * range */
     static const char want[] = "\xeb\x10\x51\x91\x29\x7e\x10\x10\x10"
                                "\x80\x80\x5a\x36\xf0\x80\x80\x80\x80"
                                "\x80\x80\xf0\x22\x6e\x80\x80\x80\x80";
@@ -205,8 +207,8 @@ TEST(writes_y4m)
     expect_file_bytes(want, sizeof want - 1);
 }
 
-/* Checks that a format which Y4M supports is written without a copy, and
- * that RGB is converted and declared as limited range. */
+/* Checks that images in a format that Y4M supports are written without a copy,
+ * and that RGB images are converted and declared as limited range. */
 TEST(y4m_writes_supported_formats_without_copy)
 {
     static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "
@@ -232,8 +234,8 @@ TEST(y4m_writes_supported_formats_without_copy)
     expect_file_bytes(white, sizeof white - 1);
 }
 
-/* Checks that frames are dropped, without blocking, when nobody reads a pipe
- * of 64 KiB. */
+/* Checks that frames are dropped, without blocking, when no program reads from
+ * a pipe of 64 KiB. */
 TEST(y4m_drops_frames_for_a_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
@@ -247,7 +249,8 @@ TEST(y4m_drops_frames_for_a_slow_reader)
     assert_int_equal(pipe(fd), 0);
     snprintf(name, sizeof name, "/dev/fd/%d", fd[1]);
     glint_y4m_sink_open(&y4m, name, 25, 1);
-    for (int i = 0; i < 4; i++) /* 12288 bytes and the line FRAME each */
+    /* each frame has 12288 bytes plus the line FRAME */
+    for (int i = 0; i < 4; i++)
         assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     assert_int_equal(y4m.n_dropped, 0);
     assert_int_equal(fcntl(fd[1], F_SETFL, O_NONBLOCK), 0);
@@ -295,12 +298,13 @@ TEST(null_sink_accepts_images)
 /* ------------------------------------------------------------- V4L2 output */
 
 static struct {
-    /* values that the driver sets; 0: the requested value */
+    /* values that the fake driver sets; 0: the requested value */
     uint32_t caps, stride, size, fourcc;
-    unsigned long fail_request; /* ioctl() request that fails */
+    /* ioctl() request that the fake driver makes fail */
+    unsigned long fail_request;
     int fail_errno, write_errno;
     int n_streaming;
-    ssize_t most; /* max bytes per write(); 0: no limit */
+    ssize_t most; /* max number of bytes per write(); 0: no limit */
     struct v4l2_format set;
     struct v4l2_streamparm parm;
 } node;
@@ -405,8 +409,8 @@ TEST(v4l2_writes_an_image)
     assert_int_equal(out.fd, -1);
 }
 
-/* Checks that rows are converted between the padding of the image and that of
- * the device. */
+/* Checks that rows are copied between images and devices with different row
+ * padding. */
 TEST(v4l2_writes_padded_rows)
 {
     static const uint8_t zero;
@@ -537,14 +541,14 @@ TEST(v4l2_rejects_unsuitable_devices)
         glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
         GLINT_E_DEVICE);
     assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
-    /* The driver reports this pixel format by another FOURCC. */
+    /* the driver returns this pixel format under another FOURCC */
     reset_fake_v4l2_node();
     node.fourcc = V4L2_PIX_FMT_BGR32;
     image.format = GLINT_XRGB8888;
     open_v4l2_sink(&out, &image);
     out.sink.close(&out.sink);
     image.format = GLINT_YUYV;
-    /* The driver has no frame rate setting. */
+    /* the driver has no setting for the frame rate */
     reset_fake_v4l2_node();
     node.fail_request = VIDIOC_S_PARM;
     node.fail_errno = ENOTTY;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks which characters of untrusted texts are printed to a terminal, and how
- * JSON strings are escaped.
+ * Checks which characters of untrusted text are printed to a terminal, and how
+ * strings are escaped in JSON.
  */
 #include <stdint.h>
 
@@ -75,7 +75,7 @@ TEST(json_writer_prints_objects)
 {
     FILE *file = tmpfile();
     struct json_writer json = {.to = file};
-    /* volatile: hides the value from the compiler */
+    /* volatile, so that the compiler does not know the value */
     const char *volatile const none = NULL;
     char got[256];
 

@@ -10,8 +10,8 @@
 
 /* ------------------------------------------------------------------ formats */
 
-/* Returns the FOURCC that the source chooses from the N modes of LIST when
- * 64 x 48 pixels at FPS frames per second are requested. */
+/* Returns the FOURCC that the source chooses from the modes LIST[N] when 64 x
+ * 48 pixels and FPS frames per second are requested. */
 static uint32_t open_and_read_fourcc(const struct fake_mode *list, int n,
                                      int fps)
 {
@@ -58,14 +58,14 @@ TEST(chooses_the_cheapest_format)
     assert_int_equal(open_and_read_fourcc(equal, 2, 30), V4L2_PIX_FMT_RGB24);
     assert_int_equal(open_and_read_fourcc(slow, 3, 30), V4L2_PIX_FMT_MJPEG);
     assert_int_equal(open_and_read_fourcc(slow, 3, 10), V4L2_PIX_FMT_YUYV);
-    /* no mode reaches the rate */
+    /* no mode reaches the requested rate */
     assert_int_equal(open_and_read_fourcc(slow, 3, 60), V4L2_PIX_FMT_YUYV);
     assert_int_equal(open_and_read_fourcc(small, 2, 30), V4L2_PIX_FMT_RGB24);
     assert_int_equal(open_and_read_fourcc(foreign, 2, 30), V4L2_PIX_FMT_GREY);
 }
 
-/* Checks that a rate requested without a size is searched among the modes of
- * the camera's present size. */
+/* Checks that if only a frame rate is requested, it is searched among the modes
+ * of the camera's present size. */
 TEST(rate_without_size_keeps_the_size)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -80,9 +80,9 @@ TEST(rate_without_size_keeps_the_size)
     must_close_camera();
 }
 
-/* Checks that intervals of 333334 units of 100 ns (reported by some USB
- * cameras) and of 1001/30000 s match a request of 30 frames per second, and
- * that 24 frames per second do not match 25. */
+/* Checks that frame intervals of 333334 units of 100 ns (as some USB cameras
+ * report) and of 1001/30000 s match a request of 30 frames per second, and that
+ * 24 frames per second do not match 25. */
 TEST(nearly_equal_rates_match)
 {
     static const struct fake_mode usb[] = {
@@ -146,8 +146,8 @@ TEST(rejects_unsupported_formats)
         "does not support NV12 (the driver returns YUYV instead)");
 }
 
-/* Checks that the format which the camera sets is used, even if another was
- * requested. */
+/* Checks that the source uses the format that the camera sets, even if another
+ * was requested. */
 TEST(uses_the_format_that_the_camera_sets)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -178,7 +178,7 @@ TEST(invalid_rates_are_unknown)
         fake_camera_reset();
         camera.rate = odd[i];
         must_open_camera(NULL);
-        /* A rate out of range is reported as unknown. */
+        /* a frame rate out of range is reported as unknown */
         assert_int_equal(v4l2.device.format.fps_num, 0);
         must_close_camera();
     }
@@ -222,8 +222,8 @@ TEST(reads_the_colour_declaration)
     must_close_camera();
 }
 
-/* Checks that a long device name, as udev creates them, is accepted, and
- * that one longer than the buffer is rejected. */
+/* Checks that a long device name, as created by udev, is accepted, and that a
+ * name longer than the buffer is rejected. */
 TEST(limits_the_device_name)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -254,7 +254,7 @@ static void set_camera_format(uint32_t fourcc, bool multiplanar)
         camera.caps = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
 }
 
-/* Checks the plane's offset from the start of BLOCK and its stride, in
+/* Checks the offset of a plane from the start of BLOCK and its stride, both in
  * bytes. */
 static void expect_plane_offset_and_stride(int plane, const uint8_t *block,
                                            ptrdiff_t offset, ptrdiff_t stride)
@@ -329,7 +329,7 @@ TEST(reads_planes_in_several_blocks)
     set_camera_format(V4L2_PIX_FMT_YUV420M, true);
     must_open_camera(NULL);
     f = fake_camera_add_frame(0, 9);
-    f->is_odd = true; /* a bytesused of 0 means 0 bytes */
+    f->is_odd = true; /* with this flag, bytesused of 0 means 0 bytes */
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = f->bytesused[2] = 32 * 24;
     assert_int_equal(next(), GLINT_OK);
@@ -340,12 +340,13 @@ TEST(reads_planes_in_several_blocks)
     f->is_odd = true;
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = 32 * 24;
-    must_get_no_frame(); /* the third plane is empty */
+    /* the third plane is empty, so the frame is not delivered */
+    must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
     must_close_camera();
 }
 
-/* Checks that data which the driver puts before the image is skipped. */
+/* Checks that data that the driver places before the image is skipped. */
 TEST(skips_data_before_the_image)
 {
     struct fake_frame *f;
@@ -368,7 +369,7 @@ TEST(skips_data_before_the_image)
     assert_int_equal(frame.n_corrupt, 1);
     f = fake_camera_add_frame(2, 9);
     f->is_odd = true;
-    f->data_offset[0] = 4000; /* an offset beyond the 100 bytes used */
+    f->data_offset[0] = 4000; /* an offset beyond the 100 bytes in use */
     f->bytesused[0] = 100;
     must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
@@ -382,7 +383,7 @@ TEST(rejects_too_small_buffers)
         NULL, GLINT_E_DEVICE,
         "64x48 YUYV needs more bytes than the 6143 that the driver reports");
     fake_camera_reset();
-    /* The driver reports a larger buffer than it has. */
+    /* the driver states a larger buffer than it has */
     camera.length_less = 1;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
@@ -421,8 +422,8 @@ TEST(skips_damaged_frames)
     must_close_camera();
 }
 
-/* Checks that an intact frame is delivered even if a damaged frame precedes
- * or follows it. */
+/* Checks that an intact frame is delivered even if damaged frames precede or
+ * follow it. */
 TEST(delivers_intact_frames_among_damaged)
 {
     must_open_camera(NULL);
@@ -448,12 +449,12 @@ TEST(delivers_the_newest_frame)
     assert_int_equal(frame.n_dropped, 0);
     assert_int_equal(frame.sequence, 2);
     assert_int_equal(frame.time_us, 5002);
-    /* One of the four buffers is lent to the caller. */
+    /* one of the four buffers is lent to the caller */
     assert_int_equal(camera.n_queued, 3);
     fake_camera_add_frame(3, 13);
     done();
     assert_int_equal(camera.n_queued, 4);
-    done(); /* A second release has no effect. */
+    done(); /* releasing the frame again has no effect */
     assert_int_equal(camera.n_queued, 4);
     must_get_frame(13);
     must_close_camera();
@@ -469,8 +470,8 @@ static int64_t read_frame_time_stamp(int64_t stamp_us, bool unknown_clock)
     return frame.time_us;
 }
 
-/* Checks that a plausible time stamp of an unknown clock is used, and that
- * no time stamp is later than the present. */
+/* Checks that a plausible time stamp is used even if its clock is unknown, and
+ * that no frame gets a time stamp in the future. */
 TEST(time_stamps_are_never_in_the_future)
 {
     const int64_t now_us = fake_camera_time_us();
@@ -486,7 +487,8 @@ TEST(time_stamps_are_never_in_the_future)
     must_close_camera();
 }
 
-/* Checks that a lent frame is unchanged while other frames arrive. */
+/* Checks that a frame lent to the caller does not change while other frames
+ * arrive. */
 TEST(lent_frame_is_unchanged)
 {
     struct glint_source_frame kept;
@@ -506,8 +508,8 @@ TEST(lent_frame_is_unchanged)
     must_close_camera();
 }
 
-/* Checks that an open camera has its format locked but does not stream
- * before start(), also after a restart, and that next() starts it as well. */
+/* Checks that an open camera has its format locked but does not stream before
+ * start(), also after a restart, and that next() also starts streaming. */
 TEST(streams_only_when_started)
 {
     assert_int_equal(
@@ -543,13 +545,13 @@ static int count_dropped_before_sequence(uint32_t sequence)
 TEST(sequence_gaps_are_dropped_frames)
 {
     must_open_camera(NULL);
-    /* The sequence may start at any number. */
+    /* the sequence numbers may start at any value */
     assert_int_equal(count_dropped_before_sequence(1000), 0);
     assert_int_equal(count_dropped_before_sequence(1001), 0);
     assert_int_equal(count_dropped_before_sequence(1005), 3);
     assert_int_equal(count_dropped_before_sequence(1005), 0);
     assert_int_equal(count_dropped_before_sequence(3),
-                     0); /* the driver restarted the sequence */
+                     0); /* the driver restarted its sequence numbers at 0 */
     assert_int_equal(count_dropped_before_sequence(4), 0);
     must_close_camera();
     must_open_camera(NULL);
@@ -559,24 +561,24 @@ TEST(sequence_gaps_are_dropped_frames)
     assert_int_equal(count_dropped_before_sequence(2), 1);
     must_close_camera();
     must_open_camera(NULL);
-    /* v4l2loopback delivers a frame from before the stream */
+    /* v4l2loopback delivers a frame from before the stream began */
     assert_int_equal(count_dropped_before_sequence(0), 0);
     assert_int_equal(count_dropped_before_sequence(28), 0);
     assert_int_equal(count_dropped_before_sequence(30), 1);
     must_close_camera();
-    must_open_camera(NULL); /* Some drivers leave the sequence at 0. */
+    must_open_camera(NULL); /* some drivers leave the sequence number at 0 */
     for (int i = 0; i < 5; i++)
         assert_int_equal(count_dropped_before_sequence(0), 0);
     must_close_camera();
 }
 
-/* Checks that gaps and damaged frames before a delivered frame are counted
- * together. */
+/* Checks that missing sequence numbers and damaged frames before a delivered
+ * frame are both counted as dropped. */
 TEST(gaps_and_damaged_frames_are_counted_together)
 {
     must_open_camera(NULL);
     assert_int_equal(count_dropped_before_sequence(6),
-                     0); /* a frame from before the stream */
+                     0); /* a frame from before the stream began */
     assert_int_equal(count_dropped_before_sequence(0), 0);
     fake_camera_add_frame(2, 1)->flags = V4L2_BUF_FLAG_ERROR;
     fake_camera_add_frame(5, 2);
@@ -588,8 +590,8 @@ TEST(gaps_and_damaged_frames_are_counted_together)
     must_close_camera();
 }
 
-/* Checks that implausible jumps of the sequence are not counted as dropped
- * frames, and that their sum does not overflow. */
+/* Checks that implausible jumps of the sequence number are not counted as
+ * dropped frames, and that their sum does not overflow. */
 TEST(implausible_sequence_jumps_are_not_counted)
 {
     must_open_camera(NULL);
@@ -654,8 +656,8 @@ TEST(every_memory_type_is_used)
     check_chosen_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
-/* Checks that a type of memory which the device lacks is reported as such,
- * not as a failed request. */
+/* Checks that a memory type that the device does not support is reported as
+ * such, not as a failed request. */
 TEST(reports_a_missing_memory_type)
 {
     assert_int_equal(try_open_camera(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);
@@ -683,8 +685,8 @@ TEST(works_with_two_buffers)
                         "VIDIOC_REQBUFS: Cannot allocate memory");
 }
 
-/* Checks that the message names the request that failed first, even if a
- * fallback was tried or a resource freed after it. */
+/* Checks that the error message names the request that failed first, even if
+ * the source tried a fallback or freed a resource afterwards. */
 TEST(message_names_the_first_failed_request)
 {
     fake_camera_fail_request(VIDIOC_QUERYBUF, EIO, 1);

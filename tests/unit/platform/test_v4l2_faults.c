@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the V4L2 source on a fake driver with faults: which faults it recovers
- * from, which end the stream, after what time and with which message, and that
- * no resource leaks.
+ * from; which faults end the stream, after what time and with which message;
+ * and that no resource leaks.
  */
 #include "support/fakes/camera_check.h"
 #include "support/scratch.h"
@@ -25,12 +25,13 @@ TEST(failed_queueing_is_repeated)
     must_get_frame(1);
     assert_int_equal(camera.n_queued, 3);
     fake_camera_add_frame(1, 2);
-    must_get_frame(2); /* The failed request is repeated before any other. */
+    /* the failed request is repeated before any other request */
+    must_get_frame(2);
     assert_int_equal(camera.n_queued, 4);
     assert_int_equal(v4l2.source.n_restarts, 0);
     must_close_camera();
     fake_camera_fail_request(VIDIOC_QBUF, EIO,
-                             1); /* a failure while the stream starts */
+                             1); /* a request fails while the stream starts */
     must_open_camera(NULL);
     assert_int_equal(camera.n_queued, 3);
     must_get_no_frame();
@@ -86,7 +87,8 @@ TEST(reports_failed_requests)
                         "'Fake' does not capture pictures");
 }
 
-/* Checks that the source works on drivers that lack these requests. */
+/* Checks that the source works with drivers that do not support these
+ * requests. */
 TEST(works_without_optional_requests)
 {
     static const unsigned long request[] = {
@@ -117,8 +119,8 @@ static void must_get_frame_of_width(int width, int code)
     done();
 }
 
-/* Checks that a broken stream is restarted, at the size that another program
- * has set in the meantime. */
+/* Checks that a stream that breaks is restarted, at the size that another
+ * program has set in the meantime. */
 TEST(broken_stream_is_restarted)
 {
     must_open_camera(NULL);
@@ -132,12 +134,12 @@ TEST(broken_stream_is_restarted)
     assert_int_equal(v4l2.device.format.width, 32);
     fake_camera_add_frame(0, 2);
     must_get_frame_of_width(32, 2);
-    /* the sequence restarted at 0, so no frame counts as dropped */
+    /* the sequence numbers restarted at 0, so no frame counts as dropped */
     assert_int_equal(frame.n_dropped, 0);
     must_close_camera();
 }
 
-/* Checks that a restart may change to another supported format and back. */
+/* Checks that a restart may change to another supported format, and back. */
 TEST(restart_may_change_the_format)
 {
     must_open_camera(NULL);
@@ -157,8 +159,8 @@ TEST(restart_may_change_the_format)
     must_close_camera();
 }
 
-/* Checks that requests which fail during a restart are repeated for a
- * limited time. */
+/* Checks that requests that fail during a restart are repeated for a limited
+ * time. */
 TEST(failing_restart_is_repeated)
 {
     static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON,
@@ -178,8 +180,8 @@ TEST(failing_restart_is_repeated)
     }
 }
 
-/* Checks that a stream which cannot be restarted ends with a message that
- * names the failed request. */
+/* Checks that a stream that cannot be restarted ends with a message that names
+ * the failed request. */
 TEST(failed_restart_ends_with_a_message)
 {
     static const struct {
@@ -216,7 +218,7 @@ TEST(failed_restart_ends_with_a_message)
     }
 }
 
-/* Checks that each delivered frame resets the time limit for restarts. */
+/* Checks that each delivered frame restarts the time limit for restarts. */
 TEST(delivered_frame_resets_the_restart_limit)
 {
     must_open_camera(NULL);
@@ -239,14 +241,15 @@ TEST(reports_an_unplugged_camera)
     must_open_camera(NULL);
     fake_camera_add_frame(0, 1);
     assert_int_equal(next(), GLINT_OK);
-    camera.is_gone = true; /* while a frame is lent */
+    /* the camera disappears while a frame is lent to the caller */
+    camera.is_gone = true;
     done();
     assert_int_equal(next(), GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": the camera was removed");
     must_close_camera();
     must_refuse_to_open(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
 
-    /* number of the request that reports the loss first */
+    /* which request reports the loss of the camera first */
     for (int i = 0; i < 2; i++) {
         fake_camera_reset();
         must_open_camera(NULL);
@@ -259,8 +262,9 @@ TEST(reports_an_unplugged_camera)
     }
 }
 
-/* Checks that a stream of only damaged frames, marked by the driver or
- * undecodable (AS_JPEG), ends with a message. */
+/* Checks that a stream of nothing but damaged frames ends with a message.
+ * AS_JPEG: frames cannot be decoded; otherwise the driver marks them as
+ * damaged. */
 static void check_stream_of_damaged_frames(bool as_jpeg)
 {
     static const char garbage[] = "not a JPEG at all";
@@ -300,7 +304,7 @@ TEST(only_damaged_frames_cause_a_restart)
         check_stream_of_damaged_frames(true);
 }
 
-/* Checks that one intact frame in thirty is enough to continue without a
+/* Checks that a stream with one intact frame in thirty continues without a
  * restart. */
 TEST(one_intact_frame_in_30_is_enough)
 {
@@ -318,8 +322,8 @@ TEST(one_intact_frame_in_30_is_enough)
     must_close_camera();
 }
 
-/* Checks that a driver which returns a buffer that was not queued causes a
- * restart. */
+/* Checks that the source restarts the stream if the driver returns a buffer
+ * that was not queued. */
 TEST(unqueued_buffer_causes_a_restart)
 {
     struct glint_source_frame kept;
@@ -334,7 +338,8 @@ TEST(unqueued_buffer_causes_a_restart)
     assert_int_equal(next(), GLINT_OK);
     kept = frame;
     fake_camera_add_frame(1, 2);
-    /* index 0, plus 1: the buffer that is lent to the caller */
+    /* returned_index is 1 plus the index: this is buffer 0, which is lent to
+     * the caller */
     camera.returned_index = 1;
     must_get_no_frame();
     assert_int_equal(v4l2.source.n_restarts, 2);
@@ -358,13 +363,13 @@ TEST(missing_frames_cause_a_restart)
     must_get_no_frame();
     assert_int_equal(v4l2.source.n_restarts, 0);
     fake_camera_advance_clock(
-        40000); /* longer than the time limit: 2 s and 4 frames */
+        40000); /* longer than the time limit of 2 s and 4 frames */
     must_get_no_frame();
     assert_int_equal(v4l2.source.n_restarts, 1);
-    fake_camera_add_frame(0, 1); /* The restart makes frames arrive. */
+    fake_camera_add_frame(0, 1); /* after the restart frames arrive again */
     must_get_frame(1);
     assert_int_equal(get_frames_during_ms(10000, &failed_ms), GLINT_E_DEVICE);
-    /* The restart has no effect. */
+    /* this restart has no effect */
     assert_in_range(failed_ms, 4200, 4400);
     assert_string_equal(said.text, FAKE_PATH ": no frames come; restarting "
                                              "the stream failed");
@@ -413,7 +418,7 @@ TEST(changed_timings_cause_a_restart)
     reset_camera_with_hdmi();
     must_open_camera(NULL);
     assert_true(v4l2.device.has_signal);
-    camera.n_events = 1; /* an event without a change */
+    camera.n_events = 1; /* an event that reports no change */
     fake_camera_add_frame(0, 1);
     must_get_frame(1);
     assert_int_equal(v4l2.source.n_restarts, 0);
@@ -427,8 +432,8 @@ TEST(changed_timings_cause_a_restart)
     must_close_camera();
 }
 
-/* Checks that the input's signal may be absent for any time and return, with
- * or without events. */
+/* Checks that the signal at the input may be absent for any time and return,
+ * whether the driver sends events or not. */
 TEST(signal_may_be_absent_for_any_time)
 {
     int failed_ms;
@@ -454,8 +459,8 @@ TEST(signal_may_be_absent_for_any_time)
     }
 }
 
-/* Checks that the input's present timings are used while no signal is
- * detected. */
+/* Checks that the timings currently set at the input are used while no signal
+ * is detected. */
 TEST(timings_without_signal_are_used)
 {
     reset_camera_with_hdmi();
@@ -468,8 +473,9 @@ TEST(timings_without_signal_are_used)
     must_close_camera();
 }
 
-/* Checks a signal that is lost and returns repeatedly without a frame, for
- * longer than the time limit for restarts, as while a cable is plugged in. */
+/* Checks a signal that is repeatedly lost and found again without a frame, for
+ * longer than the time limit for restarts, as happens while a cable is plugged
+ * in. */
 TEST(wavering_signal_is_not_a_failure)
 {
     int failed_ms;
@@ -485,7 +491,7 @@ TEST(wavering_signal_is_not_a_failure)
         camera.n_events = 1;
         assert_int_equal(get_frames_during_ms(1500, &failed_ms), GLINT_OK);
     }
-    /* The signal returns, and then the camera fails. */
+    /* the signal returns, and then the camera fails */
     camera.has_signal = true;
     camera.n_events = 1;
     camera.is_broken = true;
@@ -495,8 +501,8 @@ TEST(wavering_signal_is_not_a_failure)
     must_close_camera();
 }
 
-/* Checks that a driver which reports a change at every start does not cause
- * a busy loop. */
+/* Checks that a driver that reports a change at every start does not cause a
+ * busy loop. */
 TEST(endless_changes_cause_no_busy_loop)
 {
     int64_t start;
@@ -543,8 +549,9 @@ TEST(restarts_with_user_memory_and_read)
 
 static int n_got;
 
-/* Runs a sequence of frames, a broken stream and a changed source. Sets
- * *N_CALLS to the number of calls that can fail. Returns the first error. */
+/* Runs a session of frames, a stream that breaks, and a source that changes.
+ * Sets *N_CALLS to the number of calls that can be made to fail. Returns the
+ * first error. */
 static enum glint_status run_capture_session(enum glint_v4l2_io io,
                                              int *n_calls)
 {
@@ -590,7 +597,7 @@ static void check_every_failing_call(int number, bool forever,
             assert_true(status == GLINT_E_DEVICE || status == GLINT_E_MEMORY);
             assert_non_null(strstr(said.text, FAKE_PATH ": "));
         }
-        /* One frame may be lost, and one more at each restart. */
+        /* one frame may be lost, and one more at each restart */
         if (status == GLINT_OK && !forever && fourcc != V4L2_PIX_FMT_MJPEG)
             assert_true(n_got >= 8);
         must_be_closed_camera();

@@ -16,7 +16,7 @@
 #include "support/test.h"
 #include "video/y4m.h"
 
-/* Two frames of 17 bytes: 9 of luma, 4 and 4 of chroma. */
+/* Two frames of 17 bytes: 9 of luma, and 4 each of Cb and Cr. */
 #define SMALL                  \
     "YUV4MPEG2 W3 H3 F25:1\n"  \
     "FRAME\nabcdefghiCDEFcdef" \
@@ -24,8 +24,8 @@
 
 static struct glint_error error;
 
-/* A byte stream in memory that returns CHUNK bytes per read, then ends or
- * fails. */
+/* A stream in memory that returns CHUNK bytes per read. After its last byte,
+ * reading ends or fails. */
 struct memory {
     const char *data;
     size_t bytes, at, chunk;
@@ -79,7 +79,7 @@ TEST(parses_a_header_of_ffmpeg)
     assert_memory_equal(printed, line, sizeof line - 1);
     assert_int_equal(printed[len - 1], '\n');
 
-    h.range = GLINT_RANGE_FULL; /* a range that differs from that in the tags */
+    h.range = GLINT_RANGE_FULL; /* this range differs from that in the tags */
     glint_y4m_header_print(printed, &h);
     assert_non_null(strstr(printed, " XCOLORRANGE=FULL\n"));
     assert_null(strstr(printed, "LIMITED"));
@@ -136,7 +136,7 @@ TEST(parses_range_and_matrix)
     assert_int_equal(h.range, GLINT_RANGE_LIMITED);
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
     assert_string_equal(h.extra, " XCOLORRANGE=OTHER");
-    /* Full range in C420jpeg is BT.601 at any size. */
+    /* C420jpeg with full range means BT.601, at any image size */
     assert_ok(
         parse_header(&h, "YUV4MPEG2 W1280 H720 C420jpeg XCOLORRANGE=FULL"));
     assert_int_equal(h.matrix, GLINT_MATRIX_BT601);
@@ -254,8 +254,8 @@ TEST(reads_frames_in_pieces)
     }
 }
 
-/* Reads the stream DATA until its end or first error. Sets *FRAMES to the
- * number of complete frames. Returns the status. */
+/* Reads the stream DATA until its end or the first error. Sets *FRAMES to the
+ * number of complete frames. Returns the status of the last read. */
 static enum glint_status read_all_frames(const char *data, size_t bytes,
                                          long *frames, bool fails)
 {
@@ -273,8 +273,9 @@ static enum glint_status read_all_frames(const char *data, size_t bytes,
     return status;
 }
 
-/* Checks that a stream truncated at any byte ends with the right message.
- * The header has 22 bytes, the first frame 6 + 17, the second 14 + 17. */
+/* Checks that a stream that is truncated at any byte ends with the right
+ * message. The header has 22 bytes, the first frame 6 + 17, the second frame 14
+ * + 17. */
 TEST(reports_every_truncation)
 {
     long frames;
@@ -362,7 +363,7 @@ static void expect_file_bytes(const char *want, size_t want_bytes)
     free(data);
 }
 
-/* Checks that DATA, copied frame by frame to a file, is unchanged. */
+/* Checks that copying DATA frame by frame to a file preserves every byte. */
 static void check_copied_stream_is_identical(const char *data, size_t bytes)
 {
     struct memory memory = {data, bytes, 0, 5000, false};
@@ -395,13 +396,14 @@ TEST(copies_streams_unchanged)
         BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
               "FRAME\nab"));
     check_copied_stream_is_identical(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
-    /* A stream without frames is valid. */
+    /* a stream without frames is valid */
     check_copied_stream_is_identical(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n"));
 }
 
 /* ----------------------------------------------------- bit depth and layout */
 
-/* Reads the frame in DATA and checks that its 8-bit planes equal SEEN. */
+/* Reads the frame in DATA and checks that its planes, converted to 8 bits,
+ * equal SEEN. */
 static void check_8bit_planes(const char *data, size_t bytes, const char *seen,
                               size_t n_seen)
 {
@@ -419,7 +421,8 @@ static void check_8bit_planes(const char *data, size_t bytes, const char *seen,
 
 TEST(reads_deep_frames)
 {
-    /* 3 x 1 of 10 bits: luma 3, chroma 2 and 2 samples of two bytes */
+    /* 3 x 1 pixels of 10 bits: 3 luma and 2 + 2 chroma samples, of two bytes
+     * each */
     check_8bit_planes(BYTES("YUV4MPEG2 W3 H1 C420p10\nFRAME\n"
                             "\x40\x00\xac\x03\xff\x03"
                             "\x00\x02\x04\x02"
@@ -435,7 +438,7 @@ TEST(reads_deep_frames)
                       BYTES("abc"));
 }
 
-/* Fills PLANES with a frame of 3 x 3 pixels in format TAG, luma CODE, chroma
+/* Fills PLANES with a frame of 3 x 3 pixels of format TAG, luma CODE and chroma
  * MIDDLE, and adds the light of LAYER to it. */
 static void add_light_to_frame(const char *tag, int code, int middle,
                                const float *layer, uint8_t planes[72])
@@ -466,9 +469,8 @@ static int read_16bit_sample(const uint8_t *planes, int i)
     return planes[2 * i] | planes[2 * i + 1] << 8;
 }
 
-/* Checks that white light of 0.18 becomes 0.409 by BT.709 (by hand: 1.099 *
- * 0.18^0.45 - 0.099 = 0.4090), which is 64 + 876 * 0.4090 = 422.3 in 10
- * bits. */
+/* Checks white light of 0.18, computed by hand: BT.709 encodes it as 1.099 *
+ * 0.18^0.45 - 0.099 = 0.4090, which is 64 + 876 * 0.4090 = 422.3 in 10 bits. */
 TEST(adds_light_to_10_bit_codes)
 {
     float layer[27] = {0};
@@ -485,18 +487,21 @@ TEST(adds_light_to_10_bit_codes)
                                                                : 512);
     add_light_to_frame("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
     assert_int_equal(read_16bit_sample(planes, 4), 1675); /* 4095 * 0.40901 */
-    /* red light of 9, which clips, on the last of 3 x 3 pixels, the only
-     * pixel of its chroma sample */
+    /* red light of 9, which clips, on the last of 3 x 3 pixels; no other pixel
+     * shares its chroma sample */
     layer[3 * 8] = 9;
     add_light_to_frame("C420p10", 64, 512, layer, planes);
-    assert_int_equal(read_16bit_sample(planes, 8), 326); /* 64 + 876 * 0.299 */
+    /* luma of red: 64 + 876 * 0.299 */
+    assert_int_equal(read_16bit_sample(planes, 8), 326);
     assert_int_equal(read_16bit_sample(planes, 12),
-                     361); /* 512 - 896 * 0.1687 */
-    assert_int_equal(read_16bit_sample(planes, 16), 960); /* 512 + 896 * 0.5 */
+                     361); /* Cb of red: 512 - 896 * 0.1687 */
+    /* Cr of red: 512 + 896 * 0.5 */
+    assert_int_equal(read_16bit_sample(planes, 16), 960);
     assert_int_equal(read_16bit_sample(planes, 9), 512);
 }
 
-/* Checks that codes at or above white, and alpha, are unchanged. */
+/* Checks that adding light does not change codes at or above white, nor
+ * alpha. */
 TEST(codes_above_white_are_unchanged)
 {
     float layer[27];
@@ -515,8 +520,8 @@ TEST(codes_above_white_are_unchanged)
     assert_in_range(planes[0], 170, 176);
 }
 
-/* Returns the linear light of code V by the standards' formulas, 1 = diffuse
- * white: 203 cd/m2 for PQ, code 0.75 for HLG [BT.2408]. */
+/* Returns the linear light of code V by the formulas in the standards. 1 is
+ * diffuse white: 203 cd/m2 in PQ, code 0.75 in HLG [BT.2408]. */
 static double decode_transfer_code(enum glint_transfer_curve curve, double v)
 {
     const double a = 0.17883277, b = 1 - 4 * a, c = 0.5 - a * log(4 * a);
@@ -551,7 +556,8 @@ static double decode_transfer_code(enum glint_transfer_curve curve, double v)
     }
 }
 
-/* Checks the transfer tables against the standards' formulas. */
+/* Checks the tables of transfer curves against the formulas in the
+ * standards. */
 TEST(transfer_tables_match_the_standards)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)
@@ -572,7 +578,8 @@ TEST(transfer_tables_match_the_standards)
     assert_int_equal(glint_primaries_from_tag("film"), -1);
 }
 
-/* Returns the code V, 0 .. 1, of LIGHT, by bisection. */
+/* Returns the code, 0 .. 1, of LIGHT by bisection: the inverse of
+ * decode_transfer_code(). */
 static double encode_transfer_light(enum glint_transfer_curve curve,
                                     double light)
 {
@@ -586,8 +593,9 @@ static double encode_transfer_light(enum glint_transfer_curve curve,
     return high;
 }
 
-/* Adds LIGHT (red of BT.709 if IS_RED, else white) to 16-bit grounds of
- * 0.001 .. 4 times white in CURVE, and compares the increase with LIGHT. */
+/* Adds LIGHT (red of BT.709 if IS_RED, otherwise white) to 16-bit pixels of
+ * 0.001 .. 4 times white, encoded by CURVE, and compares the increase of their
+ * light with LIGHT. */
 static void check_added_light(enum glint_transfer_curve curve,
                               enum glint_primaries primaries, double light,
                               bool is_red)
@@ -604,7 +612,7 @@ static void check_added_light(enum glint_transfer_curve curve,
     h.transfer = curve;
     h.primaries = primaries;
     glint_y4m_light_init(&y4m, &h);
-    /* Logarithmic curves have no codes near 0 light. */
+    /* logarithmic curves have no codes for light near 0 */
     for (double ground = fmax(0.001, 2 * decode_transfer_code(curve, 1e-5));
          ground < most; ground *= 1.7) {
         const int code =
@@ -631,8 +639,8 @@ static void check_added_light(enum glint_transfer_curve curve,
     }
 }
 
-/* Checks that light is added in the linear light of the stream's transfer
- * function and primaries, within 2 % and the rounding to 16 bits. */
+/* Checks that light is added in linear light, with the transfer curve and
+ * primaries of the stream, within 2 % and the rounding to 16 bits. */
 TEST(light_is_added_in_linear_light)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)
@@ -646,8 +654,8 @@ TEST(light_is_added_in_linear_light)
         }
 }
 
-/* Checks the SDR copy of a PQ stream: white (203 cd/m2) and everything above
- * becomes white of BT.709, also in 8 bits. */
+/* Checks the SDR copy of a PQ stream: white (203 cd/m2) and all brighter codes
+ * become white of BT.709, also in 8 bits. */
 TEST(pq_copy_is_graded_to_sdr)
 {
     static const double nits[] = {0, 20.3, 203, 4000};
@@ -677,7 +685,7 @@ TEST(pq_copy_is_graded_to_sdr)
 }
 
 /* Checks that a video of 720 x 405 pixels with 203 rows of chroma, as ffmpeg
- * writes it, is copied unchanged. */
+ * writes them, is copied unchanged. */
 TEST(copies_a_video_of_odd_height)
 {
     enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
@@ -698,7 +706,7 @@ TEST(copies_a_video_of_odd_height)
     free(data);
 }
 
-/* Checks that images with padded rows, or stored bottom row first, are
+/* Checks that images whose rows are padded, or stored bottom row first, are
  * written without padding, top row first. */
 TEST(writes_images_without_padding)
 {

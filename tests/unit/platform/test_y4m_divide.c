@@ -1,21 +1,22 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares division by multiplication with exact quotients:
- * y4m_scaled_quotient() for every numerator, y4m_divide_fraction() at both ends
- * of each run of numerators with the same quotient, which suffices because the
- * quotient is monotonic.
+ * Compares quotients computed by multiplication with exact ones: of
+ * y4m_scaled_quotient() for every numerator; of y4m_divide_fraction() at both
+ * ends of each range of numerators with the same quotient, which is sufficient
+ * because the quotient is monotonic.
  */
 
 #include "support/test.h"
 #include "video/y4m_divide.h"
 
-/* Returns N / D, rounded to nearest, ties away from 0; D > 0. */
+/* Returns N / D, rounded to nearest, ties away from 0. D > 0. */
 static int64_t divide_rounded(int64_t n, int64_t d)
 {
     return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
 }
 
-/* Returns the number of K in -MOST .. MOST for which K 2^UP / D is wrong. */
+/* Returns the number of K in -MOST .. MOST for which the quotient K 2^UP / D is
+ * wrong. */
 static long count_wrong_quotients(int32_t most, int up, int32_t d)
 {
     const int64_t factor = y4m_scaled_quotient_factor(up, d);
@@ -27,7 +28,7 @@ static long count_wrong_quotients(int32_t most, int up, int32_t d)
     return wrong;
 }
 
-/* Checks the division of codes of 8 .. 16 bits, in full and limited range. */
+/* Checks the divisions for codes of 8 .. 16 bits, in full and limited range. */
 TEST(divides_codes_exactly)
 {
     for (int bits = 8; bits <= 16; bits++) {
@@ -41,7 +42,7 @@ TEST(divides_codes_exactly)
 
 static const int32_t kr_q16[2] = {13933, 19595}, kb_q16[2] = {4732, 7471};
 
-/* Checks the division of colour differences, for BT.709 and BT.601. */
+/* Checks the divisions for colour differences, for BT.709 and BT.601. */
 TEST(divides_colour_differences_exactly)
 {
     for (int m = 0; m < 2; m++) {
@@ -66,7 +67,7 @@ TEST(divides_green_exactly)
         const int64_t factor = y4m_fraction_factor(d);
 
         for (int64_t q = -2; q <= (1 << 20) + 2; q++) {
-            /* first numerator with quotient Q */
+            /* first numerator whose quotient is Q */
             const int64_t first = q * d - d / 2;
 
             for (int64_t n = first - 2; n <= first + 2; n++)

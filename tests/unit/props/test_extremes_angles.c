@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests extreme angles of lights: on the axis and 1e-6 degrees off it, borders
- * of angular zones and of each ghost's visibility, the largest angles, all
- * azimuths, and lights on pixel borders.
+ * Tests extreme angles of lights: on the axis and 1e-6 degrees off it, at the
+ * borders of angular zones and of the angles at which each ghost is visible,
+ * at the largest angles, at all azimuths, and at pixel borders.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,10 +21,11 @@ static uint8_t codes[3][3 * W * H];
 
 #define DEGREE 0.017453292519943295
 
-/* Max difference between two grids of the same light, codes in the mean of a
- * block of 8 x 8 pixels. For codes, grids have 3/4 of the cells in each
- * direction, so an outline may be off by 0.1 / (3/4)^2 = 0.18 pixel, which
- * along one side of the block changes its mean by 255 * 0.18 / 8. */
+/* Max difference between two images of the same light with different grids:
+ * codes, in the mean of a block of 8 x 8 pixels. Grids of images in codes have
+ * 3/4 of the cells in each direction, so an outline may be displaced by 0.1 /
+ * (3/4)^2 = 0.18 pixel. Along one side of a block this changes the mean by 255
+ * * 0.18 / 8. */
 #define GRID_CODES 5.7
 
 TEST_OPEN
@@ -51,10 +52,11 @@ static double compare_model_with_exact(struct stage *s,
 
 /* -------------------------------------------------------------------- axis */
 
-/* Checks that on the axis an image has at least 45 dB, as elsewhere at this
- * size, and that a light 1e-6 degrees away gives the same image: its ghosts
- * move by 1e-6 pixel, and a cell whose irradiance is half-way between two
- * steps of 1 % (1.2 codes in bright parts) may round to the other. */
+/* Checks that an image with a light on the axis has a PSNR of at least 45 dB,
+ * as elsewhere at this size, and that a light 1e-6 degrees away gives the same
+ * image: its ghosts move by 1e-6 pixel, and cells whose irradiance is half-way
+ * between two steps of 1 % (1.2 codes in bright parts) may be rounded to the
+ * other step. */
 TEST(lights_near_the_axis_match_exact_rays)
 {
     static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -81,8 +83,8 @@ TEST(lights_near_the_axis_match_exact_rays)
                    "codes");
 }
 
-/* Checks that on the axis the azimuth changes only the orientation of the
- * grid. */
+/* Checks that for a light on the axis the azimuth changes only the orientation
+ * of the grid. */
 TEST(azimuth_on_the_axis_rotates_the_grid_only)
 {
     struct glint_lamp lamp = stage_make_lamp(0, 0, 1);
@@ -103,16 +105,16 @@ TEST(azimuth_on_the_axis_rotates_the_grid_only)
 
 /* ---------------------------------------------------------------- azimuths */
 
-/* Checks that if all light falls inside the image its sum does not depend on
- * the azimuth, within 0.5 % for the steps of irradiance and for chords of
- * outlines of ghosts ten pixels wide. */
+/* Checks that if all light falls inside the image, its sum does not depend on
+ * the azimuth: within 0.5 %, because irradiance is rounded to steps, and
+ * outlines of ghosts ten pixels wide are approximated by chords. */
 TEST(flux_does_not_depend_on_azimuth)
 {
     double least = HUGE_VAL, most = 0;
 
     stage_set_view(&heliar, SIDE, SIDE, 400);
     for (int k = 0; k < 4 * 24; k++) {
-        /* also azimuths close to multiples of 90 degrees */
+        /* includes azimuths close to multiples of 90 degrees */
         const double phi = k % 4 == 0 ? 15.0 * k / 4
                            : k % 4 == 1
                                ? 15.0 * (k / 4) + 1e-9 * (k & 8 ? 1 : -1)
@@ -130,9 +132,9 @@ TEST(flux_does_not_depend_on_azimuth)
                    "");
 }
 
-/* Checks that a light rotated by 90 degrees rotates the image: stop (an
- * octagon) and image (a square) are symmetric. Rows and columns are
- * exchanged, which changes the rounding of edges. */
+/* Checks that rotating a light by 90 degrees rotates the image, as stop (an
+ * octagon) and image (a square) are symmetric. Rows and columns are exchanged,
+ * which changes the rounding of edges. */
 TEST(quarter_turn_of_the_light_rotates_the_image)
 {
     double worst = 0;
@@ -172,7 +174,8 @@ static struct glint_lamp make_light_at_sine(int32_t sine_q30, double power)
     return stage_make_lamp(asin(sine_q30 * 0x1p-30) / DEGREE, 33, power);
 }
 
-/* Returns whether SINE_Q30 is a border between two zones of ghost G. */
+/* Returns whether the angle with the sine SINE_Q30 is a border between two
+ * zones of ghost G. */
 static int is_border_between_zones(const struct glint_lens *lens,
                                    const struct glint_model_ghost *g,
                                    int32_t sine_q30)
@@ -188,8 +191,8 @@ static int is_border_between_zones(const struct glint_lens *lens,
     return ends && begins;
 }
 
-/* Returns the max change of block means, codes, between a light at SINE_Q30
- * and lights with sines 2^-29 smaller and larger. Raises *FLUX to the max
+/* Returns the max change of block means, codes, between a light at SINE_Q30 and
+ * lights whose sines are 2^-29 smaller and larger. Raises *FLUX to the max
  * relative change of the sum of codes. */
 static double measure_jump_of_block_means(int32_t sine_q30, double *flux)
 {
@@ -215,11 +218,11 @@ static double measure_jump_of_block_means(int32_t sine_q30, double *flux)
     return jump;
 }
 
-/* Checks the borders of zones. Neighbouring zones are fitted separately
+/* Checks the borders of angular zones. Neighbouring zones are fitted separately
  * (energy within 0.6 %, interpolation between rays 1 %), so an almost white
- * flat part may change by 2 codes at the border, and by 2 more if one side
- * rounds to the next step of irradiance. A ghost appears and vanishes
- * outside the image, so these borders must be invisible. */
+ * flat part of a ghost may change by 2 codes at the border, and by 2 more if
+ * one side rounds to the next irradiance step. Ghosts appear and vanish outside
+ * the image, so the borders where they do must be invisible. */
 TEST(zone_borders_cause_no_jump)
 {
     const struct glint_lens *lens;
@@ -236,14 +239,14 @@ TEST(zone_borders_cause_no_jump)
             const int32_t border[2] = {s->sine_lo_q30, s->sine_hi_q30};
 
             for (int e = 0; e < 2; e++) {
-                /* The axis is not a border; angles above 30 degrees are not
-                 * tested. */
+                /* the axis is not a border; angles above 30 degrees are not
+                 * tested */
                 if (border[e] == 0 || border[e] > 0.5 * 0x1p30)
                     continue;
                 if (is_border_between_zones(lens, ghost, border[e])) {
                     if (e == 0)
-                        /* measured as the upper border of the neighbouring
-                         * zone */
+                        /* this border is measured as the upper border of the
+                         * neighbouring zone */
                         continue;
                     inner = fmax(inner,
                                  measure_jump_of_block_means(border[e], &flux));
@@ -267,9 +270,9 @@ TEST(zone_borders_cause_no_jump)
 
 /* ------------------------------------------------------------- wide angles */
 
-/* Checks that up to 60 degrees the model draws the light, that a light at a
- * larger angle is counted and draws nothing, and that all pixels are defined
- * up to the horizon. */
+/* Checks that the model draws lights up to 60 degrees, that a light at a larger
+ * angle is counted but not drawn, and that all pixels up to the horizon are
+ * defined. */
 TEST(wide_angles_up_to_60_degrees_are_drawn)
 {
     static const double theta[] = {59.9, 60, 60.0001, 89, 89.9, 90};
@@ -288,7 +291,8 @@ TEST(wide_angles_up_to_60_degrees_are_drawn)
                     "dB");
 }
 
-/* Checks that a ball lens, which sees in all directions, also has 45 dB. */
+/* Checks that images of a ball lens, which sees in all directions, also have a
+ * PSNR of 45 dB. */
 TEST(ball_lens_matches_exact_rays)
 {
     static struct stage ball;
@@ -319,7 +323,7 @@ TEST(ball_lens_matches_exact_rays)
 /* ----------------------------------------------------------- pixel borders */
 
 /* Checks that a light imaged to the corner of a pixel or tile is drawn as
- * exactly as others, and that crossing it causes no jump. */
+ * exactly as other lights, and that crossing the corner causes no jump. */
 TEST(lights_on_pixel_borders_cause_no_jump)
 {
     static const double at[][2] = {{120, 80},  {64, 64},   {128, 64},  {0, 0},
@@ -346,7 +350,7 @@ TEST(lights_on_pixel_borders_cause_no_jump)
     }
     assert_at_least("angles: lights on borders of pixels and tiles", worst, 45,
                     "dB");
-    /* The grid's orientation also changes when a lamp passes the axis. */
+    /* when a lamp passes the axis, the orientation of the grid changes, too */
     assert_at_most("angles: across the border of a pixel", jump, GRID_CODES,
                    "codes");
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests caustics: all light of a lens arrives and folds have the right
- * brightness, with a ghost in focus, as a point, or a hundred times larger than
- * the frame.
+ * Tests caustics: the total light of the lens is right and folds have the
+ * right brightness, for ghosts that are in focus, are points, or are a hundred
+ * times larger than the frame.
  */
 #include <math.h>
 #include <stdint.h>
@@ -27,10 +27,10 @@ static double find_peak_light(const float *rgb)
     return most;
 }
 
-/* Checks that the total light of all ghosts, including folds and foci,
- * equals that of the exact image within 1 % (outlines are 0.1 pixel off,
- * ghosts about twenty pixels wide). At its edge a fold's irradiance is
- * unbounded, but a pixel averages it; the grid may be off by 10 % there. */
+/* Checks that the total light of all ghosts, including folds and foci, equals
+ * that of the exact image within 1 % (outlines are displaced by 0.1 pixel,
+ * ghosts about twenty pixels wide). The irradiance at the edge of a fold is
+ * unbounded, but a pixel averages it; there the grid may deviate by 10 %. */
 TEST(folded_ghosts_keep_their_light)
 {
     double flux = 0, high = 0;
@@ -54,7 +54,8 @@ TEST(folded_ghosts_keep_their_light)
                    "");
 }
 
-/* Makes a lens with a single ghost and its sensor GAP_MM behind the stop. */
+/* Makes a lens that has a single ghost, with its sensor GAP_MM behind the
+ * stop. */
 static void open_singlet_with_gap(double gap_mm, double f_number)
 {
     char text[300];
@@ -71,8 +72,8 @@ static void open_singlet_with_gap(double gap_mm, double f_number)
     assert_true(stage_set_up_lens(&stage, 0));
 }
 
-/* Returns the gap at which paraxial rays of the ghost meet on the sensor,
- * mm; behind the stop they are straight lines. */
+/* Returns the distance behind the stop, mm, at which paraxial rays of the ghost
+ * meet; behind the stop rays are straight. */
 static double compute_ghost_focus_mm(void)
 {
     const struct glint_ghost ghost = {0, 1};
@@ -92,10 +93,10 @@ static double compute_ghost_focus_mm(void)
     return 5 + x[0] / (x[0] - x[1]);
 }
 
-/* Checks a ghost whose paraxial rays focus on the sensor: a point with a halo
- * of aberrations. 6 % of the light may be missing, as the outermost part of the
- * halo is next to rays that total reflection removes, and cells with two
- * invalid corners are not drawn. */
+/* Checks a ghost whose paraxial rays meet on the sensor: a point with a halo of
+ * aberrations. 6 % of the light may be missing: next to the outermost part of
+ * the halo, rays are totally reflected, and cells with two invalid
+ * corners are not drawn. */
 TEST(focused_ghost_keeps_its_light)
 {
     double flux = 0;
@@ -115,7 +116,7 @@ TEST(focused_ghost_keeps_its_light)
     assert_at_most("caustics: a ghost in focus, flux", flux, 0.06, "");
 }
 
-/* Returns the sum of the 7 x 7 pixels around pixel AT. */
+/* Returns the sum of the 7 x 7 pixels centred at pixel AT. */
 static double sum_pixels_around(const float *rgb, int at)
 {
     double sum = 0;
@@ -136,17 +137,17 @@ static int find_brightest_pixel(const float *rgb)
     return most / 3;
 }
 
-/* Checks a stopped-down ghost that is a point with cells smaller than 1/256
- * pixel, the precision of corners: its light must arrive. Only light around the
- * point is compared, since near total reflection faint light lands far away and
- * the exact image would need a grid of a thousand cells. 2 % are allowed: at
- * f/400 the exact grid has only six rays across the stop. Images by exact rays,
- * which are interpolated, lose up to 6.3 % there. */
+/* Checks the light of a ghost that is a point when stopped down, with cells
+ * smaller than 1/256 pixel, the precision of cell corners. Compares only the
+ * light around the point: rays near total reflection scatter faint light far
+ * away, for which the exact image would need a grid of a thousand cells. Allows
+ * 2 %, as at f/400 the exact grid has only six rays across the stop. Images by
+ * exact rays, which are interpolated, lose up to 6.3 % there. */
 TEST(ghost_smaller_than_corner_precision_keeps_its_light)
 {
     static const double f_number[] = {80, 150, 400};
     const double focus = compute_ghost_focus_mm();
-    /* max errors: exact rays; models; exact rays at f/400 */
+    /* max errors of: exact rays; models; exact rays at f/400 */
     double apart[3] = {0, 0, 0};
 
     for (int k = 0; k < 6; k++) {
@@ -178,8 +179,8 @@ TEST(ghost_smaller_than_corner_precision_keeps_its_light)
                    0.02, "");
 }
 
-/* Checks a frame that shows a hundredth of a ghost: a few cells, thousands
- * of pixels wide, have the light of the exact image. */
+/* Checks a frame that shows a hundredth of a ghost: a few cells that are
+ * thousands of pixels wide have the light of the exact image. */
 TEST(huge_ghost_has_the_light_of_exact_rays)
 {
     const struct glint_lamp lamp = stage_make_lamp(2, 33, 1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws extreme frames: one pixel, one row, 8192 x 8192, odd sizes, padded rows
- * and negative strides.
+ * Checks images of extreme frames: one pixel, one row, 8192 x 8192, odd sizes,
+ * padded rows and negative strides.
  */
 #include <math.h>
 #include <stdint.h>
@@ -14,8 +14,9 @@
 
 static struct stage heliar;
 
-/* Power at which a light 7.5 degrees off the axis is well exposed at one
- * pixel per mm. The power needed grows with the square of the pixels per mm. */
+/* Power at which a light 7.5 degrees off the axis is well exposed in an image
+ * of one pixel per mm. The required power grows with the square of the pixels
+ * per mm. */
 static double power_of_mm;
 
 TEST_OPEN
@@ -38,7 +39,8 @@ static void *allocate_image_bytes(size_t bytes)
     return p;
 }
 
-/* Draws onto an image of FORMAT and WIDTH x HEIGHT with PX_MM pixels per mm. */
+/* Draws a lamp into an image of FORMAT and size WIDTH x HEIGHT, with PX_MM
+ * pixels per mm. */
 static void draw_lamp_in_format(enum glint_pixel_format format, int width,
                                 int height, double px_mm, uint8_t *bytes)
 {
@@ -53,10 +55,10 @@ static void draw_lamp_in_format(enum glint_pixel_format format, int width,
 
 /* ------------------------------------------------------------------- sizes */
 
-/* Returns the number of samples of a small image that differ from the middle
- * of a larger image of the same scale and parity of sides. None may differ,
- * unless one frame drops a ghost as invisible that the other draws, as
- * off-screen light counts as lit in the larger one. */
+/* Returns the number of samples of a small image that differ from the middle of
+ * a larger image with the same scale and parity of sides. None may differ,
+ * except if one frame drops a ghost as invisible that the other draws: in the
+ * larger image, light outside the small one counts as visible. */
 static int count_differing_samples(int width, int height, const uint8_t *large,
                                    int large_w, int large_h, double px_mm)
 {
@@ -97,8 +99,8 @@ TEST(every_size_is_part_of_a_larger_frame)
                    n, 0, "samples");
 }
 
-/* Checks that the middle of the largest frame equals a small frame: no loss
- * of precision far from the middle, no overflow. */
+/* Checks that the middle of the largest frame equals a small frame, which shows
+ * that nothing overflows or loses precision far from the middle. */
 TEST(middle_of_the_largest_frame_is_exact)
 {
     enum { SIDE = 8192, MIDDLE = 512 };
@@ -125,7 +127,7 @@ TEST(middle_of_the_largest_frame_is_exact)
                    "samples");
 }
 
-/* Checks that the middles of the longest frames equal short frames. */
+/* Checks that the middles of the longest possible frames equal short frames. */
 TEST(middle_of_the_longest_frames_is_exact)
 {
     enum { LONG = GLINT_MAX_SIDE, SHORT = 64, MIDDLE = 512 };
@@ -160,9 +162,9 @@ TEST(middle_of_the_longest_frames_is_exact)
 
 /* ----------------------------------------------------------------- strides */
 
-/* Draws with rows padded by PAD bytes, bottom row first if DOWN is -1.
- * Returns the number of rows that differ plus the number of bytes written
- * outside the rows. */
+/* Draws an image with rows padded by PAD bytes, bottom row first if DOWN is -1.
+ * Returns the number of rows that differ from an image without padding, plus
+ * the number of bytes written outside the rows. */
 static int count_wrong_samples_of_layout(enum glint_pixel_format format,
                                          int pad, int down)
 {
@@ -200,7 +202,8 @@ static int count_wrong_samples_of_layout(enum glint_pixel_format format,
 
             n += memcmp(row, plain.plane[p] + y * plain.stride_bytes[p],
                         bytes) != 0;
-            memset(row, 90, bytes); /* afterwards all bytes must be 90 again */
+            /* after the test all bytes must be 90 again */
+            memset(row, 90, bytes);
         }
     for (int i = 0; i < ROOM; i++)
         n += got[i] != 90;
@@ -212,7 +215,7 @@ TEST(strides_do_not_change_the_image)
     int n = 0;
 
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
-        /* YUYV and UYVY need even strides, int32 multiples of 4. */
+        /* YUYV and UYVY need even strides, int32 needs multiples of 4 */
         n += count_wrong_samples_of_layout((enum glint_pixel_format)format, 52,
                                            1);
         n += count_wrong_samples_of_layout((enum glint_pixel_format)format, 0,
@@ -226,9 +229,9 @@ TEST(strides_do_not_change_the_image)
 
 /* ------------------------------------------------------------------- tiles */
 
-/* Checks that a cell whose sides lie exactly on borders of tiles and pixels
- * lights exactly the pixels inside it, with its exact flux, for every tile
- * size. */
+/* Checks, for every tile size, that a cell whose sides lie exactly on borders
+ * of tiles and pixels adds light to exactly the pixels inside it, with exact
+ * flux. */
 TEST(cells_on_tile_borders_are_exact)
 {
     enum { W = 192, H = 192 };
@@ -246,7 +249,8 @@ TEST(cells_on_tile_borders_are_exact)
                                        .max_refs = 10000};
         const struct glint_bundle b = {.n_cells = 1,
                                        .flux_q31 = 1 << 30,
-                                       .flux_exponent = 13, /* flux 64 x 64 */
+                                       /* a flux of 64 x 64 */
+                                       .flux_exponent = 13,
                                        .rgb_q14 = {16384, 16384, 16384}};
         struct glint_image image =
             glint_image_over(pixels, GLINT_LINEAR_Q20, W, H);

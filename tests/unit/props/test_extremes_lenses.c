@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests extreme lenses: f-numbers up to 1000, stops of 3 to 64 blades, sensors
- * of 1 to 100 mm, focal lengths of 1 mm to 10 m, a lens a thousand times
- * smaller and larger, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and
- * two thousand. Images by models are compared with exact ones.
+ * of 1 to 100 mm, focal lengths of 1 mm to 10 m, a lens scaled by 1/1000 and
+ * 1000, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and two
+ * thousand. Images drawn by models are compared with exact ones.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,10 +15,11 @@
 #include "support/stage.h"
 #include "support/test.h"
 
-/* Images are so small that each takes 0.1 s. A draft (tolerance 4) may be
- * off by 0.12 pixel, in faint ghosts by a pixel, and by 2.4 % in energy: it
- * has 40 dB if ghosts are about ten pixels wide; most lenses reach 50 dB.
- * Flux must be within 3 %: 2.4 % plus an outline 0.1 pixel off. */
+/* Images are so small that each takes 0.1 s. A draft model (tolerance 4) may
+ * displace outlines by 0.12 pixel, in faint ghosts by a pixel, and its energy
+ * may deviate by 2.4 %. This is a PSNR of 40 dB if ghosts are about ten pixels
+ * wide; most lenses reach 50 dB. Flux must be within 3 %: 2.4 % plus outlines
+ * displaced by 0.1 pixel. */
 enum { W = 144, H = 96 };
 
 #define LEAST_DB  40.0
@@ -122,9 +123,9 @@ TEST(extreme_numbers_of_blades_match_exact_rays)
         report_worst_errors("stops of 3 to 64 blades and a circle", worst));
 }
 
-/* Checks that the outline of a round stop 300 pixels wide, whose ghost is
- * otherwise hardly bent, shows no chords. The limit of 50 dB is between the
- * 44.4 dB of 8 cells and the 54.5 dB of the planned cells. */
+/* Checks that the outline of a ghost 300 pixels wide with a round stop, which
+ * is otherwise hardly bent, shows no chords. The limit of 50 dB lies between
+ * the 44.4 dB of 8 cells and the 54.5 dB of the planned number of cells. */
 TEST(outline_of_a_round_stop_shows_no_chords)
 {
     enum { WIDE = 432, HIGH = 288 };
@@ -150,10 +151,10 @@ TEST(outline_of_a_round_stop_shows_no_chords)
                     "dB");
 }
 
-/* Checks that barrels which clip half of the light have nearly the same
- * outline with 8 cells as with 128, as chords lie on both sides of it. 48 dB
- * is between the 46.0 dB of chords inside the outline and the 49.9 dB of
- * chords around it. */
+/* Checks that barrels that clip half of the light need few cells: their outline
+ * with 8 cells is nearly that with 128, as its chords lie on both sides of the
+ * exact outline. The limit of 48 dB lies between the 46.0 dB of chords inside
+ * the outline and the 49.9 dB of chords on both sides. */
 TEST(barrel_outline_needs_few_cells)
 {
     static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
@@ -185,8 +186,8 @@ TEST(barrel_outline_needs_few_cells)
 
 /* ----------------------------------------------------------------- lengths */
 
-/* Checks sensors of several sizes. A model is valid for its film plus a
- * tenth, so a larger sensor needs another model, baked as in
+/* Checks sensors of several sizes. A model is valid for the image size in its
+ * lens table plus a tenth, so a larger sensor needs another model, baked as in
  * tools/glint/model/settings.c. */
 TEST(extreme_sensor_sizes_match_exact_rays)
 {
@@ -207,7 +208,7 @@ TEST(extreme_sensor_sizes_match_exact_rays)
 }
 
 /* Multiplies all lengths of the lens by FACTOR, except the thickness of
- * coatings, which depends on the wavelength. */
+ * coatings, which is relative to the wavelength. */
 static void scale_lens(struct glint_prescription *l, double factor)
 {
     for (int k = 0; k < l->n_surfaces; k++) {
@@ -232,12 +233,11 @@ static void open_scaled_lens(double factor, double max_deg)
     stage_set_view(&stage, W, H, 0);
 }
 
-/* Checks that a lens scaled by 1000 or 1/1000 gives the same image on a
- * scaled film, as without diffraction only angles count. With a power of two
- * the exact image is the same bit by bit; with 1000 rays differ by 1e-15,
- * and single rays may fall on the other side of a threshold. Models are
- * fitted again and must agree to 50 dB; less would reveal a fixed length in
- * mm in the bake. */
+/* Checks that a lens scaled by 1000 or 1/1000 gives the same image on a scaled
+ * sensor: only angles count, as there is no diffraction. For a power of two the
+ * exact image is bit-identical; for 1000 rays differ by 1e-15, and a few may
+ * fall on the other side of a threshold. Models are fitted again and must agree
+ * to 50 dB; a lower PSNR would reveal a fixed length in mm in the bake. */
 TEST(scaled_lens_gives_the_same_image)
 {
     static const double factor[] = {0x1p-10, 0x1p10, 1e-3, 1e3};
@@ -303,7 +303,7 @@ TEST(smallest_ball_lens_matches_exact_rays)
     struct worst worst = make_worst_errors();
 
     stage_free(&stage);
-    /* Radii of 1/100 mm (scaled from 1.1) are the smallest valid ones. */
+    /* Radii of 1/100 mm (1.1, scaled) are the smallest valid radii. */
     assert_true(stage_parse_lens(&stage, "name ball\nf-number 4\nfilm 1 0.7\n"
                                          "surface 1.1 1.1 1 1.5168 64.17\n"
                                          "stop 1.1 0.3\n"
@@ -316,8 +316,8 @@ TEST(smallest_ball_lens_matches_exact_rays)
     assert_true(report_worst_errors("radii of 1e-2 mm", worst));
 }
 
-/* Checks that a surface 28 mm wide with a radius of 1e7 mm, which differs
- * from a plane by 1e-5 mm (1/50 wavelength), gives the image of a plane. */
+/* Checks that a surface 28 mm wide with a radius of 1e7 mm gives the image of a
+ * plane, from which it differs by 1e-5 mm (1/50 wavelength). */
 TEST(almost_plane_surface_matches_exact_rays)
 {
     static const char *const radius[] = {"flat", "1e7", "-1e7", "1e9"};
@@ -349,8 +349,8 @@ TEST(almost_plane_surface_matches_exact_rays)
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Makes a lens of N surfaces with a focal length near 100 mm, the stop
- * behind the first SPLIT of them and the sensor at the focus. */
+/* Makes a lens of N surfaces with a focal length of about 100 mm, the stop
+ * behind the first SPLIT surfaces, and the sensor at the focus. */
 static void open_lens_of_many_surfaces(int n, int split)
 {
     struct glint_prescription *l = &stage.lens;
@@ -360,8 +360,8 @@ static void open_lens_of_many_surfaces(int n, int split)
     assert_true(stage_parse_lens(&stage, doublet));
     l->n_surfaces = n;
     l->stop_after = split;
-    /* Rear surfaces are almost planes, so that all elements have about the
-     * same power. */
+    /* The rear surface of each element is almost plane, so that all elements
+     * have about the same refractive power. */
     for (int k = 0; k < n; k++)
         l->surface[k] = (struct glint_surface){
             .radius_mm = k % 2 ? -3000.0 - 100 * k : 52.0 * n / 2,
@@ -384,9 +384,9 @@ static void open_lens_of_many_surfaces(int n, int split)
     assert_true(stage_set_up_lens(&stage, 8));
 }
 
-/* Checks 2 to 64 surfaces. A single surface has the same medium on both
- * sides and is rejected. Two surfaces with the stop between them have no
- * ghost; more must give the right image. */
+/* Checks lenses of 2 to 64 surfaces. A single surface would have the same
+ * medium on both sides and is rejected. Two surfaces with the stop between them
+ * have no ghost; lenses of more surfaces must give the right image. */
 TEST(lenses_of_2_to_64_surfaces_match_exact_rays)
 {
     static const int n[] = {2, 4, 8, 16, 32, 64};
@@ -428,9 +428,9 @@ TEST(model_without_ghosts_changes_nothing)
     assert_at_most("lenses: no ghosts, samples changed", changed, 0, "samples");
 }
 
-/* Checks 64 surfaces before the stop, which have 2016 pairs. Rays are exact,
- * as baking so many ghosts takes an hour; planning, binning and summing have
- * the same work. */
+/* Checks a lens of 64 surfaces before the stop, which has 2016 pairs of
+ * surfaces. Rays are traced exactly, as baking so many ghosts takes an hour;
+ * planning, binning and summing do the same work. */
 TEST(two_thousand_ghosts_are_drawn)
 {
     const struct glint_lamp lamp = stage_make_lamp(2, 25, 1);

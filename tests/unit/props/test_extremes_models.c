@@ -15,7 +15,7 @@
 
 static struct stage stage;
 
-/* Returns whether drawing a model of FAMILY costs seconds, as it has thousands
+/* Returns whether drawing a model of FAMILY takes seconds, as it has thousands
  * of ghosts. */
 static bool is_slow_family(int family)
 {
@@ -29,8 +29,8 @@ static bool is_model_drawn(int family, int number)
            (number == 3 && !is_slow_family(family));
 }
 
-/* Work may exceed its limit by this factor, as plans estimate it roughly,
- * and replanning (coarser or with more memory) costs work as well. */
+/* Work may exceed its limit by this factor: plans only estimate it, and
+ * planning again (coarser or with more memory) is work as well. */
 #define MOST_WORK 1.5
 
 TEST(hostile_models_stay_within_their_bounds)
@@ -57,7 +57,7 @@ TEST(hostile_models_stay_within_their_bounds)
             memory = fmax(memory, r.bytes / r.most_bytes);
         }
     stage_free(&stage);
-    /* Most models must be valid, so that they are actually drawn. */
+    /* enough models must be valid, so that drawing them is tested */
     assert_true(n_of[HOSTILE_COARSER] >= 2);
     assert_true(n_of[HOSTILE_DRAWN] >= 5);
     assert_at_most("models: hostile ones, frames that failed", n_failed, 0,

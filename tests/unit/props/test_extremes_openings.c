@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests one model for all f-numbers: baked for the full opening, then stopped
- * down, it is compared with exact images and with models baked at that
- * f-number. The image must change continuously from full opening to an eleventh
- * of it, as from f/2 to f/22.
+ * Tests one model for all f-numbers: it is baked for the full aperture, then
+ * stopped down, and compared with exact images and with models baked at that
+ * f-number. The image must change continuously while the stop closes to an
+ * eleventh of its diameter, as from f/2 to f/22.
  */
 #include <math.h>
 #include <stdint.h>
@@ -38,7 +38,7 @@ static void open_doublet_wide_open(int n_blades)
     stage_set_view(&stage, W, H, 0);
 }
 
-/* Draws the lens by a model baked at F_NUMBER. */
+/* Draws the lens by a model that was baked at F_NUMBER. */
 static void draw_by_model_of_f_number(double f_number, int n_blades,
                                       const struct glint_lamp *lamp)
 {
@@ -88,8 +88,8 @@ TEST(stopped_down_model_matches_exact_rays)
         is_near);
 }
 
-/* Checks that a stopped-down model gives the image of a model baked there,
- * with at most a third more edges. */
+/* Checks that a model stopped down to an f-number gives the image of a model
+ * baked at that f-number, with at most a third more edges. */
 TEST(stopped_down_model_equals_a_native_one)
 {
     static const double f[] = {8, 22};
@@ -123,7 +123,7 @@ static double encode_srgb(double x)
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
 }
 
-/* Sets MEAN to the means of green over blocks of 8 x 8 pixels, codes. */
+/* Sets MEAN to the means of the green codes over blocks of 8 x 8 pixels. */
 static void compute_block_means(const float *rgb, double exposure, double *mean)
 {
     memset(mean, 0, BLOCKS * sizeof *mean);
@@ -133,9 +133,9 @@ static void compute_block_means(const float *rgb, double exposure, double *mean)
                 encode_srgb(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
 }
 
-/* Checks, while the stop closes and ghosts shrink, that the error of a block
- * against the exact image changes by at most 1.5 codes per frame, while
- * blocks of the exact image change by tens of codes. */
+/* Checks, while the stop closes and ghosts shrink, that the error of each block
+ * against the exact image changes by at most 1.5 codes per frame. The blocks of
+ * the exact image change by tens of codes. */
 TEST(closing_stop_causes_no_jump)
 {
     const int frames = extreme_is_long_run() ? 100 : 34;
@@ -154,8 +154,8 @@ TEST(closing_stop_causes_no_jump)
         assert_true(stage_draw_exact(&stage, &lamp, 1, 128, exact));
         if (k == 0)
             exposure = stage_find_exposed_power(&stage, &lamp);
-        /* The ghosts' irradiance is constant, while the direct image gets
-         * fainter. */
+        /* the ghosts' irradiance stays constant, while the direct image gets
+         * darker */
         compute_block_means(drawn, exposure * pow(OPEN_F / f, 2), now);
         compute_block_means(exact, exposure * pow(OPEN_F / f, 2), exactly);
         for (int b = 0; k > 0 && b < BLOCKS; b++) {

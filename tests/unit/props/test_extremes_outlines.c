@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the accuracy of outlines with --error, in pixels: compares the position
- * of each ghost's outline in grids for that error with the finest grid.
+ * Tests the accuracy of outlines with --error, in pixels: compares the
+ * position of each ghost's outline, drawn with the grid that is chosen for
+ * that error, with its position in the finest grid.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,15 +22,16 @@ static const double error_px[ERRORS] = {0.05, 0.1, 0.25, 0.5, 1};
 static struct stage stage;
 static float finest[N], drawn[N];
 
-/* Offsets of all outline positions, pixels. */
+/* Statistics of the offsets of all measured outline positions, pixels. */
 struct offsets {
     int n;
     double sum, squares, most;
 };
 
-/* Returns the position of an outline, pixels from the start of a window of
- * pixels across it: the light of the window / the light of the pixel before it.
- * AT is the last pixel of the inner part; STEP leads outwards. */
+/* Returns the position of an outline in a window of pixels across it, pixels
+ * from the start of the window: the light of the window divided by the light of
+ * the pixel before it. AT is the last pixel of the inner part; STEP leads
+ * outwards. */
 static double find_outline_position(const float *rgb, int at, int step)
 {
     double sum = 0;
@@ -39,8 +41,8 @@ static double find_outline_position(const float *rgb, int at, int step)
     return sum / (double)rgb[at - 3 * step];
 }
 
-/* Returns whether the outline can be measured: even light inside, no light
- * outside. */
+/* Returns whether the outline at AT can be measured: the light inside is even,
+ * and there is no light outside. */
 static bool is_clean_outline(const float *rgb, int at, int step)
 {
     const double first = (double)rgb[at - INSIDE * step];
@@ -54,7 +56,8 @@ static bool is_clean_outline(const float *rgb, int at, int step)
     return first > 0 && (double)rgb[at] < 0.98 * first;
 }
 
-/* Returns the squared cosine between STEP and the gradient of the light. */
+/* Returns the squared cosine of the angle between STEP and the gradient of the
+ * light. */
 static double gradient_cosine2(const float *rgb, int at, int step)
 {
     const int aside = step == 3 || step == -3 ? 3 * W : 3;
@@ -114,7 +117,7 @@ static void add_offsets_at_angle(double theta_deg, struct offsets *o)
         for (int k = 0; k < ERRORS; k++) {
             f->dials =
                 glint_quality_at(glint_quality_for_error(error_px[k])).dials;
-            /* Quantised irradiance does not matter for outlines. */
+            /* rounding irradiance to steps does not affect outlines */
             f->dials.irradiance_steps = 0;
             assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
             add_outline_offsets_of_ghost(&o[k]);
@@ -122,9 +125,9 @@ static void add_offsets_at_angle(double theta_deg, struct offsets *o)
     }
 }
 
-/* Checks that no outline is off by more than 1.5 times --error plus 1/20
- * pixel, as grids depend on the mean bend of a ghost; and, since most are
- * far better, that the mean is at most a fifth of --error. */
+/* Checks that no outline is displaced by more than 1.5 times --error plus 1/20
+ * pixel, as grids depend on the mean bend of a ghost; and that the mean offset
+ * is at most a fifth of --error, as most outlines are far more exact. */
 static void check_outline_offsets(const char *lens)
 {
     struct offsets o[ERRORS] = {{0, 0, 0, 0}};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests extreme powers: from 1e-6 of white to a thousand suns, zero, and
- * invalid numbers in files.
+ * Tests extreme powers: from 1e-6 of white to a thousand suns, a power of
+ * zero, and invalid numbers in files.
  */
 #include <math.h>
 #include <stdint.h>
@@ -28,10 +28,11 @@ TEST_OPEN
 
 /* ------------------------------------------------------------- linear light */
 
-/* Checks that linear images are proportional to the power. They are drawn at
- * a power-of-two scale, so for powers of two each image equals that of power
- * 1 bit by bit. For powers of ten, irradiance rounds to other steps of 1 %,
- * and pixels may be off by half a step; their sum must be within 0.1 %. */
+/* Checks that linear images are proportional to the power of the lamp. They are
+ * drawn at a scale that is a power of two. So for powers of two each image
+ * equals that of power 1 bit by bit. For powers of ten, irradiance rounds to
+ * other steps of 1 %, and pixels may deviate by half a step; their sum must be
+ * within 0.1 %. */
 TEST(image_is_linear_in_power)
 {
     const struct glint_lamp lamp = stage_make_lamp(7.5, 33, 1);
@@ -63,10 +64,10 @@ TEST(image_is_linear_in_power)
 
 /* ------------------------------------------------------------------- codes */
 
-/* Checks, while the power rises by factors of 4 (of 10 000 above 1e9) from
- * below one code to saturation, that no sample becomes darker than the
- * ground or than at the previous power, as by a sum that wraps. The
- * brightest light leaves all pixels white that it reaches. */
+/* Raises the power by factors of 4 (above 1e9 by 10 000), from below one code
+ * to saturation. Checks that no sample becomes darker than the background or
+ * than at the previous power, as it would if a sum wrapped. The brightest light
+ * must make all pixels white that it reaches. */
 TEST(more_power_never_darkens_codes)
 {
     uint64_t r = 5;
@@ -85,8 +86,8 @@ TEST(more_power_never_darkens_codes)
             last[i] = codes[0][i];
         }
     }
-    /* At the last power, 1e29, every pixel that light reaches is white,
-     * except those that an edge crosses. */
+    /* At the last power, 1e29, every pixel that light reaches is white, except
+     * for pixels on edges. */
     for (int i = 0; i < N; i++) {
         lit += last[i] != ground[i];
         white += last[i] == 255 && ground[i] != 255;
@@ -99,8 +100,8 @@ TEST(more_power_never_darkens_codes)
                     (double)white / lit, 0.999, "");
 }
 
-/* Checks that a power of 0, below 0 or NaN draws nothing, alone and next to
- * a light, in codes and in linear light. */
+/* Checks that a power of 0, below 0 or NaN draws nothing, whether alone or next
+ * to another light, in codes and in linear light. */
 TEST(invalid_powers_draw_nothing)
 {
     const double none[] = {
@@ -145,8 +146,8 @@ static enum glint_status read_lamp_list_text(const char *text,
     return status;
 }
 
-/* Checks that a lamp power in a file that cannot be drawn is rejected with its
- * line number. */
+/* Checks that a file with a lamp power that cannot be drawn is rejected with
+ * the line number. */
 TEST(rejects_invalid_powers_in_files)
 {
     static const char *const bad[] = {"nan",       "inf",   "-inf", "-1",

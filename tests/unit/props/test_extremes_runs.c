@@ -41,9 +41,9 @@ static long read_resident_kib(void)
     return pages * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-/* Sets the lamps of frame K: one leaves the image on one side, enters on the
- * other and passes near the axis; a second one appears and vanishes, so that
- * the memory needed rises and falls. Returns the number of lamps. */
+/* Sets the lamps of frame K. One leaves the image on one side, enters on the
+ * other side and passes near the axis; a second one appears and vanishes, so
+ * that the memory needed rises and falls. Returns the number of lamps. */
 static int set_lamps_of_frame(int k, struct glint_lamp *lamp)
 {
     const double t = 6.283185307179586 * k / ROUND;
@@ -87,7 +87,7 @@ TEST(repeated_frames_are_identical)
     }
     if (extreme_is_long_run())
         fprintf(stderr, "\r%d frames            \n", n);
-    /* Frames must differ, or the comparison would prove nothing. */
+    /* frames must differ, otherwise the comparison would prove nothing */
     assert_true(first[0] != first[ROUND / 4]);
     assert_at_most(
         extreme_is_long_run()
@@ -97,7 +97,7 @@ TEST(repeated_frames_are_identical)
     assert_int_equal(heliar.frame.memory.bytes, bytes);
 #ifndef GLINT_SANITIZED
     /* stdio and the allocator may need this memory once, for any number of
-     * frames. */
+     * frames */
     assert_at_most("runs: memory at the end, above the second round's",
                    (double)(read_resident_kib() - resident), 256, "KiB");
 #else

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests extreme scenes: grazing views and lights, sizes from 1e-6 to 1e6,
- * lights from 1e-6 to 1e9, objects behind and around the camera, images of one
- * pixel and 8192 wide. The integer renderer is compared with the reference
- * renderer, one sample per pixel, excluding silhouettes and shadow edges.
+ * light powers from 1e-6 to 1e9, objects behind and around the camera, images
+ * of one pixel and of 8192 pixels in a row. The integer renderer is compared
+ * with the reference renderer at one sample per pixel, except on silhouettes
+ * and shadow edges.
  */
 #include <math.h>
 #include <stdint.h>
@@ -20,12 +21,13 @@
 /* light at which the run time saturates */
 #define MOST_LIGHT 2047.0
 
-/* Errors of an image, or the largest errors of several images. */
+/* Errors of one image, or the largest errors of several images. */
 struct outcome {
-    /* PSNR of light up to 1, in pixels whose neighbours show the same object */
+    /* PSNR of the light, clamped to 1, in pixels whose neighbours show the same
+     * object */
     double db;
     double wrong; /* fraction of all pixels that show another object */
-    double share; /* max error of light / (light + 1/255) */
+    double share; /* max error of the light divided by (light + 1/255) */
 };
 
 static void parse_scene_text(struct glint_description *scene, const char *text)
@@ -39,7 +41,7 @@ static void parse_scene_text(struct glint_description *scene, const char *text)
         fail_msg("%s", error.text);
 }
 
-/* Draws SCENE by the integer renderer in linear light. */
+/* Draws SCENE with the integer renderer in linear light. */
 static void draw_scene_linear(const struct glint_description *scene, int width,
                               int height, int32_t *light_q20)
 {
@@ -68,8 +70,8 @@ static void draw_scene_linear(const struct glint_description *scene, int width,
     free(data);
 }
 
-/* Returns whether pixel (X, Y) of the reference shows the same as its
- * neighbours. */
+/* Returns whether the reference shows the same object at pixel (X, Y) and at
+ * its neighbours. */
 static int is_inside_object(const struct twin_pixel *p, int width, int height,
                             int x, int y)
 {
@@ -90,8 +92,8 @@ static int is_inside_object(const struct twin_pixel *p, int width, int height,
     return 1;
 }
 
-/* Draws TEXT at WIDTH x HEIGHT with both renderers and raises the errors in
- * WORST. */
+/* Draws TEXT at WIDTH x HEIGHT with both renderers. Raises the errors in WORST
+ * to those of this image. */
 static void compare_renderers(const char *text, int width, int height,
                               struct outcome *worst)
 {
@@ -132,8 +134,8 @@ static void compare_renderers(const char *text, int width, int height,
     free(light_q20);
 }
 
-/* Prints the errors of WORST, for scenes of type WHAT, with their limits,
- * and checks them. */
+/* Prints the errors in WORST and their limits, for scenes of type WHAT, and
+ * checks them. */
 static void check_worst_errors(const char *what, const struct outcome *worst)
 {
     char name[96];
@@ -149,8 +151,8 @@ static void check_worst_errors(const char *what, const struct outcome *worst)
         .db = HUGE_VAL \
     }
 
-/* Checks a floor seen and lit at ever flatter angles, and a ball hit by
- * grazing rays. */
+/* Checks a floor that is seen and lit at increasingly grazing angles, and a
+ * ball hit by grazing rays. */
 TEST(grazing_rays_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
@@ -200,8 +202,8 @@ TEST(tiny_and_huge_objects_match_the_reference)
     check_worst_errors("sizes 1e-6 to 1e3", &worst);
 }
 
-/* Checks a sun, whose light does not depend on positions, on objects up to
- * 1e6 wide. */
+/* Checks objects of sizes up to 1e6 lit by a sun, whose light does not depend
+ * on position. */
 TEST(large_objects_in_sunlight_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
@@ -222,8 +224,8 @@ TEST(large_objects_in_sunlight_match_the_reference)
                     60, "dB");
 }
 
-/* Checks lamps and suns of any power: objects are proportionally bright up
- * to saturation. */
+/* Checks lamps and suns of any power: the brightness of objects is proportional
+ * to it up to saturation. */
 TEST(extreme_light_powers_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
@@ -262,8 +264,8 @@ TEST(objects_behind_the_camera_match_the_reference)
         "triangle t -1 -1 2  1 -1 2  0 1 2 material m\n",
         "triangle t -9 -1 9  9 -1 9  0 -1 -40 material m\n",
         "triangle t -9 -1e-3 9  9 -1e-3 9  0 -1e-3 -40 material m\n",
-        /* At 1e5 all corners would lie on the horizon within 1/512 pixel:
-         * such a floor is a plane. */
+        /* At 1e5 all corners would lie within 1/512 pixel of the horizon; a
+         * floor as large as this must be a plane. */
         "triangle t -2e4 -1 2e4  2e4 -1 2e4  0 -1 -2e4 material m\n",
         "plane p at 0 0 2 normal 0 0 1 material m\n",
         "plane p at 0 -1e-3 0 normal 0 1 .001 material m\n"};
@@ -323,7 +325,7 @@ TEST(extreme_materials_match_the_reference)
                  "plane floor at 0 -1 0 normal 0 1 0 material w\n",
                  materials[i]);
         compare_renderers(text, 160, 90, &worst);
-        /* the same materials seen from inside the ball, near its rim */
+        /* the same materials seen from inside the ball, close to its rim */
         snprintf(text + strlen(text), sizeof text - strlen(text),
                  "camera fov 90 at .9 0 -4 toward .9 0 -9\n");
         compare_renderers(text, 160, 90, &worst);

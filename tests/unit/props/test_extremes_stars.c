@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests extreme starbursts: powers from 2^-20 to 2^30, positions from a pixel's
- * corner to 1000 pixels off-screen, stops of 3 to 64 blades and a circle.
+ * Tests extreme starbursts: powers from 2^-20 to 2^30, positions at pixel
+ * corners and up to 1000 pixels off-screen, stops of 3 to 64 blades and
+ * circular stops.
  */
 #include <math.h>
 #include <stdint.h>
@@ -19,8 +20,8 @@ enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 static const int blades[] = {0, 3, 6, 64};
 static const double airy_px[] = {0.02, 0.4, 4};
 
-/* Positions: centre and corner of a pixel, corner and sides of the image,
- * and 1000 pixels off two sides. */
+/* Positions of lights: centre and corner of a pixel, corner and sides of the
+ * image, and 1000 pixels off two sides. */
 static const double place[][2] = {
     {48.5, 41.5},   {48, 41},   {0, 0},      {WIDTH, HEIGHT},
     {WIDTH, 40.25}, {50.75, 0}, {-1000, 40}, {50, 1000 + HEIGHT}};
@@ -30,8 +31,8 @@ static int32_t linear_q20[N];
 static uint8_t codes[N], others[N];
 
 /* Returns the max relative difference between the drawn star of a light of
- * power 2^POWER_LOG2 at AT and its tables; differences below one step of a
- * linear image are ignored. */
+ * power 2^POWER_LOG2 at AT and the star's tables. Ignores differences below one
+ * step of a linear image. */
 static double max_relative_difference(const struct glint_star_tables *t,
                                       const double at[2], int power_log2)
 {
@@ -78,8 +79,8 @@ TEST(distant_star_light_matches_direct_sums)
                    0.03, "");
 }
 
-/* Checks that the position of a light inside its pixel does not change its
- * star's total light. */
+/* Checks that the total light of a star does not depend on the position of its
+ * light inside the pixel. */
 TEST(position_in_the_pixel_keeps_star_light)
 {
     static const double within[][2] = {
@@ -113,7 +114,7 @@ TEST(position_in_the_pixel_keeps_star_light)
                    most, 0.005, "");
 }
 
-/* Checks that twice the power nowhere gives less light, and that an
+/* Checks that doubling the power gives less light in no pixel, and that an
  * invisible power gives none. */
 TEST(more_power_never_darkens_stars)
 {

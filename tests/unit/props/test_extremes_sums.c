@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests sums at their limits: thousands of lights, bundles that sum to the max
- * value of an image and above it, and the range checks of CONFIG=qcheck.
+ * Tests sums of light at their limits: thousands of lights, bundles that sum
+ * to the max value of an image and above it, and the range checks of
+ * CONFIG=qcheck.
  */
 #include <math.h>
 #include <signal.h>
@@ -29,8 +30,8 @@ TEST_OPEN
 
 /* ------------------------------------------------------------------ lights */
 
-/* Checks that 10 000 lights at one position give the image of one light of
- * 10 000 times the power; their powers are added with 31 bits. */
+/* Checks that 10 000 lights at one position give the image of one light of 10
+ * 000 times the power; their powers are summed with 31 bits. */
 TEST(ten_thousand_lights_at_one_position_add_up)
 {
     const struct glint_lamp sum = stage_make_lamp(7.5, 33, LIGHTS);
@@ -49,9 +50,9 @@ TEST(ten_thousand_lights_at_one_position_add_up)
                    "of the brightest pixel");
 }
 
-/* Checks that lights spread over the frame are merged to 128 without loss of
- * light. Merged lights draw their ghosts in one place, so some of the light
- * leaves the frame: 3 % are allowed. */
+/* Checks that lights distributed over the frame are merged to 128 without loss
+ * of light. Merged lights draw their ghosts in one place, which moves some
+ * light out of the frame: 3 % are allowed. */
 TEST(spread_lights_are_merged_without_loss)
 {
     const int n = extreme_is_long_run() ? LIGHTS : 1000;
@@ -76,7 +77,8 @@ TEST(spread_lights_are_merged_without_loss)
                    fabs(stage_sum_image(&heliar, test) / whole - 1), 0.03, "");
 }
 
-/* Checks that 10 000 suns give white everywhere, without a sum that wraps. */
+/* Checks that 10 000 suns make every pixel white, which shows that no sum
+ * wraps. */
 TEST(ten_thousand_suns_give_white)
 {
     static uint8_t codes[N];
@@ -98,10 +100,10 @@ TEST(ten_thousand_suns_give_white)
 
 enum { SIDE = 64, MANY = 1 << 15 };
 
-/* Draws COUNT bundles of 2^LOG2 times white over the whole image, in codes
- * and in linear light. Returns the value of each pixel in linear light, or
- * -1 if pixels differ or codes are not white. Sets HELD to the counts of
- * clamped values: cells before they were added, and samples. */
+/* Draws COUNT bundles of 2^LOG2 times white over the whole image, in codes and
+ * in linear light. Returns the linear light of the pixels, or -1 if pixels
+ * differ or codes are not white. Sets HELD to the numbers of clamped values: of
+ * cells before they were added, and of samples. */
 static double draw_overlapping_bundles(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
@@ -113,7 +115,7 @@ static double draw_overlapping_bundles(int count, int log2, int held[2])
                                    .max_refs = 8 * count};
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
-                                   /* 1 per pixel of 64 x 64 */
+                                   /* light of 1 per pixel in 64 x 64 pixels */
                                    .flux_exponent = 13 + log2,
                                    .rgb_q14 = {16384, 16384, 16384}};
     static int32_t linear[3 * SIDE * SIDE];
@@ -146,7 +148,7 @@ static double draw_overlapping_bundles(int count, int log2, int held[2])
     image.format = GLINT_RGB24;
     glint_image_place(&image, codes);
     glint_flare_draw(f, &image);
-    /* Saturation of codes is not counted. */
+    /* saturated codes are not counted as clamped */
     assert_int_equal(glint_flare_held(f), 0);
     free(mem);
     value = linear[0] == INT32_MAX ? 2048 : linear[0] / 1048576.0;
@@ -156,10 +158,10 @@ static double draw_overlapping_bundles(int count, int log2, int held[2])
     return value;
 }
 
-/* Checks that a pixel of linear light, which is limited to just below 2048
- * times white, is exact below and saturates above. A cell adds at most 2048
- * to a pixel, and all cells together 2^24; more is clamped before it is
- * added (by_edges.c). Both clamps must be counted. */
+/* Checks that pixels of linear light are exact below the limit, just under 2048
+ * times white, and saturate above. One cell adds at most 2048 to a pixel, and
+ * all cells together at most 2^24; more is clamped before it is added
+ * (by_edges.c). Both clamps must be counted. */
 TEST(piled_light_saturates)
 {
     static const struct {
@@ -197,7 +199,7 @@ TEST(piled_light_saturates)
 
 /* ------------------------------------------------------------------- traps */
 
-/* Calls F in a child process. Returns whether F ended in a trap. */
+/* Calls F in a child process. Returns whether a trap ended the process. */
 static int call_ends_in_trap(void (*f)(void))
 {
     const pid_t pid = fork();
@@ -246,8 +248,8 @@ static void multiply_above_range(void)
     sink = q_mul((int32_t)(INT32_MAX * one), INT32_MAX, 30);
 }
 
-/* Checks that the limits of each range pass in every build, and that one
- * step above traps only in builds that check ranges. */
+/* Checks that values at the limits of each range pass in every build, and that
+ * values one step beyond trap only in builds that check ranges. */
 TEST(only_checked_builds_trap_out_of_range)
 {
 #ifdef GLINT_Q_CHECK

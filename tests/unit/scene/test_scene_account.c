@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the statistics of a scene: the fate of each object, which object covers
- * it, and counts with known values.
+ * Tests the statistics of a scene: what became of each object (drawn, hidden,
+ * ...), which object covers it, and counts with known values.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -32,9 +32,10 @@ static struct glint_scene *draw_scene_with_statistics(int edge_samples,
     return s;
 }
 
-/* A lamp of four points lights a ball that fills the picture. Tests per pixel:
- * 3 for a pixel of the ball's box, 4 for the lamp, and four shadow rays, each
- * tested with both balls. The count saturates at its limit. */
+/* Checks the count of intersection tests. A lamp of four points lights a ball
+ * that fills the picture. Tests per pixel: 3 for a pixel of the ball's box, 4
+ * for the lamp, and four shadow rays, each tested against both balls. The count
+ * saturates at its limit. */
 TEST(counts_intersection_tests)
 {
     static const int32_t at[3] = {0, 0, 0};
@@ -88,9 +89,9 @@ TEST(counts_the_outcome_of_each_object)
     assert_int_equal(seen[0], -1);
 }
 
-/* A ball of radius 1 at distance 4 covers a circle of tangent 1 / sqrt 15: 2095
- * pixels at 100 pixels per unit of tangent. A lamp lights the whole circle, a
- * sun half of it. */
+/* Checks the counts of pixels and rays. A ball of radius 1 at distance 4 covers
+ * a circle of tangent 1 / sqrt 15, which has 2095 pixels at 100 pixels per unit
+ * of tangent. A lamp lights the whole circle, a sun half of it. */
 TEST(counts_pixels_and_rays)
 {
     static const int32_t toward_q30[3] = {1 << 30, 0, 0};
@@ -112,8 +113,8 @@ TEST(counts_pixels_and_rays)
     assert_int_equal(full[GLINT_SCENE_SHADED], full[GLINT_SCENE_COVERING]);
     assert_int_equal(full[GLINT_SCENE_COVERING],
                      all.count[GLINT_SCENE_COVERING]);
-    /* the lamp lights all pixels of the ball, the sun half of them, each by
-     * four shadow rays */
+    /* the lamp lights all pixels of the ball, the sun half of them; each traces
+     * four shadow rays per pixel */
     assert_true(fabs((double)full[GLINT_SCENE_SHADOWS] /
                          (3 * (double)full[GLINT_SCENE_SHADED]) -
                      1) < 0.03);
@@ -125,7 +126,7 @@ TEST(counts_pixels_and_rays)
                 full[GLINT_SCENE_SHADED] * 2 / 5);
     assert_int_equal(object[0].count[GLINT_SCENE_COVERING],
                      full[GLINT_SCENE_COVERING]);
-    /* reflecting surfaces are shaded at each sample */
+    /* reflective surfaces are shaded at each sample */
     file.material[0].reflect_q15 = 1 << 14;
     draw_scene_with_statistics(4, 0);
     assert_int_equal(object[0].count[GLINT_SCENE_BOUNCED],

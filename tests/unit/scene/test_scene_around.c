@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests reflections and refractions of the camera's own image used as a
- * 360-degree environment: values against double precision, every pixel format,
- * and no cost for scenes that do not show it.
+ * 360-degree environment: values are compared with double precision in every
+ * pixel format, and scenes that do not show the image must not compute it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -21,8 +21,8 @@ static struct scene_file file;
 static size_t bytes;
 static int32_t light_q20[BYTES], drawn_q20[BYTES];
 
-/* The test image at (X, Y), each -1 .. 1: linear, so that cells interpolate
- * it exactly. */
+/* Returns the value of the test image at (X, Y), each -1 .. 1. It is linear, so
+ * that the cells of the environment interpolate it exactly. */
 static double linear_image_value(int channel, double x, double y)
 {
     static const double across[3] = {.4, -.3, 0}, down[3] = {0, .2, -.4};
@@ -67,8 +67,8 @@ static void draw_scene(struct glint_scene *s)
     glint_scene_draw(s, &image);
 }
 
-/* Adds a ball of radius 1.5 at z = 4 that reflects REFLECT, transmits PASS
- * and has the refractive index INDEX. */
+/* Adds a ball of radius 1.5 at z = 4 with the reflectance REFLECT, the
+ * transmittance PASS and the refractive index INDEX. */
 static void add_reflecting_ball(double reflect, double pass, double index)
 {
     uint32_t m;
@@ -82,8 +82,9 @@ static void add_reflecting_ball(double reflect, double pass, double index)
     scene_add_sphere(&file, "ball", m, 0, 0, 4 * UNIT, 3 * UNIT / 2);
 }
 
-/* Sets D to the ray through the centre of pixel (I, K) in an image 90
- * degrees wide. Returns its distance to the ball, or 0 if it misses. */
+/* Sets D to the direction of the ray through the centre of pixel (I, K) in an
+ * image 90 degrees wide. Returns the distance to the ball, or 0 if the ray
+ * misses it. */
 static double intersect_ball_at_pixel(int i, int k, double d[3])
 {
     double length, along, off2;
@@ -99,8 +100,8 @@ static double intersect_ball_at_pixel(int i, int k, double d[3])
     return off2 < 2.1 ? along - sqrt(2.25 - off2) : 0; /* excludes the rim */
 }
 
-/* Sets AT to the position of direction D in the image, x right, y down, -1
- * .. 1. Directions off-screen are mirrored at the image's edge. */
+/* Sets AT to the position of direction D in the image: x right, y down, -1 ..
+ * 1. Directions off-screen are mirrored at the image border. */
 static void find_image_position(const double d[3], double at[2])
 {
     const double x = d[0], y = -d[1] * WIDTH / HEIGHT;
@@ -139,12 +140,12 @@ TEST(mirror_shows_the_image_around_the_scene)
         n++;
     }
     assert_true(n > 1000 && behind > 100 && behind < n);
-    /* The cells of the environment end half a cell inside the image, and
-     * samples are not at the pixel's centre. */
+    /* the cells of the environment end half a cell inside the image, and
+     * samples are not at pixel centres */
     assert_true(worst < .02);
 }
 
-/* Checks that glass with an index near 1 shows what is behind it. */
+/* Checks that glass with an index near 1 shows the image behind it. */
 TEST(glass_of_index_1_shows_the_image_behind_it)
 {
     double worst = 0;
@@ -182,8 +183,8 @@ TEST(image_is_bit_identical_for_all_workers)
     }
 }
 
-/* Checks that only scenes that show the image pay for it, and that without
- * it they show black. */
+/* Checks that the image is sampled only for scenes that show it, and that
+ * scenes without it show black instead. */
 TEST(only_scenes_that_show_the_image_pay_for_it)
 {
     struct glint_image image = make_linear_image_over(drawn_q20);
@@ -209,8 +210,8 @@ TEST(only_scenes_that_show_the_image_pay_for_it)
     assert_int_equal(drawn_q20[3 * (HEIGHT / 2 * WIDTH + WIDTH / 2)], 0);
 }
 
-/* Checks that a grey image of each format and any size gives the same grey
- * everywhere. */
+/* Checks that a uniform grey image of any format and size is reflected as the
+ * same grey everywhere. */
 TEST(grey_image_of_each_format_is_even)
 {
     static const int side[][2] = {{2, 2}, {8, 4}, {66, 34}, {700, 6}, {2, 642}};
@@ -226,7 +227,7 @@ TEST(grey_image_of_each_format_is_even)
             struct glint_around around;
             int32_t rgb_q15[3];
 
-            /* Bytes of 128 are not grey in these formats. */
+            /* in these formats, pixels of bytes 128 are not grey */
             if (format == GLINT_RGB565 || format == GLINT_LINEAR_Q20)
                 continue;
             memset(picture, 128, sizeof picture);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests drawing scenes: the same image however it is drawn, in every format;
- * closed meshes without gaps; the lights passed to the lens.
+ * Tests drawing scenes: images do not depend on tiles, workers or order, in
+ * every format; closed meshes have no gaps; the lights passed to the flare are
+ * right.
  */
 #include <math.h>
 #include <stdio.h>
@@ -35,7 +36,7 @@ static struct glint_scene_config make_scene_config(void)
     return cfg;
 }
 
-/* Adds a closed mesh around the origin: a bumpy ball. */
+/* Adds a closed mesh, a bumpy ball, around the origin. */
 static uint32_t add_ball_mesh(double size)
 {
     enum { SIDES = 16, RINGS = 9, N = SIDES * RINGS + 2 };
@@ -168,20 +169,20 @@ TEST(invisible_objects_change_nothing)
     assert_memory_equal(px, before, BYTES);
     assert_int_equal(stats.objects, 0);
     make_scene_of_all_objects();
-    /* all objects but the floor are behind the camera */
+    /* all objects except the floor are behind the camera */
     file.header.camera.axis_q30[0][0] = -ONE_Q30;
     file.header.camera.axis_q30[2][2] = -ONE_Q30;
     file.object[2].hidden = 1;
     glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
-    /* A shadow catcher in a scene without shadows changes nothing. */
+    /* a shadow catcher in a scene without shadows changes nothing */
     make_scene_of_all_objects();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = i != 2;
     file.object[2].catcher_q15 = 20000;
     glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
     assert_memory_equal(px, before, BYTES);
-    /* An object that casts a shadow on the catcher darkens the image. */
+    /* an object that casts a shadow on the catcher darkens the image */
     make_scene_of_all_objects();
     file.object[2].catcher_q15 = 32768;
     file.object[0].hidden = file.object[1].hidden = 1;
@@ -189,8 +190,8 @@ TEST(invisible_objects_change_nothing)
     assert_memory_not_equal(px, before, BYTES);
 }
 
-/* Checks that a scene of one ball covers as many pixels as its disc, and
- * that the image size hardly affects the memory. */
+/* Checks that the number of pixels that a ball covers is the area of its disc,
+ * and that the memory hardly depends on the image size. */
 TEST(ball_covers_its_disc)
 {
     static uint8_t px[BYTES];
@@ -215,8 +216,9 @@ TEST(ball_covers_its_disc)
              1) < 2e-3);
 }
 
-/* Checks the memory limits at 320x240 with two workers: only Phong-shaded
- * balls and planes need at most 120 KiB, a sun with shadows 60 KiB more. */
+/* Checks the memory limits at 320x240 with two workers: at most 120 KiB for
+ * balls and planes with Phong shading alone, and 60 KiB more for a sun with
+ * shadows. */
 TEST(memory_stays_within_its_limits)
 {
     static const int32_t toward_q30[3] = {0, 0, -(1 << 30)};
@@ -244,8 +246,8 @@ TEST(memory_stays_within_its_limits)
                     bytes + (60 << 10));
 }
 
-/* Checks that from any position inside a closed mesh all samples hit it,
- * although some vertices are behind the camera. */
+/* Checks that from any position inside a closed mesh all rays hit it, even if
+ * some vertices are behind the camera. */
 TEST(closed_mesh_has_no_leaks)
 {
     static uint8_t px[BYTES];
@@ -276,7 +278,7 @@ TEST(closed_mesh_has_no_leaks)
     }
 }
 
-/* Checks that a sample shows the first object that its ray hits. */
+/* Checks that each sample shows the first object that its ray hits. */
 TEST(sample_shows_the_first_object)
 {
     const struct glint_scene_config cfg = make_scene_config();
@@ -333,7 +335,8 @@ static void draw_scene_linear(int edge_samples, int half, int32_t *px_q20)
     glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
 }
 
-/* Returns the root mean square difference, 1 = display white. */
+/* Returns the root mean square difference between A and B, 1 = display
+ * white. */
 static double compute_rms_difference(const int32_t *a_q20, const int32_t *b_q20)
 {
     double sum = 0;
@@ -343,9 +346,9 @@ static double compute_rms_difference(const int32_t *a_q20, const int32_t *b_q20)
     return sqrt(sum / (3 * WIDTH * HEIGHT));
 }
 
-/* Checks that more samples per pixel come closer to 16 samples, and that
- * with 2 x 2 shading only pixels whose neighbours show the same object
- * change. */
+/* Checks that images with more samples per pixel are closer to one with 16
+ * samples, and that shading 2 x 2 pixels at once changes only pixels whose
+ * neighbours show the same object. */
 TEST(more_samples_come_closer)
 {
     static int32_t all[3 * WIDTH * HEIGHT], some[3 * WIDTH * HEIGHT];
@@ -430,7 +433,7 @@ TEST(changed_poses_equal_a_new_scene)
     assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 0, at, at), GLINT_E_ARGUMENT);
-    /* Rotation about y by 2 atan(4/3): x becomes (-.28, 0, -.96). */
+    /* a rotation about y by 2 atan(4/3): the x axis becomes (-.28, 0, -.96) */
     v3_rotate(&s->placed[0].turn, x, to);
     assert_true(abs(to[0] + 293601) <= 1 && to[1] == 0 &&
                 abs(to[2] + 1006633) <= 1);
@@ -458,9 +461,9 @@ static void set_random_surface_point(uint32_t *seed,
     }
 }
 
-/* Checks that the shadow grid of a sun gives the same results as rays tested
- * against all objects: also far below objects, outside the grid, and from
- * oblique surfaces. */
+/* Checks that shadows by the grid of a sun equal shadows by rays that are
+ * tested against all objects: also far below objects, outside the grid, and
+ * from oblique surfaces. */
 TEST(shadow_grid_equals_brute_force)
 {
     uint32_t seed = 1;
@@ -500,8 +503,9 @@ TEST(shadow_grid_equals_brute_force)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
-/* Checks that a square mesh perpendicular to each axis, which coincides with a
- * side of its grid, occludes a lamp for points behind it, from either side. */
+/* Checks a square mesh perpendicular to each axis in turn, which coincides with
+ * a side of its grid: it occludes a lamp for points behind it, from either
+ * side. */
 TEST(flat_mesh_shadows_a_lamp)
 {
     static const uint32_t t[2][3] = {{0, 1, 2}, {0, 2, 3}};
@@ -541,9 +545,9 @@ TEST(flat_mesh_shadows_a_lamp)
         }
 }
 
-/* Checks two shortcuts: shadow catchers are shaded only where shadows may
- * fall, and small balls use a single depth. Images equal those that shade
- * all pixels with exact depths. */
+/* Checks two shortcuts: shadow catchers are shaded only where shadows may fall,
+ * and small balls have a single depth. Images must equal those in which all
+ * pixels are shaded and have exact depths. */
 TEST(confined_shading_equals_full_shading)
 {
     static uint8_t px[2][BYTES];
@@ -585,7 +589,8 @@ TEST(confined_shading_equals_full_shading)
 
 /* ------------------------------------------------------------------ lights */
 
-/* Sets a sun above the camera's axis to the direction with tangents X and Y. */
+/* Sets the direction of a sun above the camera's axis to the tangents X and
+ * Y. */
 static void set_sun_direction(double x, double y)
 {
     const double length = sqrt(x * x + y * y + 1);
@@ -600,8 +605,9 @@ static double real_to_double(struct glint_real x)
     return glint_real_value(x);
 }
 
-/* Checks position and light of the lights passed to the lens, and both again
- * through the same pinhole in double precision. */
+/* Checks the position and power of the lights that the scene passes to the
+ * flare, and of the same lights seen through a pinhole, against double
+ * precision. */
 TEST(lights_for_the_lens_match_double_precision)
 {
     const struct glint_scene_config cfg = make_scene_config();
@@ -631,7 +637,7 @@ TEST(lights_for_the_lens_match_double_precision)
             assert_true(fabs(lamp[k].y_q8 / 256. - HEIGHT / 2. + f * y) < .02);
         }
         assert_true(fabs(real_to_double(lamp[0].rgb[1]) / power - 1) < 1e-6);
-        /* power 1 at a distance of 4 units */
+        /* a lamp of power 1 at a distance of 4 units */
         power *= 16 * cosine * cosine / 64;
         assert_true(fabs(real_to_double(lamp[1].rgb[1]) / power - 1) < 1e-4);
         assert_true(abs(lamp[0].radius_q8 - (int)(256 * f * .05 / cosine)) <=
@@ -643,8 +649,9 @@ TEST(lights_for_the_lens_match_double_precision)
         glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp), 0);
 }
 
-/* Checks that scene and lens agree on a light's direction: the flare's
- * pinhole converts the pixel from the scene to the direction in the scene. */
+/* Checks that scene and flare agree on the direction of a light: the pixel that
+ * the scene reports, converted by the flare's pinhole camera, gives the light's
+ * direction in the scene. */
 TEST(lens_and_scene_agree_on_directions)
 {
     struct model_image image = model_make_auto();
@@ -682,8 +689,8 @@ TEST(lens_and_scene_agree_on_directions)
     free(image.data);
 }
 
-/* Checks that the visible fraction of a sun falls to 0 in steps while it
- * sets behind a ball. */
+/* Checks that the visible fraction of a sun falls to 0 in several steps while
+ * the sun sets behind a ball. */
 TEST(setting_sun_is_occluded_gradually)
 {
     const struct glint_scene_config cfg = make_scene_config();
@@ -710,7 +717,8 @@ TEST(setting_sun_is_occluded_gradually)
     assert_true(last == 0 && levels >= 6);
 }
 
-/* Checks that lamps in the image are dimmed by the coverage of objects. */
+/* Checks that lamps in the image are dimmed by the coverage of the objects in
+ * front of them. */
 TEST(lamps_are_dimmed_by_coverage)
 {
     static uint8_t px[BYTES];
@@ -723,7 +731,7 @@ TEST(lamps_are_dimmed_by_coverage)
     file.object[2].hidden = 1;
     s = scene_init_renderer(&file, &cfg, &stats);
     glint_scene_draw(s, &image);
-    /* the middle of the mesh, and a corner of the image */
+    /* tests the middle of the mesh, and a corner of the image */
     assert_int_equal(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256), 256);
     assert_int_equal(glint_scene_cover(s, 256, 256, 2000), 0);
     assert_int_equal(glint_scene_cover(s, -99999, 256, 2000), 0);
@@ -745,7 +753,8 @@ static int64_t sum_scene_coverage(const struct glint_image *image)
     return sum;
 }
 
-/* Checks that a shadow on a catcher darkens the image but hides no lamp. */
+/* Checks that a shadow on a shadow catcher darkens the image but does not hide
+ * lamps. */
 TEST(shadows_hide_no_lamps)
 {
     static uint8_t px[BYTES], alone[BYTES];

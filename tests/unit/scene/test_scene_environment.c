@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests environment maps and brushed metal in scenes: against the reference
- * renderer in double precision, their lines in a scene text, and the brightness
- * of a highlight.
+ * Tests environment maps and brushed metal in scenes: images are compared with
+ * the reference renderer in double precision; the lines of scene texts for
+ * them and the brightness of highlights are checked.
  */
 #include <math.h>
 #include <stdint.h>
@@ -27,8 +27,8 @@ enum {
     PIXELS = WIDTH * HEIGHT
 };
 
-/* Paints a smooth sky over ground, with a lamp by the window and a sun; two
- * more lamps if IS_DUSK. */
+/* Paints a smooth sky over ground, with a lamp by the window and a sun.
+ * IS_DUSK: two more lamps. */
 static void paint_sky(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
 {
     for (int y = 0; y < SKY_HEIGHT; y++)
@@ -131,7 +131,8 @@ TEST(image_equals_the_reference)
 
 /* ------------------------------------------------------------------- texts */
 
-/* Row B7: an anisotropy ratio above 10 is clamped to 10, with a warning. */
+/* B7: checks that an anisotropy ratio above 10 is clamped to 10, with a
+ * warning. */
 TEST(clamped_anisotropy_is_warned_of)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -151,8 +152,8 @@ TEST(clamped_anisotropy_is_warned_of)
     free(s);
 }
 
-/* Checks that a model opens only if the program names the module it needs
- * and the model's environment is intact. */
+/* Checks that a scene model opens only if the program provides the module it
+ * needs and its environment is intact. */
 TEST(missing_module_is_rejected)
 {
     static const struct scene_dials dials = {
@@ -184,8 +185,8 @@ TEST(missing_module_is_rejected)
     drawn_close_scene(&d);
 }
 
-/* Row B2: colours and alphas change between frames; the image equals that of
- * a scene baked with the new values. */
+/* B2: changes colours and alphas between frames. Checks that the image equals
+ * that of a scene baked with the new values. */
 TEST(b2_changed_materials_equal_a_new_scene)
 {
     static const char *const text[2] = {
@@ -233,8 +234,8 @@ TEST(b2_changed_materials_equal_a_new_scene)
           "material white\nsphere a at 0 .5 0 radius " radius      \
           " material " material "\n"
 
-/* Checks, if material, radius and environment change between frames, that the
- * image equals that of a scene baked with the new values. */
+/* B8: changes material, radius and environment of objects between frames.
+ * Checks that the image equals that of a scene baked with the new values. */
 TEST(b8_changed_objects_equal_a_new_scene)
 {
     static const struct scene_dials dials = {
@@ -280,8 +281,8 @@ TEST(b8_changed_objects_equal_a_new_scene)
 #define UNDER(environments) \
     STAGE environments "shadow on\nbackground environment\n" BALLS "white\n"
 
-/* Checks, if the visible environment and its brightness change between frames,
- * that the image equals that of a scene which has only that environment. */
+/* B8: changes the visible environment and its brightness between frames. Checks
+ * that the image equals that of a scene that has only this environment. */
 TEST(b8_changed_environment_equals_a_new_scene)
 {
     static const struct scene_dials dials = {
@@ -326,7 +327,8 @@ TEST(b8_changed_environment_equals_a_new_scene)
     drawn_close_scene(&d);
 }
 
-/* Opens D's modified file again. Returns the error, or NULL. */
+/* Opens the file of D again after it was modified. Returns the error, or
+ * NULL. */
 static const char *reopen_modified_file_error(struct drawn *d)
 {
     struct glint_scene_model model;
@@ -338,7 +340,8 @@ static const char *reopen_modified_file_error(struct drawn *d)
     return reason;
 }
 
-/* Sets FIELD to VALUE, expects the error REASON, and restores it. */
+/* Sets FIELD to VALUE, checks that opening fails with REASON, and restores
+ * FIELD. */
 #define REFUSES(field, value, reason)                                \
     do {                                                             \
         const int32_t was = (int32_t)(field);                        \
@@ -373,7 +376,7 @@ TEST(rejects_invalid_environment_tables)
     drawn_close_scene(&d);
 }
 
-/* Checks environments that cannot be distinguished by name, and too many
+/* Checks that environments with the same name are rejected, and too many
  * environments. */
 TEST(rejects_ambiguous_environment_names)
 {
@@ -397,8 +400,8 @@ TEST(rejects_ambiguous_environment_names)
 
 /* -------------------------------------------------------------- highlights */
 
-/* Returns the total light of an image of a ball 40 pixels wide, of almost
- * mirror-like metal under a sun, moved by (DX, DY) pixels. */
+/* Returns the total light of an image of a ball 40 pixels wide, moved by (DX,
+ * DY) pixels. The ball is of almost mirror-like metal and lit by a sun. */
 static double sum_light_of_metal_ball(struct drawn *d, double dx, double dy)
 {
     enum { SIDE = 64 };
@@ -417,8 +420,8 @@ static double sum_light_of_metal_ball(struct drawn *d, double dx, double dy)
     return sum;
 }
 
-/* Checks that a sun's highlight smaller than a pixel keeps its light within
- * 5 % while it moves by fractions of a pixel. */
+/* Checks a sun's highlight that is smaller than a pixel: its light changes by
+ * at most 5 % while it moves by fractions of a pixel. */
 TEST(subpixel_highlight_is_steady)
 {
     static const struct scene_dials dials = {
@@ -443,7 +446,8 @@ TEST(subpixel_highlight_is_steady)
     assert_true(least > 0 && most < 1.05 * least);
 }
 
-/* Checks the statistics of metal: environment lookups per object. */
+/* Checks the number of environment lookups per metal object in the scene
+ * statistics. */
 TEST(lookups_are_counted_per_object)
 {
     static const struct scene_dials dials = {.width = 32,
@@ -458,13 +462,14 @@ TEST(lookups_are_counted_per_object)
     open_scene_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     drawn_draw_image(&d, 32, 32, light_q20);
     assert_ok(scene_account_collect(&account, &d.frame));
-    /* objects 0 .. 3: steel, brushed, old, white */
+    /* objects 0 .. 3 are of steel, brushed metal, old metal, and white */
     for (int i = 0; i < 4; i++) {
         const int64_t *n = account.objects[i].count;
 
         assert_true(n[GLINT_SCENE_SHADED] > 0);
         assert_int_equal(n[GLINT_SCENE_LOOKUPS] % 9, 0);
-        /* At the rim, the ray through a pixel's centre may miss the ball. */
+        /* at the rim of a ball, the ray through the pixel's centre may miss
+         * it */
         assert_true(i == 3 ? n[GLINT_SCENE_LOOKUPS] == 0
                            : 20 * n[GLINT_SCENE_LOOKUPS] >
                                  9 * 19 * n[GLINT_SCENE_SHADED]);

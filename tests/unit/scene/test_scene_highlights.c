@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests highlights, the bright reflections that get flares: against the
- * reference renderer in double precision; at subpixel positions; for tiles and
- * workers; what does not count; which are merged; extreme values.
+ * Tests highlights, the bright reflections that get flares: they are compared
+ * with the reference renderer in double precision, at subpixel positions, and
+ * for all tiles and workers; also which bright objects are not highlights,
+ * which highlights are merged, and extreme values.
  */
 #include <math.h>
 #include <stdint.h>
@@ -80,7 +81,8 @@ static double highlight_power(int i)
     "camera fov 20 at 0 0 4 toward 0 0 0\nflare lights highlights 8\n"
 #define STEEL(alpha) "material m ward specular .9 .8 .7 alpha " alpha "\n"
 #define SUN          "light sun direction .5 .6 1 colour 2e4 2e4 1e4\n"
-/* for small balls, whose highlights would otherwise barely exceed white */
+/* Light for small balls, whose highlights would otherwise barely exceed
+ * white. */
 #define BRIGHT "light sun direction .5 .6 1 colour 2e6 2e6 1e6\n"
 #define BALL   "sphere s at 0 0 0 radius .44 material m\n"
 
@@ -90,7 +92,7 @@ TEST(highlights_equal_the_reference)
 {
     static const struct {
         const char *what, *text;
-        double off; /* max error of the power, as a fraction */
+        double off; /* max relative error of the power */
     } row[] = {{"a point", CAMERA STEEL(".002 .002") SUN BALL, .02},
                {"brushed", CAMERA STEEL(".03 .2") SUN BALL, .02},
                {"a lamp",
@@ -155,9 +157,10 @@ static void move_ball_by_pixels(double dx, double dy)
     assert_ok(glint_scene_set_pose(frame.scene, 0, at, o->turn_q30));
 }
 
-/* Checks, at subpixel steps, that the power varies by at most 5 % and the
- * position follows. The last text's highlight is barely above white: its
- * power may vary, as it is too faint for any flare. */
+/* Checks, at subpixel steps of motion, that the power of a highlight varies by
+ * at most 5 % and that its position follows. The highlight of the last text is
+ * barely above white: its power may vary, as it is too faint for a visible
+ * flare. */
 TEST(highlights_are_steady_in_motion)
 {
     enum { TEXTS = 5 };
@@ -199,14 +202,14 @@ TEST(highlights_are_steady_in_motion)
         }
 }
 
-/* Checks that highlights are the same bit by bit, for any tiles and workers. */
+/* Checks that highlights are bit-identical for any tiles and workers. */
 TEST(highlights_are_bit_identical)
 {
     static const char text[] = CAMERA STEEL(".03 .2") SUN BALL
         "light sun direction -1 -.3 1 colour 1e4 1e4 1e4\n"
         "sphere t at .3 .3 .4 radius .12 material m\n";
     struct glint_scene_highlight first[MOST];
-    /* power of the brightest highlight if every pixel is shaded */
+    /* power of the brightest highlight when every pixel is shaded */
     double full = 0;
     int n_first = 0;
 
@@ -249,8 +252,9 @@ static int count_found_highlights(const char *text)
     return n;
 }
 
-/* Checks that discs of lights, backgrounds, shadow catchers and pixels below
- * white are not highlights, and that none are found if none are requested. */
+/* Checks that visible lights, backgrounds, shadow catchers and pixels below
+ * white are not highlights, and that no highlights are searched if none are
+ * requested. */
 TEST(other_bright_objects_are_no_highlights)
 {
     assert_int_equal(count_found_highlights(CAMERA STEEL(".05 .05") SUN BALL),
@@ -277,9 +281,10 @@ TEST(other_bright_objects_are_no_highlights)
         count_found_highlights(CAMERA "material m phong 1 0 0\n" BALL), 0);
 }
 
-/* Checks that touching squares and centres within 12 pixels are merged, that
- * only the brightest are returned if there are too many, and that merged
- * highlights lie at their centroid by light. */
+/* Checks that highlights of touching squares, and highlights whose centres are
+ * within 12 pixels, are merged; that the brightest are returned if there are
+ * too many; and that merged highlights lie at their centroid, weighted by
+ * light. */
 TEST(near_highlights_are_merged)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
@@ -319,8 +324,8 @@ TEST(near_highlights_are_merged)
 
 /* ---------------------------------------------------------------- extremes */
 
-/* Checks that the power is proportional to the light up to its saturation,
- * and that a ball of one pixel, or with its highlight at the image's border,
+/* Checks that the power of a highlight is proportional to the light up to its
+ * saturation. A ball of one pixel, or with its highlight at the image border,
  * has the power of the visible part. */
 TEST(power_is_linear_up_to_saturation)
 {
@@ -350,7 +355,8 @@ TEST(power_is_linear_up_to_saturation)
     assert_true(last > 1e6);
     count_found_highlights(CAMERA STEEL(".05 .05") SUN BALL);
     last = found[0].spot.x_q8 / 256.;
-    for (int e = -20; e <= 20; e++) { /* across the left border */
+    /* the highlight crosses the left border */
+    for (int e = -20; e <= 20; e++) {
         open_scene_text(CAMERA STEEL(".05 .05") SUN BALL, &dials);
         move_ball_by_pixels(e / 2. - last, 0);
         draw_and_find_highlights();
@@ -370,8 +376,8 @@ TEST(power_is_linear_up_to_saturation)
     assert_true(fabs(found[0].spot.x_q8 / 256. - SIDE / 2) < 1);
 }
 
-/* Checks the brightest light that the sums of a square can hold: its colour
- * is white. */
+/* Checks the brightest light that the sums of a square can represent: it is
+ * white. */
 TEST(brightest_highlight_is_white)
 {
     static const int32_t max_q15[3] = {1 << 30, 1 << 30, 1 << 30};

@@ -46,7 +46,7 @@ static const char *open_scene_error(const struct scene_file *s)
     if (glint_scene_open(&model, s->data, s->bytes, &reason) == GLINT_OK)
         return NULL;
     assert_non_null(reason);
-    /* glint_scene_open() leaves MODEL unchanged on an error */
+    /* glint_scene_open() does not change MODEL on an error */
     assert_null(model.header);
     return reason;
 }
@@ -93,7 +93,8 @@ TEST(rejects_truncated_scenes)
                         "the checksum is wrong: the scene is damaged");
 }
 
-/* Sets MEMBER of an intact scene to VALUE and expects the error REASON. */
+/* Sets MEMBER of an intact scene to VALUE and checks that opening it fails with
+ * REASON. */
 #define REFUSES(member, value, reason)                 \
     (make_scene_of_all_types(), file.member = (value), \
      expect_scene_error(&file, (reason)))
@@ -162,8 +163,8 @@ TEST(rejects_invalid_materials)
     REFUSES(texture[0].height_log2, 12, "a table lies outside the file");
 }
 
-/* Checks that a grid list which lacks a triangle, or contains one twice, is
- * rejected. */
+/* Checks that a triangle grid is rejected if a list lacks a triangle or
+ * contains one twice. */
 TEST(rejects_wrong_grid_lists)
 {
     const struct glint_scene_mesh *m = &file.mesh[0];
@@ -228,8 +229,9 @@ TEST(rejects_invalid_objects)
     scene_open_model(&file);
 }
 
-/* Checks that, whatever the value of one word in a file with a valid
- * checksum, opening reads nothing outside the file (ASan) and terminates. */
+/* Sets one word at a time to arbitrary values, with a valid checksum. Checks
+ * that opening the file terminates and reads nothing outside the file
+ * (ASan). */
 TEST(any_word_is_rejected_or_harmless)
 {
     static const uint32_t value[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff};

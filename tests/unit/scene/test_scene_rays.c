@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests rays against spheres, planes and triangles: rows of the tutorial
- * computed by hand, and exact arithmetic. Two baseline methods, the area test
- * and plain Q16.16, fail where expected.
+ * Tests rays against spheres, planes and triangles: results are compared with
+ * examples of the tutorial computed by hand, and with exact arithmetic. Two
+ * simpler methods, the area test and plain Q16.16, are shown to fail.
  */
 #include <math.h>
 #include <stdint.h>
@@ -32,7 +32,7 @@ static void assert_near_vector(const int32_t v[3], double x, double y, double z,
         assert_near_int(v[k], llround(ldexp(expected[k], 30)), off);
 }
 
-/* Sets V to the corners AT, in units, times SIZE. */
+/* Sets V to the corners AT, in scene units, times SIZE. */
 static void set_scaled_triangle(int32_t v[3][3], const double at[9],
                                 double size)
 {
@@ -193,9 +193,9 @@ static double compute_double_area(const double a[3], const double b[3],
                 pow(u[0] * w[1] - u[1] * w[0], 2));
 }
 
-/* Baseline: a point of the plane is inside the triangle if the areas of the
- * three triangles that it forms with the sides sum to the triangle's area
- * within .005. */
+/* Area test, a simpler method: a point of the plane is inside a triangle if the
+ * areas of the three triangles between the point and the sides sum to the area
+ * of the triangle within .005. */
 static int is_inside_by_areas(const double v[9], const double p[3])
 {
     const double s = compute_double_area(v, v + 3, v + 6);
@@ -205,9 +205,9 @@ static int is_inside_by_areas(const double v[9], const double p[3])
                 compute_double_area(v + 6, v, p)) < .005;
 }
 
-/* Aims random rays at a box five times the area of a triangle of height
- * SIZE. Returns the fraction that the area test classifies wrongly. Checks
- * that glint's test is right except near the edges. */
+/* Aims random rays at a box five times the area of a triangle of height SIZE.
+ * Returns the fraction of rays that the area test classifies wrongly. Checks
+ * that glint's test is right, except close to edges. */
 static double count_errors_of_area_test(double size)
 {
     double v[9], from[3] = {0};
@@ -220,7 +220,7 @@ static double count_errors_of_area_test(double size)
         v[i] = first[i] * size / 80;
     set_scaled_triangle(steps, v, 1);
     for (; n < 4000; n++) {
-        /* position in the triangle: down from its top 0 .. 1, across -1 .. 1 */
+        /* position in the triangle: 0 .. 1 down from its top, -1 .. 1 across */
         const double down = .5 + 1.58 * (rng_unit(&seed) - .5);
         const double across = 1.58 * (2 * rng_unit(&seed) - 1);
         const double u = (down + across) / 2, w = (down - across) / 2;
@@ -282,8 +282,8 @@ TEST(a5_nearest_triangle)
     }
 }
 
-/* Checks that rays through edges and vertices hit the triangle, from either
- * side. */
+/* Checks that rays through edges and vertices hit the triangle, from both
+ * sides. */
 TEST(rays_through_edges_hit)
 {
     static const double on_edge[9] = {0, -9, 50, 0, 9, 40, 9, 0, 30},
@@ -387,7 +387,8 @@ TEST(a14_degenerate_triangles_are_missed)
         assert_false(glint_ray_clamp_to_triangle(&sheared, vertex, &spot));
         assert_int_equal(glint_set_triangle_normal(vertex, n), i == 0);
     }
-    set_scaled_triangle(v, first, -1); /* a triangle behind the ray's origin */
+    /* a triangle behind the origin of the ray */
+    set_scaled_triangle(v, first, -1);
     assert_false(ray_hits_triangle(&ahead, v, &spot));
 }
 
@@ -408,11 +409,11 @@ TEST(a15_sphere_intersections)
     assert_near_vector(n, 0, 0, -1, 0);
     glint_chord_set_end_point_and_normal(&c, &ahead, centre, 1, place, n);
     assert_true(place[2] == 12 * ONE && n[2] == ONE_Q30);
-    /* grazing, and one step outside */
+    /* rays that graze the ball, or miss it by one step */
     assert_true(glint_ray_intersect_sphere(&ahead, aside, 3 * ONE, &c));
     assert_true(c.t[0] == 10 * ONE && c.t[1] == 10 * ONE);
     assert_false(glint_ray_intersect_sphere(&ahead, aside, 3 * ONE - 1, &c));
-    /* from inside, and behind the origin */
+    /* a ray from inside the ball, and a ball behind the origin */
     assert_true(glint_ray_intersect_sphere(&ahead, me, 2 * ONE, &c));
     assert_true(c.t[0] == -ONE && c.t[1] == 3 * ONE);
     assert_true(glint_ray_intersect_sphere(&ahead, far, 2 * ONE, &c));
@@ -421,8 +422,8 @@ TEST(a15_sphere_intersections)
     assert_true(c.t[0] == 10 * ONE - 1 && c.t[1] == 10 * ONE + 1);
 }
 
-/* Returns the fraction of rays that hit or miss wrongly, among rays that
- * pass a ball of radius 1/2 at DISTANCE within a hundredth of its rim. */
+/* Returns the fraction of wrong results (hit or miss) among rays that pass a
+ * ball of radius 1/2 at DISTANCE within a hundredth of its rim. */
 static double count_errors_at_ball_rim(double distance)
 {
     const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
@@ -499,13 +500,14 @@ static void make_bumpy_ball_mesh(double at[BALL][3], uint32_t t[TRIANGLES][3],
     assert_int_equal(scene_make_ball(RINGS, SIDES, t), TRIANGLES);
 }
 
-/* Baseline: the intersection of [Moller97] in Q16.16. */
+/* Plain Q16.16, a simpler method: the intersection of [Moller97] in 32-bit
+ * fixed point. */
 static int32_t mul_q16(int32_t a, int32_t b)
 {
     return (int32_t)(((int64_t)a * b) >> 16);
 }
 
-/* Returns A + B with wraparound. */
+/* Returns A + B; an overflow wraps. */
 static int32_t add_with_wraparound(int32_t a, uint32_t b)
 {
     return (int32_t)((uint32_t)a + b);
@@ -552,9 +554,9 @@ static int ray_hits_triangle_q16(const struct glint_scene_ray *ray,
            (dot_q16(e2, q) ^ sign) >= 0;
 }
 
-/* Aims RAYS from inside a closed mesh at vertices, edges and the interior of
- * triangles, a third each. Returns the number of rays that hit no triangle,
- * or, for the last third, not exactly one. */
+/* Aims RAYS rays from inside a closed mesh: a third each at vertices, at edges
+ * and at the interior of triangles. Returns the number of rays that hit no
+ * triangle or, in the last third, not exactly one. */
 static int count_rays_through_mesh(double size, int is_naive)
 {
     enum { RAYS = 1500 };
@@ -603,8 +605,8 @@ TEST(closed_mesh_has_no_leaks)
     assert_true(count_rays_through_mesh(200, 1) > 400);
 }
 
-/* Checks that plain Q16.16 arithmetic overflows at the tutorial's first
- * triangle. */
+/* Checks that plain Q16.16 arithmetic overflows for the first triangle of the
+ * tutorial. */
 TEST(plain_q16_arithmetic_overflows)
 {
     int32_t v[3][3], a[3], b[3], n[3];
@@ -619,7 +621,8 @@ TEST(plain_q16_arithmetic_overflows)
     assert_true(d == -432000 * (int64_t)ONE && d != (int32_t)d);
 }
 
-/* Checks that the barycentric weights of a hit reproduce its position. */
+/* Checks that the barycentric weights of a hit, applied to the corners, give
+ * the hit's position. */
 TEST(barycentric_weights_reproduce_the_hit)
 {
     uint32_t seed = 9;
@@ -641,7 +644,7 @@ TEST(barycentric_weights_reproduce_the_hit)
         }
         ray = make_ray_from_doubles(from, to);
         if (!ray_hits_triangle(&ray, v, &spot))
-            continue; /* rounding: a sliver's ray */
+            continue; /* rounding may miss a sliver */
         assert_true(glint_ray_point_at_distance(&ray, spot.t, hit));
         assert_int_equal(spot.part_q30[0] + spot.part_q30[1] + spot.part_q30[2],
                          ONE_Q30);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the shading of surfaces: rows A6 to A13 of the tutorial, by hand or
- * against double precision.
+ * Tests the shading of surfaces: examples A6 to A13 of the tutorial are
+ * compared with results computed by hand or in double precision.
  */
 #include <math.h>
 #include <stdio.h>
@@ -67,9 +67,8 @@ static int32_t shaded_red_light_q15(const struct glint_scene *s,
 
 /* -------------------------------------------------------------------- A5 */
 
-/* Checks that of three triangles behind each other the nearest is visible,
- * in any order, and that a triangle which the ray misses never counts as the
- * nearest. */
+/* Checks that of three triangles behind each other the nearest is visible, in
+ * any order, and that a triangle that the ray misses is never the nearest. */
 TEST(a5_nearest_triangle_is_visible)
 {
     static const int at[4][9] = {
@@ -153,7 +152,7 @@ TEST(projection_inverts_pixel_rays)
         glint_view_convert_to_camera(&view, place, seen);
         c = glint_view_project_vertex(&view, seen);
         assert_int_equal(c.w, 1);
-        /* A step is 2^-26 of the distance. */
+        /* one step is 2^-26 of the distance */
         assert_true(abs(c.x - x_q8) <= 2 + 32768. * 0x1p-26 * 0x1p24 * 2 /
                                                file.header.camera.tan_x_q24);
         assert_true(abs(c.y - y_q8) <= 2 + 32768. * 0x1p-26 * 0x1p24 * 2 /
@@ -175,7 +174,8 @@ TEST(a7_diffuse_light_of_a_lamp)
     scene_add_plane(&file, "floor", scene_add_material(&file, "red"), 0);
     file.material[0].rgb_q15[1] = file.material[0].rgb_q15[2] = 0;
     scene_add_lamp(&file, lamp,
-                   50 * UNIT); /* light of irradiance 1 at a distance of 50 */
+                   /* light whose irradiance is 1 at a distance of 50 */
+                   50 * UNIT);
     s = start_renderer(1);
     assert_true(intersect_and_shade_ray(s, &down, &to));
     assert_int_equal(to.cover_q8, 256);
@@ -204,7 +204,7 @@ TEST(phong_power_matches_double_precision)
     assert_int_equal(glint_compute_power_q15(-5, 256), 0);
 }
 
-/* Checks a ball under a sun at many points against Phong's formula in double
+/* Compares many points of a ball under a sun with Phong's formula in double
  * precision. */
 TEST(a8_phong_matches_double_precision)
 {
@@ -243,9 +243,8 @@ TEST(a8_phong_matches_double_precision)
 
 /* --------------------------------------------------------------------- A10 */
 
-/* Draws a floor, a lamp 4 above it, and a ball of radius 1 centred at height
- * H between them. Returns the light on the floor below the lamp. HIDDEN: the
- * ball is hidden. */
+/* Returns the light on a floor below a lamp of height 4. A ball of radius 1,
+ * centred at height H, is between them unless HIDDEN. */
 static int32_t measure_light_under_ball(double h, int hidden)
 {
     const int32_t lamp[3] = {0, 4 * UNIT, 10 * UNIT};
@@ -267,18 +266,18 @@ TEST(a10_ball_shadows_a_floor)
 
     assert_in_range(lit, 32760, 32768);
     assert_int_equal(measure_light_under_ball(2, 0),
-                     0); /* a ball between lamp and floor */
+                     0); /* the ball is between lamp and floor */
     assert_int_equal(measure_light_under_ball(5.01, 0),
                      lit); /* above the lamp */
     assert_int_equal(measure_light_under_ball(4.99, 0),
-                     0); /* a ball that just touches the lamp */
+                     0); /* the ball just touches the lamp */
     assert_int_equal(measure_light_under_ball(6, 0), lit);
     assert_int_equal(measure_light_under_ball(-1.01, 0),
                      lit); /* below the floor */
 }
 
-/* Checks that surfaces without an occluder have the same light, bit by bit,
- * as without shadows. */
+/* Checks that surfaces that no object occludes have the same light with and
+ * without shadows, bit by bit. */
 TEST(a10_no_acne)
 {
     static const int32_t at[4][3] = {{-90000, -70000, 600000},
@@ -329,7 +328,7 @@ TEST(a10_no_acne)
     assert_true(n > 3000);
 }
 
-/* Checks that across the penumbra of a wide light the light falls
+/* Checks that across the penumbra of a wide light source the light falls
  * monotonically from full to none. */
 TEST(a10_penumbra_is_monotone)
 {
@@ -368,8 +367,8 @@ static void make_material_transparent(struct glint_scene_material *m)
     m->pass_q15 = 32768;
 }
 
-/* Checks that a fully transparent ball occludes neither a ball behind it nor
- * the image. */
+/* Checks that a fully transparent ball hides neither a ball behind it nor the
+ * image. */
 TEST(a11_transparent_ball_occludes_nothing)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -411,14 +410,15 @@ TEST(a11_transparent_ball_occludes_nothing)
             assert_int_equal(with.rgb_q15[1], 0);
         }
     }
-    assert_true(rim <= 2); /* the ray's exit point is rounded to a step */
+    /* the point where the ray leaves the ball is rounded to a step */
+    assert_true(rim <= 2);
     assert_true(behind > 3000 && within > behind + 3000);
 }
 
-/* Baselines for the second hit: returns whether a ray's entry point into a
- * ball of RADIUS is computed, in floats, to be outside it: its squared
- * distance from the centre exceeds the squared radius plus MORE. Correct is
- * false. */
+/* A simpler method for the second hit, which fails: returns whether a ray's
+ * entry point into a ball of RADIUS, computed in floats, is outside the ball,
+ * that is, its squared distance from the centre exceeds the squared radius plus
+ * MORE. The right answer is false. */
 static int is_second_hit_outside(const double middle[3], double radius,
                                  const double d[3], double more)
 {
@@ -437,8 +437,9 @@ static int is_second_hit_outside(const double middle[3], double radius,
     return l2 > (float)(radius * radius + more);
 }
 
-/* Checks that each ray through a ball of half transmission enters and leaves
- * it exactly once; the baselines hit the ball again. */
+/* Checks that each ray through a ball of half transmittance enters and
+ * leaves it exactly once. The simpler methods hit the ball again at the
+ * entry point. */
 TEST(a11_ray_leaves_a_ball_once)
 {
     enum { RAYS = 100000 };
@@ -483,8 +484,8 @@ TEST(a11_ray_leaves_a_ball_once)
     assert_true(farther > 0);
 }
 
-/* Checks that a glass ball refracts rays as computed in double precision:
- * the texture coordinate seen behind it is right. */
+/* Checks that a glass ball refracts rays as computed in double precision, by
+ * the texture coordinate that is visible behind the ball. */
 TEST(a12_glass_ball_refracts)
 {
     uint8_t rgb[3 * 256];
@@ -495,7 +496,7 @@ TEST(a12_glass_ball_refracts)
     for (int i = 0; i < 256; i++)
         rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (uint8_t)i;
     scene_begin_header(&file);
-    /* a field of view in which pixels are smaller than texels */
+    /* in this field of view pixels are smaller than texels */
     file.header.camera.tan_x_q24 = 1 << 12;
     scene_add_material(&file, "m");
     file.material[0].ambient_q15 = 32768;
@@ -504,8 +505,8 @@ TEST(a12_glass_ball_refracts)
     make_material_transparent(
         &file.material[scene_add_material(&file, "glass")]);
     file.material[1].index_q16 = 3 << 15;
-    /* a wall behind the ball: the floor rotated by 90 degrees about x, one
-     * texture repeat per unit */
+    /* a wall behind the ball: the floor rotated by 90 degrees about x; its
+     * texture repeats once per unit */
     scene_add_plane(&file, "wall", 0, 0);
     file.object[0].at[2] = 30 * UNIT;
     file.object[0].turn_q30[0] = 759250125;
@@ -515,8 +516,8 @@ TEST(a12_glass_ball_refracts)
     for (int i = 0; i < 3000; i++) {
         const double dx = rng_unit(&seed) * .2 - .1;
         const double cosine0 = cos(atan(dx));
-        /* expected path in the x-z plane: entry point, path inside the ball,
-         * exit point */
+        /* expected path in the x-z plane: entry point, path in the ball, exit
+         * point */
         const double b = 10 * cosine0, q = 10 * sin(atan(dx));
         const double t = b - sqrt(4 - q * q);
         const double px = t * sin(atan(dx)), pz = t * cosine0 - 10;
@@ -543,8 +544,9 @@ TEST(a12_glass_ball_refracts)
     assert_true(n > 2500);
 }
 
-/* Checks rays inside a ball of index 1.5 that hit its surface beyond the
- * critical angle of 41.8 degrees: total reflection, so nothing is visible. */
+/* Checks that rays inside a ball of index 1.5 that hit its surface beyond the
+ * critical angle of 41.8 degrees are totally reflected, so that nothing is
+ * visible. */
 TEST(a12_total_reflection_inside_a_ball)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -561,7 +563,7 @@ TEST(a12_total_reflection_inside_a_ball)
     scene_add_sun(&file, up);
     s = start_renderer(1);
     for (int i = 0; i <= 100; i++) {
-        /* the ray's angle of incidence has the sine x / 2 */
+        /* the angle of incidence of this ray has the sine x / 2 */
         const double x = 2 * i / 101.;
         const int32_t red =
             shaded_red_light_q15(s, make_ray_from_doubles(x, 0, 0, 0, 0, 1));
@@ -636,7 +638,7 @@ TEST(a13_texture_coordinates)
     }
 }
 
-/* Checks that a distant texture has its mean colour. */
+/* Checks that a distant texture shows its mean colour. */
 TEST(a13_distant_texture_has_its_mean)
 {
     uint8_t rgb[3 * 64 * 64];
@@ -662,10 +664,10 @@ TEST(a13_distant_texture_has_its_mean)
             shaded_red_light_q15(s, make_ray_from_doubles(x, 0, 0, x, -.02, 1));
 
         assert_true(near >= 0 && near <= 32768);
-        assert_in_range(far, 6900, 7200); /* linear light of code 127.5 */
+        assert_in_range(far, 6900, 7200); /* the linear light of code 127.5 */
     }
-    /* Vertically below, a pixel of 1/32 of the height covers two texels at
-     * height 1, and half a texel at height 1/4. */
+    /* Seen vertically from above, a pixel as wide as 1/32 of the height covers
+     * two texels at height 1, and half a texel at height 1/4. */
     for (int i = 0; i < 500; i++) {
         const double x = rng_unit(&seed), z = rng_unit(&seed);
         const int32_t close = shaded_red_light_q15(

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests translucent objects in scenes: against the reference renderer in double
- * precision, the same bits for all workers and tiles, incremental updates of
- * light maps, extreme values, and errors.
+ * Tests translucent objects in scenes: comparison with the reference renderer
+ * in double precision, bit-identical images for all workers and tiles,
+ * incremental updates of light maps, extreme values, and errors.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,13 +21,13 @@
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
-/* Parameters of the model that build_medium_by_name() builds, and the mesh that
- * read_mesh_of_test() returns. */
+/* Parameters of the medium that build_medium_by_name() builds, and the mesh
+ * that read_mesh_of_test() returns. */
 static int side = 64, kernel = 15;
 static double albedo = .9;
 static const char *mesh_text;
 
-/* A cube with one texture chart per face, separated by gutters. */
+/* A cube with one texture chart per face; gutters separate the charts. */
 static const char cube_text[] =
     "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\n"
     "v -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
@@ -58,8 +58,8 @@ static enum glint_status read_mesh_of_test(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-/* Builds the translucent medium that the scene text names; NAME is its file
- * name. */
+/* Builds the translucent medium that a scene text refers to. NAME: file name in
+ * the scene text. */
 static enum glint_status build_medium_by_name(void *ctx, const char *name,
                                               uint8_t **data, size_t *bytes,
                                               struct glint_error *error)
@@ -80,7 +80,7 @@ static enum glint_status build_medium_by_name(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-/* Bakes a sky that is brighter above. */
+/* Bakes a sky that is brighter at the top. */
 static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
                                   size_t *bytes, struct glint_error *error)
 {
@@ -136,7 +136,7 @@ static const struct scene_dials one_sample = {
     "material a translucent a.glint fresnel off colour 1 .8 .6\n"             \
     "material grey phong .05 .6 .35\n"
 
-/* The camera is on the other side. */
+/* Stage seen from the other side. */
 #define STAGE_LEFT                                \
     "camera fov 40 at 0 1.4 -4.5 toward 0 .4 0\n" \
     "light sun direction .5 .7 -.6 colour 4e4 3.6e4 3e4\n" LOOKS
@@ -154,7 +154,7 @@ static const struct scene_dials one_sample = {
 
 /* --------------------------------------------------------------- reference */
 
-/* A coat whose reflectance would exceed 1 at grazing angles. */
+/* Material with a coat whose reflectance would exceed 1 at grazing angles. */
 #define BRIGHT(specular)                                                 \
     STAGE "material b translucent f.glint coat ward specular " #specular \
           " " #specular " " #specular " alpha .1 .1\nenvironment sky\n"
@@ -208,9 +208,9 @@ static double compute_psnr(const int32_t *a, const int32_t *b)
     return -10 * log10(square / (3 * PIXELS) + 1e-12);
 }
 
-/* Checks seams: the texture repeats twice around a ball, and each repeat is
- * symmetric, so a ball rotated by quarter turns must give the same image,
- * whether the seam or the interior of the map is visible. */
+/* Checks the seams of light maps. The texture repeats twice around a ball, and
+ * each repetition is symmetric. So a ball rotated by quarter turns must give
+ * the same image, whether a seam of the map is visible or its interior. */
 TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
@@ -233,8 +233,8 @@ TEST(seams)
     }
 }
 
-/* Checks that stretched, sheared or mirrored texture charts are lit and
- * shown at the positions of their texels. */
+/* Checks that texture charts that are stretched, sheared or mirrored are lit,
+ * and seen, at the surface positions of their texels. */
 TEST(stretch)
 {
     static const char *const places[] = {
@@ -260,8 +260,8 @@ TEST(stretch)
     }
 }
 
-/* Checks a kernel of 63 texels on a map of 32, which extends past every edge
- * and twice around a ball's pole. */
+/* Checks a kernel of 63 x 63 texels on a map of 32 x 32, which extends beyond
+ * all edges of the map and twice around a ball's pole. */
 TEST(kernel_beyond_map)
 {
     side = 32;
@@ -290,7 +290,7 @@ TEST(kernel_beyond_map)
           "mesh m cube.obj scale .2 at .5 .2 .9 turn 0 1 0 30 material c\n"
 
 /* Checks that threads, tiles, kernels and the order of updates do not change
- * the image, bit by bit. */
+ * any bit of the image. */
 TEST(image_is_bit_identical)
 {
     static int32_t want[3 * PIXELS], got[3 * PIXELS];
@@ -319,7 +319,8 @@ TEST(image_is_bit_identical)
 /* ------------------------------------------------------------------- updates
  */
 
-/* Rotates the camera about the origin by ANGLE, radians, and draws. */
+/* Rotates the camera about the origin by ANGLE, radians, and draws the
+ * scene. */
 static void draw_from_rotated_camera(struct drawn *d, double angle,
                                      int32_t *light_q20)
 {
@@ -335,9 +336,9 @@ static void draw_from_rotated_camera(struct drawn *d, double angle,
     draw_translucent_scene(d, light_q20);
 }
 
-/* Checks that texels are computed once, when they become visible, that all
- * images equal those of newly opened scenes, and that no texel is computed
- * without need. */
+/* Checks that each texel is computed once, when it becomes visible, that all
+ * images equal those of a newly opened scene, and that no texel is computed
+ * unnecessarily. */
 TEST(updates)
 {
     static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
@@ -360,8 +361,8 @@ TEST(updates)
         drawn_close_scene(&other);
     }
     print_message("texels: %d at first, %d in a turn\n", first, sum);
-    /* the maps of three balls have 256 x 128 texels, that of a cube 128 x
-     * 128 */
+    /* light maps of the three balls have 256 x 128 texels, that of the cube has
+     * 128 x 128 */
     assert_true(first < 75000 && sum > 20000 && first + sum <= 7 << 14);
     draw_translucent_scene(&d, turned);
     assert_int_equal(d.frame.map_texels, 0);
@@ -369,12 +370,13 @@ TEST(updates)
     side = 64;
 }
 
-/* Checks that a coat which is replaced gives the image of a scene that had
- * the new coat from the start. */
+/* Checks that replacing a coat gives the image of a scene that had the new coat
+ * from the start. */
 TEST(changed_coat_equals_a_new_scene)
 {
     static int32_t changed[3 * PIXELS], fresh[3 * PIXELS];
-    enum { MATERIAL = 4 }; /* index after the materials of LOOKS */
+    /* index of the first material after those of LOOKS */
+    enum { MATERIAL = 4 };
     struct tool tool = {.name = "test"};
     struct glint_scene_look look;
     struct drawn d;
@@ -392,8 +394,8 @@ TEST(changed_coat_equals_a_new_scene)
     drawn_close_scene(&d);
 }
 
-/* Checks that the cost of light maps is counted in the frame that computes
- * them, and not again. */
+/* Checks that the frame statistics count the cost of a light map in the frame
+ * that computes it, and not again. */
 TEST(light_maps_are_counted_once)
 {
     static int32_t light[3 * PIXELS];
@@ -432,8 +434,8 @@ static double find_max_light(const int32_t *light_q20)
     return most;
 }
 
-/* Checks that a fully absorbing medium is black, and that one without
- * absorption returns at most the light it receives, for any power of the
+/* Checks that a fully absorbing medium is black, and that a medium without
+ * absorption returns at most the light that it receives, for any power of the
  * light. */
 TEST(albedo_0_and_1)
 {
@@ -461,7 +463,7 @@ TEST(albedo_0_and_1)
         if (albedo == 0) {
             assert_true(find_max_light(light) == 0);
         } else {
-            /* Near the poles, where texels are narrow, light accumulates. */
+            /* near the poles, where texels are narrow, light accumulates */
             assert_true(find_max_light(light) <=
                         fmin(1.3 * 1.06 * fmin(power, 6.2e5), 32768) + 1e-4);
             if (power > 1e-2)
@@ -535,7 +537,8 @@ TEST(rejects_unsuitable_meshes)
                              "stretched up to 1.58");
 }
 
-/* Checks that a program without the module names the one that a scene needs. */
+/* Checks that the error of a program without the required module names the
+ * module. */
 TEST(missing_module_is_named)
 {
     struct tool tool = {.name = "test"};

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests Ward's reflection lobe over an environment map: rows B1, B2, B4 and B6
- * to B8, a white furnace, and the same lookups in double precision.
+ * Tests Ward's reflection lobe over an environment map: requirements B1, B2,
+ * B4 and B6 to B8, a lobe in uniform light (white furnace), and the lookups in
+ * double precision.
  */
 #include <math.h>
 #include <stdint.h>
@@ -65,8 +66,9 @@ static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0};
 
 /* ----------------------------------------------------------------- furnace */
 
-/* Returns the albedo of the norm NORM of the lobe under uniform light of 1,
- * by an integral in double precision. NO: cosine of the view direction. */
+/* Returns the albedo of the lobe with normalisation NORM in uniform light of 1,
+ * integrated in double precision. NO: cosine of the angle between normal and
+ * view. */
 static double integrate_lobe_albedo(int norm, double no, double alpha)
 {
     const double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -89,7 +91,8 @@ static double integrate_lobe_albedo(int norm, double no, double alpha)
 TEST(furnace_albedo_is_1)
 {
     static const double cosine[4] = {1, .7, .3, .1};
-    /* for the bounded norm, whose albedo is below 1 at grazing angles */
+    /* for the bounded normalisation, whose albedo is below 1 at grazing
+     * angles */
     static const double stated[4] = {.998, .996, .984, .889};
     const int32_t frame_q14[3][3] = {
         {16384, 0, 0}, {0, 16384, 0}, {0, 0, 16384}};
@@ -164,8 +167,8 @@ static double lookup_between_levels(const struct glint_environment *e,
                                 lookup_level_in_double(e, k + 1, toward, c);
 }
 
-/* Draws N half-vector slopes for alpha 1 with constant footprints. Returns the
- * footprint factor b. */
+/* Computes N half-vector slopes that sample the lobe of alpha 1 with constant
+ * footprints. Returns the footprint factor b. */
 static double draw_half_vector_slopes(int n, const double alpha[2],
                                       double slope[GLINT_WARD_SAMPLES][2])
 {
@@ -262,8 +265,9 @@ TEST(samples_approximate_the_sum_over_texels)
 
 /* -------------------------------------------------------------------- rows */
 
-/* Sets TO to the average of N uniform directions of the hemisphere, each
- * looked up in the map level of its solid angle. */
+/* Sets TO to the ball's image, averaged over N uniform directions of the
+ * hemisphere. Each is looked up in the mipmap level that matches its solid
+ * angle. */
 static void render_by_uniform_directions(const struct glint_environment *e,
                                          const double alpha[2], int n,
                                          ward_picture to)
@@ -310,9 +314,10 @@ static void render_by_sum_of_texels(const double alpha[2], struct reference *r)
     glint_sphere_free(&r->sphere);
 }
 
-/* Row B1: half vectors drawn by the published density of the lobe have less
- * error than uniform directions at every number of samples, up to alphas of
- * .2. Row B4: Gaussian levels have less error than mipmaps with 8 samples. */
+/* B1: checks that half vectors drawn by the published density of the lobe have
+ * a smaller error than uniform directions, for every number of samples and
+ * alphas up to .2. B4: checks that with 8 samples Gaussian levels have a
+ * smaller error than mipmaps. */
 TEST(b1_b4_sampled_lobe_beats_uniform_directions)
 {
     static const double alphas[3][2] = {{.05, .05}, {.2, .2}, {.05, .2}};
@@ -355,8 +360,8 @@ TEST(b1_b4_sampled_lobe_beats_uniform_directions)
     free(mip.data);
 }
 
-/* Row B2: while colours and alphas change over one baked environment, each
- * lobe is that of its material, and colours are factors. */
+/* B2: changes colours and alphas over one baked environment. Checks that each
+ * lobe is that of its material, and that colours are factors of it. */
 TEST(b2_materials_share_an_environment)
 {
     static ward_picture red, white, wide;
@@ -381,8 +386,8 @@ TEST(b2_materials_share_an_environment)
     free(m.data);
 }
 
-/* Row B8: 8 samples are sufficient: at least 30 dB in display codes, on a
- * map of spots and waves. */
+/* B8: checks that 8 samples are sufficient: they give at least 30 dB in display
+ * codes, on a map of spots and waves. */
 TEST(b8_eight_samples_are_sufficient)
 {
     static const double alphas[3][2] = {{.05, .05}, {.1, .1}, {.05, .2}};
@@ -407,7 +412,8 @@ TEST(b8_eight_samples_are_sufficient)
     free(m.data);
 }
 
-/* Row B6: more samples come closer to the sum over all texels. */
+/* B6: checks that images with more samples are closer to the sum over all
+ * texels. */
 TEST(b6_more_samples_come_closer)
 {
     static const int samples[3] = {1, 8, 32};
@@ -435,8 +441,8 @@ TEST(b6_more_samples_come_closer)
     free(m.data);
 }
 
-/* Checks extreme environments (black, one texel of 1e9, scales of 1e-6 ..
- * 1e9): the image of a ball changes only by its scale. */
+/* Checks extreme environments (black, one texel of 1e9, scales of 1e-6 .. 1e9):
+ * they only scale the image of a ball. */
 TEST(extreme_environments_only_scale_the_image)
 {
     static ward_picture one, got;
@@ -474,8 +480,8 @@ TEST(extreme_environments_only_scale_the_image)
     free(m.data);
 }
 
-/* Row B7: an anisotropy ratio of 200 is clamped to 10, and the call reports
- * it. */
+/* B7: checks that an anisotropy ratio of 200 is clamped to 10, and that the
+ * call reports this. */
 TEST(b7_extreme_anisotropy_is_clamped)
 {
     struct glint_ward_lobe held, plain;
@@ -495,7 +501,8 @@ TEST(b7_extreme_anisotropy_is_clamped)
     free(m.data);
 }
 
-/* Checks that any valid material, view and file gives light within range. */
+/* Checks that any valid material, view and file give light in the allowed
+ * range. */
 TEST(any_valid_material_gives_light_in_range)
 {
     static const double alpha[4] = {.001, .01, .5, 1};

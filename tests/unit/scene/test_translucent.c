@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the integers of a baked translucent medium with the fit in double
- * precision, and checks that invalid files are rejected.
+ * Compares light scattered by the integers of a baked translucent medium with
+ * light scattered by the fit in double precision, and checks that invalid
+ * files are rejected.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,8 +22,8 @@
 static const enum glint_scatter_model models[] = {
     GLINT_SCATTER_CLUSTERED, GLINT_SCATTER_FACTORED, GLINT_SCATTER_ALBEDO};
 
-/* Returns the PSNR, dB, between the integers of B and its fit, under lamps
- * and shadows. */
+/* Returns the PSNR, dB, of light scattered by the integers of B against light
+ * scattered by its fit, under lamps and shadows. */
 static double compute_psnr(const struct built_stone *b)
 {
     const size_t n = 3 * (size_t)(b->fit.side * b->fit.side);
@@ -55,7 +56,7 @@ TEST(integers_are_close_to_their_fit)
     }
 }
 
-/* Bakes B again with RANK and returns the PSNR. */
+/* Bakes B again with RANK products per kernel and returns the PSNR. */
 static double bake_and_measure_psnr_of_rank(struct built_stone *b, int rank)
 {
     struct glint_error error;
@@ -70,9 +71,9 @@ static double bake_and_measure_psnr_of_rank(struct built_stone *b, int rank)
     return compute_psnr(b);
 }
 
-/* Checks that two products approximate as well as four where light varies
- * slowly: the largest singular values alone reach 51 dB, and one product 37
- * dB. */
+/* Checks that two products per kernel approximate as well as four where light
+ * varies slowly: the largest singular values alone reach 51 dB; a single
+ * product reaches 37 dB. */
 TEST(more_products_approximate_better)
 {
     for (int m = 0; m < 3; m += 2) {
@@ -91,7 +92,8 @@ TEST(more_products_approximate_better)
 
 /* ---------------------------------------------------------------- refusals */
 
-/* Damages an intact translucent medium; its checksum is set afterwards. */
+/* Damages the file of an intact translucent medium; the test seals the checksum
+ * afterwards. */
 typedef void damage_fn(struct glint_translucent_header *h, unsigned char *data);
 
 static int16_t *kernel_taps(const struct glint_translucent_header *h,
@@ -100,7 +102,8 @@ static int16_t *kernel_taps(const struct glint_translucent_header *h,
     return (int16_t *)(void *)(data + h->tap_at);
 }
 
-/* Each tap of a column is within its range, but their sum is too large. */
+/* Each column tap stays within its range, but the taps of a column sum to too
+ * large a value. */
 static void set_too_large_column_taps(struct glint_translucent_header *h,
                                       unsigned char *data)
 {
@@ -181,7 +184,8 @@ static void move_taps_beyond_end(struct glint_translucent_header *h,
     h->tap_at = h->bytes - 4;
 }
 
-/* Checks that every sum and offset that the loops rely on is validated. */
+/* Checks that every sum and offset that the inner loops rely on is validated on
+ * opening. */
 TEST(rejects_every_invalid_field)
 {
     static const struct {

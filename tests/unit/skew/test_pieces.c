@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the pieces into which the lights of lenses without rotational symmetry
- * are divided: the halves of a piece cover the piece; high powers are weighed
- * per variable, to choose the one to halve; parts get the smallest free number.
+ * Tests pieces of light directions, into which the bake divides lenses without
+ * rotational symmetry: the halves of a piece cover it; a piece is halved along
+ * the variable whose high powers weigh most; pupil parts get the smallest free
+ * number.
  */
 #include <math.h>
 
@@ -10,8 +11,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* The ray of a piece: its start, its direction and its position in the
- * wavelength band. */
+/* The rays of a piece: start point, direction, and position in the wavelength
+ * band. */
 struct entry {
     double x_mm, y_mm, direction[2], w;
 };
@@ -97,7 +98,7 @@ TEST(halves_equal_the_whole_piece)
     }
 }
 
-/* Sets output O to one term: power POWER of VARIABLE. */
+/* Sets output O to a polynomial of a single term: power POWER of VARIABLE. */
 static void set_output_to_one_term(struct glint_fitted_output *o, double *coef,
                                    enum glint_channel kind, int variable,
                                    int power, bool met)
@@ -124,7 +125,7 @@ TEST(error_is_shared_by_variables)
     assert_true(share[GLINT_V] == 2 * 0.875);
     assert_true(share[GLINT_S] == 0 && share[GLINT_W] == 0);
 
-    /* If all outputs meet their tolerances, all outputs count. */
+    /* if all outputs meet their tolerances, all outputs are weighed */
     system.output[1].met = true;
     glint_piece_compute_shares(&system, share);
     assert_true(share[GLINT_V] == 2 * 0.875 && share[GLINT_S] == 2 * 0.5);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests models of lenses without rotational symmetry: rays of lights from all
- * sides (the model stores a quarter or a half of them) and at wavelengths that
- * were not fitted land where exact rays do, and rows of rays equal single rays.
+ * sides, of which the model stores only a quarter or a half, and of
+ * wavelengths that were not fitted land where exact rays do; rays computed by
+ * rows equal single rays.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -27,8 +28,8 @@ static struct glint_lens model;
 static struct glint_setup setup;
 static unsigned char *data;
 
-/* Bakes a doublet behind two additional surfaces. The lens table has BEFORE,
- * the first surface, FIRST, the second surface, AFTER. */
+/* Bakes a doublet behind two additional surfaces. Its lens table contains, in
+ * this order, BEFORE, the first surface, FIRST, the second surface, AFTER. */
 static void bake_doublet_with_surfaces(const char *before, const char *first,
                                        const char *after)
 {
@@ -67,17 +68,19 @@ static void free_model(void)
     data = NULL;
 }
 
-/* A bundle of the model, the exact path of the same ghost, and the sums of
- * errors between them. */
+/* A bundle of the model, the exact path of the same ghost, and sums of the
+ * errors of the bundle. */
 struct meter {
     struct glint_transfer t;
     struct glint_path path;
     double direction[3];
-    int n; /* number of compared rays that pass */
-    /* exact rays that pass, and those of them that no bundle covers */
+    int n; /* number of compared rays that pass the lens */
+    /* number of exact rays that pass, and number of these that no bundle
+     * contains */
     int through, lost;
     double places2, stops2, energies2;
-    double off; /* max distance between a vertex and its ray, pixels */
+    /* max distance between a grid vertex and its exact ray, pixels */
+    double off;
 };
 
 static const struct glint_place place = {.cos_q30 = ONE,
@@ -92,8 +95,8 @@ static double real_to_double(const struct meter *m,
     return ldexp(o->at[kind], m->t.exponent[kind]);
 }
 
-/* Returns the distance between V and the landing position of the ray (X, Y),
- * pixels. */
+/* Returns the distance between vertex V and the position where the exact ray
+ * (X, Y) lands, pixels. */
 static double distance_to_landing_position_px(const struct glint_vertex *v,
                                               double x_mm, double y_mm)
 {
@@ -112,8 +115,9 @@ static bool ray_passes_stop(const struct meter *m, double x_mm, double y_mm,
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= 23;
 }
 
-/* Counts the rays of a grid over the front that pass, and those of them
- * outside the box; without a bundle all count as outside. */
+/* Counts the rays of a grid over the front element that pass, and those of them
+ * that are outside the pupil box; without a bundle all passing rays count as
+ * outside. */
 static void count_passing_rays(struct meter *m, bool has_bundle)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
@@ -132,8 +136,8 @@ static void count_passing_rays(struct meter *m, bool has_bundle)
     }
 }
 
-/* Compares ray (I, J) of a grid. The model's coordinates are those of the
- * lens, mirrored by the signs X and Y. */
+/* Compares ray (I, J) of a grid with the model. X and Y are the signs by which
+ * the lens's coordinates are mirrored to give those of the model. */
 static void compare_grid_ray(struct meter *m, int i, int j,
                              const struct glint_vertex *v)
 {
@@ -172,7 +176,7 @@ static void compare_random_bundles(struct meter *m)
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
 
-    /* A part has its own box and is not a ghost of the table. */
+    /* a pupil part has its own box, and is not a ghost of the table */
     assert_int_equal(model.header->n_parts, 0);
     for (int k = 0; k < BUNDLES; k++) {
         const int ghost = rng_int_below(&seed, (int)model.header->n_ghosts);

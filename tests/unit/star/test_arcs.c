@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the diffraction pattern of a stop with round blades: at both ends of
- * roundness it equals that of the polygon and of the circle; far out it
- * approximates the exact pattern without fringes; it has as many fans as lines
- * for straight blades; it rotates with the blades; a soft edge limits it, and a
- * lamp's extent blurs it.
+ * Tests the diffraction pattern of a stop with round blades: for roundness 0
+ * and 1 it equals that of the polygon and of the circle; far out it
+ * approximates the exact pattern without its fringes; it has as many fans of
+ * light as straight blades have spikes; it rotates with the blades; a soft
+ * edge limits it, and the extent of the lamp blurs it.
  */
 #include "engine/star/psf.h"
 
@@ -16,7 +16,8 @@
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
-/* Returns the mean of |F|^2 / A^2 times q^3 / AT^3 for q from 0.8 to 1.2 AT. */
+/* Returns the mean of |F|^2 / A^2 times q^3 / AT^3 for frequencies q of 0.8 to
+ * 1.2 times AT. F: amplitude of the pattern; A: area of the stop. */
 static double
 mean_scaled_pattern(double (*f)(const struct glint_arcs *, double, double),
                     const struct glint_arcs *arcs, double at, double phi)
@@ -69,8 +70,8 @@ TEST(arcs_end_at_the_corners)
         }
 }
 
-/* Checks that the two methods of summing an arc agree at q = 5, where they
- * are switched. */
+/* Checks that the two methods of summing an arc agree at the frequency q = 5,
+ * at which the code switches between them. */
 TEST(switching_methods_causes_no_step)
 {
     struct glint_arcs arcs;
@@ -89,8 +90,8 @@ TEST(switching_methods_causes_no_step)
         }
 }
 
-/* Checks the sum over a circle, including fans and the light between them,
- * exactly, and single directions roughly. */
+/* Checks the light on a circle around the lamp: its sum over fans and the gaps
+ * between them exactly, single directions roughly. */
 TEST(distant_pattern_sums_over_a_circle)
 {
     enum { PHIS = 48 };
@@ -116,7 +117,7 @@ TEST(distant_pattern_sums_over_a_circle)
 }
 
 /* Returns the number of positions on a circle of R pixels that are brighter
- * than both neighbours and the mean. */
+ * than both of their neighbours and brighter than the mean. */
 static int count_peaks_on_circle(const struct glint_psf *p, double r)
 {
     enum { N = 720 };
@@ -137,8 +138,8 @@ static int count_peaks_on_circle(const struct glint_psf *p, double r)
     return n;
 }
 
-/* Checks that 5, 6 and 8 blades give 10, 6 and 8 fans, which rotate with the
- * blades. */
+/* Checks that stops of 5, 6 and 8 blades give 10, 6 and 8 fans, which rotate
+ * with the blades. */
 TEST(fans_rotate_with_the_blades)
 {
     static const int blades[3] = {5, 6, 8}, fans[3] = {10, 6, 8};
@@ -153,7 +154,7 @@ TEST(fans_rotate_with_the_blades)
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
 
-            /* y points down here */
+            /* here y points down */
             glint_psf_compute_light(&one, 40 * cos(phi), 40 * sin(phi), a);
             glint_psf_compute_light(&turned, 40 * cos(phi - turn),
                                     40 * sin(phi - turn), b);
@@ -164,8 +165,8 @@ TEST(fans_rotate_with_the_blades)
     }
 }
 
-/* Checks that a soft edge preserves the centre and removes the light far
- * out. */
+/* Checks that a soft edge of the stop does not change the centre of the
+ * pattern, and removes its light far out. */
 TEST(soft_edge_removes_distant_light)
 {
     struct glint_psf hard, soft;
@@ -199,8 +200,8 @@ static struct glint_star_tables *make_star_tables(int n_blades, double round,
     return t;
 }
 
-/* Returns the full width at half maximum, pixels, of the upward spike of a
- * lamp of RADIUS pixels, 100 pixels from it. */
+/* Returns the full width at half maximum, pixels, of the upward spike of a lamp
+ * of RADIUS pixels, at a distance of 100 pixels from the lamp. */
 static int measure_spike_width_px(double round, double soft, double radius)
 {
     enum { SIDE = 255, ROW = 27 };
@@ -224,8 +225,8 @@ static int measure_spike_width_px(double round, double soft, double radius)
     return n;
 }
 
-/* Checks that a lamp's extent widens fans as it widens lines, and that
- * almost straight blades give almost the same as straight ones. */
+/* Checks that the extent of a lamp widens fans as much as spikes, and that
+ * almost straight blades give almost the same pattern as straight ones. */
 TEST(wide_lamp_widens_fans)
 {
     for (int radius = 4; radius <= 16; radius *= 2) {
@@ -240,8 +241,8 @@ TEST(wide_lamp_widens_fans)
     }
 }
 
-/* Checks that blades of curvature 1 have the tables of a circle, and those
- * close to it a halo as even. */
+/* Checks that blades of curvature 1 have the tables of a circle, and that
+ * blades of almost that curvature have an almost even halo. */
 TEST(round_blades_become_a_circle)
 {
     struct glint_star_tables *circle = make_star_tables(0, 0, 0);
@@ -259,7 +260,7 @@ TEST(round_blades_become_a_circle)
             least = near->halo[i][k][1] < least ? near->halo[i][k][1] : least;
             most = near->halo[i][k][1] > most ? near->halo[i][k][1] : most;
         }
-        /* a third, as log2 in Q11 */
+        /* a third of an octave, as log2 in Q11 */
         assert_true(most - least < 1024);
     }
     glint_star_tables_free(circle);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests starbursts of a stop with dust or a mask: against direct summation over
- * the stop; total light; the same bits for any tiles and workers; a white mask
- * equals no mask; a black one has no light.
+ * Tests starbursts of a stop with dust or a mask: comparison with direct
+ * summation over the stop, total light, and bit-identical images for any tiles
+ * and workers. A white mask must equal no mask; a black mask must give no
+ * light.
  */
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +23,7 @@ enum { SIDE = 301, FINE = 150, WAVES = 13, POINTS = 3 };
 static int32_t linear[3 * SIDE * SIDE], again[3 * SIDE * SIDE];
 static double amplitude[2 * FINE][2 * FINE], all_light;
 
-/* A stop of eight blades with its dirt. */
+/* A stop of eight blades, and its dirt. */
 struct stop {
     struct glint_setup setup;
     struct glint_dirt *dirt;
@@ -72,7 +73,7 @@ static void draw_star(const struct stop *s, double power_log2, int32_t *to)
 
 /* ------------------------------------------------------------------ direct */
 
-/* Sets the amplitudes of the stop and the integral of their squares. */
+/* Samples the amplitudes of the stop, and integrates their squares. */
 static void set_stop_amplitudes(const struct stop *s)
 {
     all_light = 0;
@@ -95,7 +96,8 @@ static void set_stop_amplitudes(const struct stop *s)
         }
 }
 
-/* Returns the power spectrum |G(q)|^2 of the stop's amplitudes. */
+/* Returns the power spectrum |G|^2 of the stop's amplitudes at the frequency
+ * (QX, QY). */
 static double compute_power_spectrum(double qx, double qy)
 {
     const double step = -2 * GLINT_PI / FINE;
@@ -121,8 +123,8 @@ static double compute_power_spectrum(double qx, double qy)
     return (re * re + im * im) / pow(FINE, 4);
 }
 
-/* Returns the green light of the pixel at (X, Y) from the light, y down, by
- * direct summation. */
+/* Returns the green light, by direct summation, of the pixel at the offset (X,
+ * Y) from the light; y points down. */
 static double sum_pixel_directly(double x, double y, double airy_px)
 {
     double sum = 0, weights = 0;
@@ -155,7 +157,7 @@ static double encode_srgb(double light)
                                     : 1.055 * pow(held, 1 / 2.4) - 0.055);
 }
 
-/* Checks stars against direct summation, near the light and further out. */
+/* Compares stars with direct summation, near the light and further out. */
 TEST(stars_match_direct_summation)
 {
     const struct glint_iris iris = {.dust = 0.1, .dust_seed = 4};
@@ -191,7 +193,8 @@ TEST(stars_match_direct_summation)
     free_stop(&s);
 }
 
-/* Checks the total light, for any size of the pattern. */
+/* Checks that the total light of the star does not depend on the size of the
+ * pattern. */
 TEST(total_light_does_not_depend_on_size)
 {
     const struct glint_iris iris = {.dust = 0.2, .dust_seed = 7};
@@ -207,7 +210,7 @@ TEST(total_light_does_not_depend_on_size)
         for (int i = 1; i < 3 * SIDE * SIDE; i += 3)
             sum += linear[i] * 0x1p-30;
         assert_ok(glint_psf_init(&psf, 8, 10, airy_px));
-        /* the image has the area of a circle of this radius */
+        /* light outside a circle that has the area of the image */
         beyond = s.smear.clear *
                      glint_psf_compute_light_beyond(&psf, 0.564 * SIDE, 1) +
                  glint_smear_compute_light_beyond(&s.smear, &psf, airy_px,
@@ -220,7 +223,7 @@ TEST(total_light_does_not_depend_on_size)
     }
 }
 
-/* Checks that tiles and workers do not change the image, bit by bit. */
+/* Checks that tiles and workers do not change any bit of the image. */
 TEST(image_is_bit_identical)
 {
     const struct glint_iris iris = {.dust = 0.05, .dust_seed = 3};
@@ -243,8 +246,8 @@ TEST(image_is_bit_identical)
     free_stop(&s);
 }
 
-/* Checks that a white mask equals no mask, and that a black one gives no
- * smear. */
+/* Checks that a white mask gives the same star as no mask, and that a black
+ * mask gives no smear. */
 TEST(white_mask_is_no_mask)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
@@ -262,8 +265,8 @@ TEST(white_mask_is_no_mask)
     free_stop(&s);
 }
 
-/* Checks that a mask with a hole gives the pattern of the hole: the smaller
- * the hole, the wider the first dark ring. */
+/* Checks that a mask with a hole gives the diffraction pattern of the hole: the
+ * smaller the hole, the larger the first dark ring. */
 TEST(smaller_hole_gives_a_wider_ring)
 {
     enum { N = 128 };
@@ -288,7 +291,7 @@ TEST(smaller_hole_gives_a_wider_ring)
         }
     }
     printf("smear: dark at %.0f px\n", dark);
-    /* radius of the dark ring: 1.22 * 3 px * 4 */
+    /* radius of the first dark ring: 1.22 * 3 px * 4 */
     assert_true(fabs(dark - 14.64) < 1.6);
     free_stop(&s);
 }

@@ -22,8 +22,8 @@
 
 enum { WIDTH = 97, HEIGHT = 83, N = 3 * WIDTH * HEIGHT };
 
-/* Draws N lights into LINEAR_Q20, linear light, down to a light of FAINTEST.
- * Returns the reported number of lit pixels. */
+/* Draws N lights into LINEAR_Q20, linear light, leaving out light below
+ * FAINTEST. Returns the reported number of lit pixels. */
 static double draw_down_to_faintest_light(const struct glint_star_tables *t,
                                           const struct glint_star_light *lights,
                                           int n, struct glint_real faintest,
@@ -49,8 +49,8 @@ static void draw_lights_linear(const struct glint_star_tables *t,
 static int32_t linear_q20[N];
 static uint8_t codes[N];
 
-/* Returns the sum of channel C over all pixels, divided by the light of
- * power 2^10. */
+/* Returns the sum of channel C over all pixels, divided by the light's power of
+ * 2^10. */
 static double sum_channel_of_pixels(const int32_t *q20, int c)
 {
     double sum = 0;
@@ -67,8 +67,8 @@ static double green_light_at(double x, double y)
 
 /* ------------------------------------------------------------------- shape */
 
-/* Returns the number of peaks above twice the mean on a circle of RADIUS
- * pixels. */
+/* Returns the number of peaks on a circle of RADIUS pixels that are brighter
+ * than twice the mean of the circle. */
 static int count_spikes_on_circle(double radius)
 {
     enum { STEPS = 720 };
@@ -107,7 +107,7 @@ TEST(even_and_odd_blades_give_their_spikes)
     }
 }
 
-/* Checks that the first dark ring of a round stop is at 1.21967 times
+/* Checks that the first dark ring of a round stop has a radius of 1.21967 times
  * wavelength times f-number. */
 TEST(first_dark_ring_of_a_circle)
 {
@@ -122,8 +122,8 @@ TEST(first_dark_ring_of_a_circle)
     assert_true(fabs(dark / 1.21967 - 1) < 1e-3);
 }
 
-/* Checks that in an image, which sums all wavelengths, the dark ring is that
- * of 550 nm, measured in green. */
+/* Checks that in an image, which sums all wavelengths, the dark ring, measured
+ * in green, is that of 550 nm. */
 TEST(drawn_dark_ring_is_that_of_550_nm)
 {
     struct glint_star_tables *t = star_canvas_make_tables(0, 0, 5);
@@ -148,7 +148,8 @@ TEST(drawn_dark_ring_is_that_of_550_nm)
     glint_star_tables_free(t);
 }
 
-/* Checks that the light inside and outside the image sums to the total. */
+/* Checks that the light inside the image and the computed light outside it sum
+ * to the total. */
 TEST(light_sums_to_the_total)
 {
     static const int blades[] = {0, 3, 5, 8, 64};
@@ -164,8 +165,8 @@ TEST(light_sums_to_the_total)
         assert_ok(glint_psf_init(&psf, blades[i % 5], 5, airy_px[i / 5]));
         draw_lights_linear(t, &light, 1, linear_q20);
         for (int c = 0; c < 3; c++) {
-            /* The light outside the image's sides is about that outside a
-             * circle of 48 pixels. */
+            /* The light outside the image is about the light outside a circle
+             * of 48 pixels. */
             const double beyond = glint_psf_compute_light_beyond(&psf, 48, c);
 
             assert_true(
@@ -180,8 +181,8 @@ TEST(light_sums_to_the_total)
 
 enum { WAVES = 48 };
 
-/* Sets RGB to the light of a pixel at (X, Y) from the light, averaged over
- * POINTS^2 points. */
+/* Sets RGB to the light of a pixel at the offset (X, Y) from the lamp, averaged
+ * over POINTS x POINTS points. */
 static void sum_pixel_directly(int n_blades, double rotation_deg,
                                double airy_px, double x, double y, int points,
                                double rgb[3])
@@ -222,8 +223,8 @@ static uint8_t encode_srgb(double light)
                                      : 1.055 * pow(held, 1 / 2.4) - 0.055));
 }
 
-/* Direct summation is done for every second pixel, in a chessboard pattern;
- * the others stay 0. */
+/* Returns whether pixel I is summed directly: every second pixel is, in a
+ * chessboard pattern; the others stay 0. */
 static bool is_pixel_summed_directly(int i)
 {
     return (i % WIDTH + i / WIDTH) % 2 == 0;
@@ -244,9 +245,9 @@ static void sum_picture_directly(int n_blades, double rotation_deg,
     }
 }
 
-/* Checks that images of three stops at three powers have at least 50 dB. All
- * pixels of so small an image are near the light; in 1080p the same errors
- * would give 24 dB more. */
+/* Checks that images of three stops at three powers have a PSNR of at least 50
+ * dB. In so small an image all pixels are near the light; in 1080p the same
+ * errors would give 24 dB more. */
 TEST(images_match_direct_summation)
 {
     static const struct {
@@ -290,8 +291,8 @@ TEST(images_match_direct_summation)
 }
 
 /* Returns the total light along a line across the spike, 30 px right of the
- * light. Sets *WIDTH to the number of its pixels that are at least half as
- * bright as its middle. */
+ * lamp. Sets *WIDTH to the number of pixels on that line that are at least half
+ * as bright as its middle. */
 static double measure_spike_profile(double *width)
 {
     double sum = 0;
@@ -307,7 +308,7 @@ static double measure_spike_profile(double *width)
 }
 
 /* Checks that a lamp that is a disc has a spike as wide as the disc, with as
- * much light as that of a point. */
+ * much light as the spike of a point lamp. */
 TEST(wide_lamp_widens_its_spikes)
 {
     struct glint_star_tables *t = star_canvas_make_tables(4, 45, 0.5);
@@ -328,8 +329,8 @@ TEST(wide_lamp_widens_its_spikes)
     glint_star_tables_free(t);
 }
 
-/* Returns the max relative difference between the drawn light of power 2^25
- * at PLACE and its tables. */
+/* Returns the max relative difference between the drawn light of a lamp of
+ * power 2^25 at PLACE and the star's tables. */
 static double max_relative_difference(const struct glint_star_tables *t,
                                       const double place[2])
 {
@@ -350,8 +351,8 @@ static double max_relative_difference(const struct glint_star_tables *t,
     return most;
 }
 
-/* Checks that far from the light, where the pixels of a row are
- * interpolated, they are within 3 % of the tables. */
+/* Checks that pixels far from the light, which are interpolated within a row,
+ * are within 3 % of the tables. */
 TEST(distant_pixels_match_the_tables)
 {
     static const double place[][2] = {
@@ -383,8 +384,8 @@ static int count_lit_pixels(void)
     return n;
 }
 
-/* Checks the predicted number of pixels of a star: 0.75 to 1.2 times the lit
- * pixels for a round stop, and 1 to 2 times for six blades, as pixels of
+/* Checks the predicted number of pixels of a star: 0.75 to 1.2 times the number
+ * of lit pixels for a round stop; 1 to 2 times for six blades, as pixels of
  * spikes are counted twice. */
 TEST(predicts_the_number_of_pixels)
 {
@@ -414,8 +415,8 @@ TEST(predicts_the_number_of_pixels)
 
 /* ------------------------------------------------------------------ motion */
 
-/* Checks, while a light moves by 0.05 pixels per frame, that neither the
- * total light nor any pixel jumps. */
+/* Moves a light by 0.05 pixels per frame. Checks that neither the total light
+ * nor any pixel changes abruptly. */
 TEST(moving_light_causes_no_jump)
 {
     struct glint_star_tables *t = star_canvas_make_tables(7, 3, 0.2);
@@ -442,13 +443,13 @@ TEST(moving_light_causes_no_jump)
                   "of the brightest at most\n",
                   least, most, jump / peak);
     assert_true(most - least < 0.002);
-    /* The core of the star is 0.3 px wide: a sixth of it may move from one
-     * pixel to the next. */
+    /* The core of the star is 0.3 px wide: a sixth of its light may move from
+     * one pixel to the next. */
     assert_true(jump / peak < 0.16);
     glint_star_tables_free(t);
 }
 
-/* Returns the angle of the spike near ANGLE_DEG, degrees, y up. */
+/* Returns the angle of the spike nearest to ANGLE_DEG, degrees; y points up. */
 static double find_spike_angle_deg(double angle_deg)
 {
     double sum = 0, turn = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the starburst in integers: the same bits for any tiles, workers, order
- * and machine, and clamping of extreme values. Tables are random and made in
- * integers, so that they do not depend on libm.
+ * Tests the starburst in integers: bit-identical images for any tiles,
+ * workers, order of jobs and machine, and clamping of extreme values. Tables
+ * are random and made in integers, so that they do not depend on libm.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -23,12 +23,12 @@ static struct star_any any;
 
 static const struct glint_real all = {0, 0};
 
-/* light that changes a code near black by 1/8: 1 / 26357 */
+/* FAINTEST: light that changes a code near black by 1/8, which is 1 / 26357 */
 static const struct glint_real eighth = {0x4f8f7a00, -45};
 
 /* ------------------------------------------------------------------ bits */
 
-/* Draws N_LIGHTS of LIGHTS in tiles of 2^TILE_LOG2 pixels. */
+/* Draws LIGHTS[N_LIGHTS] in tiles of 2^TILE_LOG2 pixels. */
 static void draw_stars(const struct glint_star_light *lights, int n_lights,
                        int tile_log2, int n_workers, uint32_t order,
                        enum glint_pixel_format format, void *mem)
@@ -42,8 +42,7 @@ static void draw_stars(const struct glint_star_light *lights, int n_lights,
     star_canvas_close(&c);
 }
 
-/* Checks that workers, tiles and the order of jobs do not change codes, bit
- * by bit. */
+/* Checks that workers, tiles and the order of jobs do not change any code. */
 TEST(codes_are_bit_identical)
 {
     uint32_t seed = 7;
@@ -64,8 +63,8 @@ TEST(codes_are_bit_identical)
     }
 }
 
-/* Checks that tiles do not change linear light, bit by bit, including
- * distant lights. */
+/* Checks that tiles do not change any bit of linear images, also for distant
+ * lights. */
 TEST(linear_light_is_bit_identical)
 {
     uint32_t seed = 99;
@@ -92,8 +91,8 @@ static uint64_t hash_word(uint64_t h, uint64_t x)
     return (h ^ x) * UINT64_C(1099511628211); /* FNV-1a, by words */
 }
 
-/* Checks that every machine draws the same: codes and linear light of 40
- * stars have this hash. */
+/* Checks that the codes and linear light of 40 stars have this hash on every
+ * machine. */
 TEST(images_match_their_hash)
 {
     const uint64_t want = UINT64_C(0x22829f9dca1d9529);
@@ -124,10 +123,10 @@ TEST(images_match_their_hash)
 
 /* -------------------------------------------------------------- extremes */
 
-/* Checks that twice the power nowhere gives less light, except by rounding
- * of one code, from invisible to saturated: with the light at a pixel's
- * centre, at its corner, on the image's border, and 1000 px off-screen on
- * two sides. */
+/* Raises the power from invisible to saturated. Checks that no pixel becomes
+ * darker, except by one code due to rounding, for a light at a pixel's
+ * centre, at its corner, on the image border, and 1000 px off two sides of
+ * the image. */
 TEST(more_power_never_darkens_codes)
 {
     static const int place_q8[][2] = {{48 * 256 + 128, 41 * 256 + 128},
@@ -166,8 +165,8 @@ TEST(more_power_never_darkens_codes)
     }
 }
 
-/* Checks that invalid lights draw nothing: without power or colour, or
- * further away than the limit. */
+/* Checks that invalid lights draw nothing: lights without power or colour, and
+ * lights further away than the limit. */
 TEST(invalid_lights_draw_nothing)
 {
     struct glint_star_light light[4];

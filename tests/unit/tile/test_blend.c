@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the light and coverage of passes with their definition in linear
- * light: in every format, at full and half resolution, with two passes in
- * either order.
+ * Tests passes, which blend layers of light and coverage into a tile: compares
+ * them with their definition in linear light, in every format, at full and
+ * half resolution, with two passes in either order.
  */
 #include <math.h>
 #include <string.h>
@@ -17,12 +17,12 @@ static int32_t light_q20[3 * N];
 static uint8_t *const px = (uint8_t *)light_q20;
 
 /* A pass that draws stripes: some are opaque or partly opaque, some emit light,
- * some do both. */
+ * and some do both. */
 struct stripes {
     int step, light_q16[3];
     int linear;
     struct glint_box tile;
-    int even; /* offset of the stripes in even rows */
+    int even; /* offset of the stripes in even rows, pixels */
 };
 
 static int compute_stripe_coverage(const struct stripes *s, int x, int y)
@@ -121,7 +121,7 @@ static double encode_srgb(double x)
                                  : 1.055 * pow(fmin(1, x), 1 / 2.4) - 0.055);
 }
 
-/* Returns the expected linear light of a channel of pixel (X, Y). */
+/* Returns the expected linear light of one channel of pixel (X, Y). */
 static double compute_expected_light(const struct stripes *s, int n_passes,
                                      int half, int x, int y, int channel)
 {
@@ -160,8 +160,8 @@ static struct stripes make_grey_stripes(int step, int light_q16)
     return (struct stripes){step, {light_q16, light_q16, light_q16}, 0, {0}, 0};
 }
 
-/* Checks that the first sample of each pixel, STEP bytes apart, is within
- * OFF of the expected value. */
+/* Checks the first sample of each pixel: it is within OFF of the expected
+ * value. Pixels are STEP bytes apart. */
 static void check_codes_of_pixels(enum glint_pixel_format format, int step,
                                   int half, struct stripes *s, int n_passes,
                                   double off)
@@ -201,7 +201,7 @@ TEST(blends_codes)
         }
 }
 
-/* Checks two rows, of which one is completely covered where the other is not
+/* Checks two rows: where one is completely covered, the other is not
  * covered. */
 TEST(blends_two_rows)
 {
@@ -228,14 +228,14 @@ TEST(blends_linear_light)
                                        k / 3 / WIDTH, k % 3) *
                 0x1p20;
 
-            /* the max of light_q16 is 65535, not 65536 */
+            /* 1 is 65535, not 65536, in light_q16 */
             assert_true(fabs(light_q20[k] - want) < 20);
         }
     }
 }
 
-/* Checks that a completely covered pixel keeps no colour, and that shared
- * chroma is the mean. */
+/* Checks that a completely covered pixel retains no colour of the background,
+ * and that a shared chroma sample is the mean of its pixels. */
 TEST(covered_pixels_keep_no_colour)
 {
     struct stripes s =

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests a second pass in addition to the flare, as a minimal example: a flat
- * triangle that sets pixels and is the light of the flare drawn over it. Its
- * coverage is computed from 4 x 4 points of each pixel.
+ * Tests a second pass in addition to the flare, by a minimal example: a flat
+ * triangle that covers pixels, and is also the light source of the flare that
+ * is drawn over it. Its coverage is computed from 4 x 4 points per pixel.
  */
 #include <stdlib.h>
 #include <string.h>
@@ -20,12 +20,12 @@ enum { MAX_WORKERS = 3, N_FORMATS = 9 };
 
 struct triangle {
     int on, half, linear;
-    int corner[3][2]; /* pixels, counter-clockwise with y down */
+    int corner[3][2]; /* corners, pixels; counter-clockwise with y down */
     int light_q16[3];
     struct on_row *at; /* [worker] */
 };
 
-/* State of a worker on a row of tiles. */
+/* State of a worker that draws a row of tiles. */
 struct on_row {
     const struct triangle *triangle;
     struct glint_box row, tile;
@@ -44,7 +44,7 @@ static int is_inside_triangle(const struct triangle *t, int x_q3, int y_q3)
     return in;
 }
 
-/* Returns the coverage of pixel (X, Y), Q8. */
+/* Returns the fraction of pixel (X, Y) that the triangle covers, Q8. */
 static int compute_pixel_coverage(const struct triangle *t, int x, int y)
 {
     int n = 0;
@@ -68,7 +68,7 @@ static int set_current_tile(void *state, struct glint_box tile)
 {
     struct on_row *r = state;
 
-    /* Tiles are passed from left to right, without gaps. */
+    /* tiles are passed from left to right, without gaps */
     assert_int_equal(tile.x0, r->tile.x1);
     assert_int_equal(tile.y0, r->row.y0);
     assert_int_equal(tile.y1, r->row.y1);
@@ -101,8 +101,8 @@ static enum glint_given set_coverage_of_rows(void *state,
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the triangle as the light of the flare: its colour; its power is
- * an eighth of its area in pixels. */
+/* Returns the triangle as a light source of the flare: its colour, and a power
+ * of an eighth of its area in pixels. */
 static struct glint_light make_light_of_triangle(const struct triangle *t)
 {
     const int(*p)[2] = t->corner;
@@ -120,7 +120,7 @@ struct glint_frame {
     struct glint_image image;
     struct triangle triangle;
     struct glint_flare_config cfg;
-    /* alone = 1: glint_flare_draw() draws the flare without the pass */
+    /* alone = 1: glint_flare_draw() draws only the flare, without the pass */
     int half, n_workers, n_lights, alone;
     uint32_t order;
 };
@@ -148,7 +148,8 @@ static void draw_triangle_pass(struct glint_frame *f, struct glint_flare *flare)
                                     set_current_tile, set_coverage_of_rows};
     const struct glint_flare_under under = {&pass, 1, &glint_blend, rows};
 
-    memset(rows, 0xa5, sizeof rows); /* dirty rows reveal what is left unset */
+    /* filled rows reveal samples that are left unset */
+    memset(rows, 0xa5, sizeof rows);
     f->triangle.half = f->half;
     f->triangle.linear = f->image.format == GLINT_LINEAR_Q20;
     f->triangle.at = at;
@@ -205,7 +206,7 @@ static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
     free(m.data);
 }
 
-/* linear light in Q20, or codes */
+/* image in linear light, Q20, or in codes */
 static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4];
 static uint8_t *const one = (uint8_t *)one_q20, *const other =
                                                     (uint8_t *)other_q20;
@@ -214,8 +215,8 @@ static const enum glint_pixel_format formats[N_FORMATS] = {
     GLINT_RGB24, GLINT_I420, GLINT_NV12,       GLINT_YUYV,  GLINT_I422,
     GLINT_I444,  GLINT_GREY, GLINT_LINEAR_Q20, GLINT_RGB565};
 
-/* Checks that workers, tiles, the order of jobs and kernels do not change
- * the image, bit by bit. */
+/* Checks that workers, tiles, the order of jobs and kernels do not change any
+ * bit of the image. */
 TEST(image_is_bit_identical)
 {
     uint32_t seed = 5;
@@ -238,7 +239,7 @@ TEST(image_is_bit_identical)
 }
 
 /* Checks that without the triangle the image is that of the flare alone, and
- * with it a different one. */
+ * that with it the image differs. */
 TEST(inactive_pass_changes_nothing)
 {
     for (int i = 0; i < 2 * N_FORMATS; i++) {
@@ -257,8 +258,8 @@ TEST(inactive_pass_changes_nothing)
     }
 }
 
-/* Checks on any background that completely covered pixels have the
- * triangle's colour and uncovered ones are unchanged, and that the flare is
+/* Checks, on any background, that completely covered pixels have the
+ * triangle's colour and uncovered pixels are unchanged before the flare is
  * added to both. */
 TEST(covered_pixels_have_the_passs_colour)
 {
@@ -275,7 +276,7 @@ TEST(covered_pixels_have_the_passs_colour)
         n_set += cover_q8 == GLINT_COVER_ALL;
         n_kept += cover_q8 == 0;
         n_lit += cover_q8 == GLINT_COVER_ALL && other[i + 1] > one[i + 1];
-        /* sRGB codes of the triangle's light 1, 0.397, 0.137 */
+        /* sRGB codes of the triangle's light, R, G, B = 1, 0.397, 0.137 */
         if (cover_q8 == GLINT_COVER_ALL)
             assert_true(one[i] == 255 && one[i + 1] == 169 &&
                         one[i + 2] == 104);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests options in files: which entries are applied, in which order, and that
- * every error is reported with its line. A file with an error sets nothing.
+ * every error is reported with its line number. A file with an error sets no
+ * option.
  */
 #include <stdint.h>
 
@@ -26,11 +27,12 @@ static const struct option options[] = {
     {"config", required_argument, NULL, 'C'},
     TOOL_COMMON_OPTIONS};
 
-/* A command that logs its options and rejects some grids with its own
- * message. */
+/* A command that logs its options, and rejects some values of the option grid
+ * with its own message. */
 struct command {
     struct tool tool;
-    char log[1024]; /* "name=value;" for each option, in order */
+    /* "name=value;" for each option, in the order in which they were applied */
+    char log[1024];
     const char *lens;
     int grid;
 };
@@ -141,7 +143,7 @@ TEST(accepts_blanks_and_line_ends)
     expect_applied_options(
         BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
         "grid=7;lens=a;b;lens=c # d;");
-    /* An indented line does not continue the previous one. */
+    /* an indented line does not continue the previous line */
     expect_applied_options(
         BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
         "lens=a;grid=9;light=1,2;");
@@ -149,7 +151,7 @@ TEST(accepts_blanks_and_line_ends)
                            "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
 }
 
-/* Checks that a line of the max length is accepted, and that a longer one is
+/* Checks that a line of the max length is accepted, and that a longer line is
  * rejected unless it is a comment. */
 TEST(limits_the_line_length)
 {
@@ -175,7 +177,8 @@ TEST(limits_the_line_length)
     }
 }
 
-/* Checks that values outlive the text until config_free(). */
+/* Checks that option values remain valid after the text is freed, until
+ * config_free(). */
 TEST(values_outlive_the_text)
 {
     struct config config = make_empty_config();
@@ -247,8 +250,8 @@ TEST(reports_mistakes_with_their_line)
                         "x.ini:1: holds a control character");
 }
 
-/* Checks that an error reported by the command keeps its message and gets
- * the line number; earlier entries are applied, later ones are not. */
+/* Checks an error that the command itself reports: its message is preserved and
+ * gets the line number; earlier entries are applied, later ones are not. */
 TEST(bad_value_keeps_the_commands_message)
 {
     struct config config = make_empty_config();
@@ -344,8 +347,8 @@ TEST(command_line_overrides_the_file)
     config_free(&config);
 }
 
-/* Checks that the old values remain valid if a new file, as on SIGHUP, has
- * an error. */
+/* Checks that the old values remain valid if a file that is read again, as on
+ * SIGHUP, has an error. */
 TEST(failed_reload_keeps_the_old_values)
 {
     struct config first = make_empty_config(), second;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks that control lines set their values or report errors with positions,
- * that keys and playback position work, and that files and pipes are read
- * alike.
+ * that keys and the playback position work, and that files and pipes are read
+ * in the same way.
  */
 #define _GNU_SOURCE /* for mkstemp() and posix_openpt() */
 #include <fcntl.h>
@@ -132,7 +132,8 @@ TEST(rejects_wrong_commands)
     expect_parse_error(text, "f:1:256: a line has at most 255 bytes");
 }
 
-/* Checks that all forms of one word have the same number of names. */
+/* Checks that all forms of a command, which begin with the same word, have the
+ * same number of names. */
 TEST(forms_of_a_word_have_equal_names)
 {
     for (int i = 0; i < control_n_forms; i++)
@@ -152,7 +153,7 @@ TEST(keys_become_commands)
     assert_true(line.is_change && line.v[0] > 0 && line.v[1] == 0);
     assert_int_equal(keyboard_parse_key("+", 1, &line), 1);
     assert_true(line.verb == CONTROL_DISTANCE && line.v[0] < 1);
-    /* not control keys: a function key, a single escape, a letter */
+    /* not control keys: a function key, a lone escape, a letter */
     assert_int_equal(keyboard_parse_key("\033[15~+", 6, &line), 5);
     assert_int_equal(line.verb, CONTROL_NONE);
     assert_int_equal(keyboard_parse_key("\033", 1, &line), 1);
@@ -179,8 +180,8 @@ TEST(playback_advances_frames)
     struct playback p;
 
     playback_init(&p);
-    /* without a rate, each picture shows the next frame, however long a picture
-     * takes */
+    /* without a rate, each picture shows the next frame, however long drawing
+     * it takes */
     for (int i = 0; i < 5; i++)
         assert_int_equal(playback_next_frame(&p, 7), i);
     assert_int_equal(play_control_line(&p, "pause", 1), 4);
@@ -222,8 +223,8 @@ static enum glint_status read_controls_from_text(const char *text)
     return controls_open(&input, scratch_file, false, &error);
 }
 
-/* Checks that lines are applied in order, and that a line for a later
- * picture delays those after it. */
+/* Checks that the lines of a file are applied in order, and that a line for a
+ * later picture delays all lines after it. */
 TEST(file_lines_are_applied_in_order)
 {
     char where[CONTROL_WHERE], wanted[CONTROL_WHERE];
@@ -253,8 +254,8 @@ TEST(file_lines_are_applied_in_order)
     controls_close(&input);
 }
 
-/* Checks that lines from a pipe are applied when complete, and that invalid
- * lines are counted and do not end reading. */
+/* Checks that lines from a pipe are applied as soon as they are complete, and
+ * that invalid lines are counted but do not end reading. */
 TEST(pipe_lines_are_applied_when_complete)
 {
     int to;
@@ -285,8 +286,8 @@ TEST(pipe_lines_are_applied_when_complete)
     unlink(scratch_file);
 }
 
-/* Reads keys from the terminal PATH in a new session; then the process ends, or
- * is killed if IS_KILLED is set. */
+/* Reads keys from the terminal PATH in a new session. Then the process ends, or
+ * waits to be killed if IS_KILLED is set. */
 static void read_terminal_keys(const char *path, int is_killed)
 {
     struct keyboard keys;
@@ -304,8 +305,8 @@ static void read_terminal_keys(const char *path, int is_killed)
     exit(line.verb == CONTROL_ORBIT ? 7 : 4);
 }
 
-/* Checks that keys arrive at once, and that the terminal's mode is restored,
- * however the process ends. */
+/* Checks that each key is received immediately, and that the terminal's mode is
+ * restored, however the process ends. */
 TEST(terminal_mode_is_restored)
 {
     for (int is_killed = 0; is_killed < 2; is_killed++) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that files that solo, mute or tint single ghosts set the stated
- * values, and that invalid files are rejected.
+ * Checks files that solo, mute or tint single ghosts: they set the stated
+ * values, and invalid files are rejected.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -10,8 +10,8 @@
 #include "model/ghost_file.h"
 #include "support/test.h"
 
-/* Makes a setup of three ghosts and a second part of ghost 1's pupil, which is
- * entry 3. */
+/* Makes a setup with four table entries: three ghosts, and as entry 3 a second
+ * pupil part of ghost 1. */
 static struct glint_setup *make_setup_of_three_ghosts(void)
 {
     static const int pair[4][2] = {{3, 1}, {12, 2}, {12, 5}, {12, 2}};
@@ -59,7 +59,7 @@ TEST(parses_gains_and_mutes)
     assert_int_equal(t[1].rgb_q14[0], 16384);
     assert_int_equal(t[1].rgb_q14[1], 8192);
     assert_int_equal(t[1].rgb_q14[2], 0);
-    /* entry 3 is a part of ghost 1's pupil */
+    /* entry 3 is a second pupil part of ghost 1 */
     assert_memory_equal(&t[3], &t[1], sizeof *t);
     assert_int_equal(t[2].rgb_q14[2], 16384);
     free(t);

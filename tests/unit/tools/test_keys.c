@@ -35,7 +35,8 @@ TEST(interpolates_values_between_keys)
     assert_true(keys_interpolate_at(&k, KEYS_GAIN, 15, 7) == 2);
     assert_true(keys_interpolate_at(&k, KEYS_GAIN, 20, 7) == 3);
     assert_true(keys_interpolate_at(&k, KEYS_GAIN, 1000000, 7) == 3);
-    /* an empty field is not a key: interpolates from frame 10 to 30 */
+    /* an empty field is not a key frame value: interpolates from frame 10 to
+     * 30 */
     assert_true(keys_interpolate_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
     assert_true(keys_interpolate_at(&k, KEYS_X, 15, 7) == 50);
     assert_true(keys_interpolate_at(&k, KEYS_Y, 20, 7) == 25);
@@ -43,7 +44,8 @@ TEST(interpolates_values_between_keys)
     assert_false(keys_has_column(&k, KEYS_GAIN));
 }
 
-/* Checks that the right two of many keys are used. */
+/* Checks that the two key frames around the requested frame are used, out of
+ * many. */
 TEST(uses_the_right_two_of_many_keys)
 {
     static char text[40000] = "frame,gain\n";

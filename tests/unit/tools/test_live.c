@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests glint live from its command line to its exit code with a fake camera:
- * resources, cost per frame, signals and unplugged cameras.
+ * resources, allocations per frame, signals and unplugged cameras.
  */
 #include <stdint.h>
 
@@ -27,7 +27,8 @@ static int n_waits, n_unwaited;
 /* called at each wait of the program, with the number of the wait */
 static void (*script)(int wait);
 
-/* Each wait of the program delivers a frame, which the script may remove. */
+/* Replaces the wait of the program: each wait delivers a frame, which the
+ * script may remove. */
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
                  const sigset_t *mask);
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
@@ -47,7 +48,7 @@ int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
     return 1;
 }
 
-/* Fails a program that dequeues repeatedly without waiting. */
+/* Makes the test fail if the program dequeues repeatedly without waiting. */
 static void on_dequeue(void)
 {
     if (++n_unwaited == 1000)
@@ -68,10 +69,10 @@ static void write_live_config(const char *text)
     fclose(f);
 }
 
-/* Runs `glint live -d FAKE -o null -q LINE` with stderr to a file. Returns its
- * exit code. Unless LINE sets the stop, the stop is a circle: the starburst of
- * rounded blades, computed at each start and reload, would cost 100 times as
- * much as the rest of the test. */
+/* Runs `glint live -d FAKE -o null -q LINE` with standard error in a file.
+ * Returns its exit code. Unless LINE sets the option stop, the stop is a
+ * circle, as computing the starburst of rounded blades at each start and reload
+ * would take 100 times as long as the rest of the test. */
 static int run_live_command(const char *line)
 {
     static char words[1024];
@@ -96,7 +97,7 @@ static int run_live_command(const char *line)
     return code;
 }
 
-/* Returns the number of times that TEXT was printed to stderr. */
+/* Returns how often TEXT was printed to standard error. */
 static int count_stderr_messages(const char *text)
 {
     static char all[100000];
@@ -144,7 +145,7 @@ TEST(frames_allocate_no_memory)
     expect_camera_closed_without_leaks();
     assert_int_equal(n_waits, 150);
     assert_true(asked[2] >= 5);
-    /* drawing frames allocates nothing */
+    /* drawing frames must allocate no memory */
     assert_int_equal(asked[149] - asked[2], 0);
 }
 
@@ -155,9 +156,9 @@ static void count_allocations_at_stream_start(void)
     asked_at_stream[n_streams++] = fake_camera_count_allocations();
 }
 
-/* Runs LINE with the waits of FOLLOW. Checks that streaming was started
- * N_STARTS times, each time after all set-up: nothing is allocated between
- * it and frame WAIT + 1 of the following waits. */
+/* Runs LINE; FOLLOW is called at each wait. Checks that streaming was started
+ * N_STARTS times, each time after set-up was complete: nothing is allocated
+ * between the start and frame WAIT + 1 of the following waits. */
 static void check_allocations_before_streaming(const char *line,
                                                void (*follow)(int wait),
                                                const int *wait, int n_starts)
@@ -191,8 +192,8 @@ static void change_camera_size(int wait)
     count_allocations(wait);
 }
 
-/* Checks that the camera starts streaming only after all set-up: at the
- * start, after it was unplugged, and at another size. */
+/* Checks that the camera starts streaming only after set-up is complete: at the
+ * start, after it was unplugged, and after its size changed. */
 TEST(streaming_starts_after_all_setup)
 {
     static const int start[] = {10}, back[] = {10, 40},
@@ -226,7 +227,7 @@ static int last_shot = 149;
 
 static void raise_reload_signals(int wait)
 {
-    /* Both snapshots are of frames with the same code. */
+    /* both snapshots show frames with the same code */
     if (wait == 3 || wait == last_shot)
         raise(SIGUSR2);
     if (wait % 10 == 5)
@@ -250,7 +251,8 @@ static const char *read_snapshot_file(int number)
     return into;
 }
 
-/* Checks that many reloads neither increase memory nor change the image. */
+/* Checks that many reloads of the configuration neither increase the memory in
+ * use nor change the image. */
 TEST(reloads_neither_leak_nor_change_the_image)
 {
     char line[200];
@@ -263,7 +265,7 @@ TEST(reloads_neither_leak_nor_change_the_image)
     for (int exact = 0; exact < 2; exact++) {
         fake_camera_reset();
         script = raise_reload_signals;
-        last_shot = exact ? 29 : 149; /* Exact rays take 0.15 s per frame. */
+        last_shot = exact ? 29 : 149; /* exact rays take 0.15 s per frame */
         snprintf(line, sizeof line, "--count %d --config %s%s", last_shot + 1,
                  config_path, exact ? " --rays exact --grid 8" : "");
         assert_ok(run_live_command(line));
@@ -324,7 +326,7 @@ static void request_snapshot_at_wait_2(int wait)
         raise(SIGUSR2);
 }
 
-/* Checks that with --layer flare and almost no light the image is black in
+/* Checks that the image with --layer flare and almost no light is black, in
  * every format and range. */
 TEST(flare_layer_without_light_is_black)
 {
@@ -354,7 +356,8 @@ TEST(flare_layer_without_light_is_black)
     }
 }
 
-/* Checks that a snapshot is taken of the next frame, without a busy loop. */
+/* Checks that a snapshot shows the frame after its request, and that waiting
+ * for it is not a busy loop. */
 TEST(snapshot_waits_for_the_next_frame)
 {
     char line[100], path[60], said[80];
@@ -406,8 +409,8 @@ TEST(adapts_to_changed_camera_sizes)
 
 /* ---------------------------------------------------------------- failures */
 
-/* Checks that if any call fails once, frames continue, or the run ends with
- * an exit code and a message. */
+/* Makes each call fail once. Checks that frames continue, or that the run ends
+ * with an exit code and a message. */
 TEST(every_failing_call_is_handled)
 {
     int n = 0, n_failed = 0, n_calls;
@@ -430,7 +433,7 @@ TEST(every_failing_call_is_handled)
     assert_true(n_failed >= 10);
 }
 
-/* Runs last, as the request to stop cannot be reset. */
+/* This test runs last, as the request to stop cannot be reset. */
 TEST(sigterm_stops_the_run)
 {
     script = raise_sigterm_at_wait_30;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the control of the frame rate on simulated machines with a given frame
- * time per quality step.
+ * Tests how glint live adapts the quality to the frame rate, on simulated
+ * machines with a given frame time per quality step.
  */
 #include <stdint.h>
 
@@ -15,16 +15,16 @@
 
 static struct live_adapt adapt;
 
-/* Counts and times of a simulated run. */
+/* Counters and times of a simulated run. */
 static struct seen {
     int n_frames, n_missed;
     int n_down, n_up;
     double first_down_s, last_change_s;
 } seen;
 
-/* Simulates a machine that takes cost_ms[step] per frame for SECONDS. A
- * frame that takes longer than a period misses the frames that arrive
- * meanwhile. */
+/* Simulates SECONDS of a machine on which a frame of quality step S takes
+ * cost_ms[S]. A frame that takes longer than a period misses the frames that
+ * arrive meanwhile. */
 static void simulate_machine_for_seconds(const double *cost_ms, double seconds)
 {
     double now_s = 0;
@@ -70,11 +70,11 @@ TEST(enough_time_keeps_step_0)
 
     simulate_machine_for_seconds(cost, 600);
     assert_int_equal(adapt.step, 0);
-    assert_true(seen.last_change_s < 0); /* no change of step */
+    assert_true(seen.last_change_s < 0); /* the step never changed */
 }
 
-/* Checks that half a second of misses changes the step, by more than one
- * step if a frame takes more than two periods. */
+/* Checks that half a second of missed frames changes the quality step, and by
+ * more than one step if a frame takes more than two periods. */
 TEST(misses_reduce_the_quality)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
@@ -84,7 +84,7 @@ TEST(misses_reduce_the_quality)
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
     assert_true(seen.last_change_s < 1.5);
     simulate_machine_for_seconds(
-        cost, 600); /* The step stays, as there is no spare time. */
+        cost, 600); /* the step does not change, as there is no spare time */
     assert_int_equal(adapt.step, 3);
     assert_int_equal(seen.n_down, 0);
     assert_int_equal(seen.n_missed, 0);
@@ -103,8 +103,8 @@ TEST(too_slow_machine_stays_at_the_last_step)
     assert_int_equal(seen.n_up, LIVE_MAX_STEP);
 }
 
-/* Checks that a single slow frame, as when an image is saved, changes
- * nothing. */
+/* Checks that a single slow frame, as when an image is saved, does not change
+ * the quality step. */
 TEST(single_slow_frame_changes_nothing)
 {
     static const double cost[8] = {20, 15, 10, 8, 6, 5, 4, 3};
@@ -117,7 +117,7 @@ TEST(single_slow_frame_changes_nothing)
 }
 
 /* Checks that after a burst of many lights the quality returns to the first
- * step, within some seconds per step. */
+ * step, within a few seconds per step. */
 TEST(quality_recovers_after_a_burst)
 {
     static const double heavy[8] = {150, 120, 90, 70, 50, 29, 20, 10};
@@ -130,7 +130,8 @@ TEST(quality_recovers_after_a_burst)
     assert_int_equal(seen.n_down, 0);
 }
 
-/* Checks that a finer step that is too slow is tried less and less often. */
+/* Checks that a finer step that is too slow is tried at increasing
+ * intervals. */
 TEST(slow_step_is_tried_less_and_less)
 {
     static const double cost[8] = {70, 50, 40, 12, 8, 6, 5, 4};
@@ -145,21 +146,21 @@ TEST(slow_step_is_tried_less_and_less)
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
 
-/* Checks that a finer step that was once too slow is tried again later. */
+/* Checks that a finer step that was too slow once is tried again later. */
 TEST(slow_step_is_tried_again_later)
 {
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};
     static const double light[8] = {10, 9, 8, 7, 6, 5, 4, 3};
 
     simulate_machine_for_seconds(heavy, 300);
-    /* the wait before a retry grows to at most a minute, and restarts with the
-     * first value */
+    /* the wait before a retry grows to at most a minute, and starts again at
+     * its first value */
     simulate_machine_for_seconds(light, 75);
     assert_int_equal(adapt.step, 0);
 }
 
-/* Checks that step 0 has the requested quality parameters, and that no step
- * is finer than the previous one. */
+/* Checks that step 0 has the requested quality parameters, and that no step is
+ * finer than the one before. */
 TEST(steps_become_coarser)
 {
     static const struct glint_dials ask[] = {
@@ -180,7 +181,7 @@ TEST(steps_become_coarser)
             d = live_adapt_set_dials(&adapt, ask[i]);
             if (s == 0)
                 assert_memory_equal(&d, &ask[i], sizeof d);
-            /* Steps above 3 draw at half resolution. */
+            /* steps above 3 draw at half resolution */
             assert_int_equal(glint_dials_half(&d), s > 3);
             assert_in_range(d.fineness, 1, last.fineness);
             assert_in_range(d.max_lights, 1, last.max_lights);

@@ -46,7 +46,7 @@ static void check_latency_percentiles(int n, int64_t low_us, int64_t span_us)
     }
     qsort(us, (size_t)n, sizeof *us, compare_int64);
     for (int percent = 1; percent <= 100; percent++) {
-        /* nearest rank, counted from 1 */
+        /* rank of the percentile (nearest-rank method), counted from 1 */
         const int rank = (n * percent + 99) / 100;
         const double want = 1e-3 * (double)us[rank - 1];
         const double is = live_stats_latency_ms(&stats.second, percent);
@@ -84,8 +84,8 @@ TEST(extreme_latencies)
     assert_true(live_stats_latency_ms(&stats.second, 100) == 3e9);
 }
 
-/* Checks that a full bin halves all bins, and that percentiles and rare
- * latencies are preserved. */
+/* Checks that when one bin is full the counts of all bins are halved, which
+ * preserves percentiles and rare latencies. */
 TEST(full_bin_halves_all_bins)
 {
     live_stats_start(&stats, 0);
@@ -99,7 +99,7 @@ TEST(full_bin_halves_all_bins)
     assert_true(live_stats_latency_ms(&stats.total, 50) == 5.05);
     assert_true(live_stats_latency_ms(&stats.total, 51) == 6.05);
     assert_int_equal(stats.second.bin[50], 1);
-    /* The sum of all counts also exceeds 32 bits. */
+    /* the sum of all counts exceeds 32 bits, too */
     add_frame_of_latency(2000000);
     stats.total.bin[50] = stats.total.bin[60] = UINT32_MAX;
     stats.total.bin[LIVE_BINS] = UINT32_MAX;
@@ -154,8 +154,8 @@ TEST(prints_json)
         "\"reused\":1}");
 }
 
-/* Checks that after a second its statistics restart, while those of the run
- * continue. */
+/* Checks that the statistics of the last second restart each second, while
+ * those of the whole run continue. */
 TEST(statistics_restart_each_second)
 {
     add_recorded_frames();
@@ -213,7 +213,8 @@ TEST(prints_a_line)
         "5.00 show 0.00  3000 bytes\n");
 }
 
-/* Checks that counts and times at their max values are printed completely. */
+/* Checks that counts and times at their max values are printed without
+ * truncation. */
 TEST(prints_large_counts)
 {
     struct live_frame_times t = {.shown = true,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that a mask dims lamps, and that lamps fade off-screen.
+ * Checks that an occlusion mask dims lamps, and that lamps fade out
+ * off-screen.
  */
 #include <math.h>
 #include <stdint.h>
@@ -17,7 +18,8 @@ static const struct glint_view view = {
     .width = 4 * SIDE, .height = 4 * SIDE, .sensor_width_mm = 36};
 static const double focal_mm = 50;
 
-/* Returns a mask a quarter as large as the image, black left of COLUMN. */
+/* Returns a mask a quarter as large as the image, black to the left of
+ * COLUMN. */
 static struct occlusion make_half_black_mask(int column)
 {
     struct occlusion o = {.file = "mask.ppm", .black = 0, .white = 255};
@@ -30,8 +32,8 @@ static struct occlusion make_half_black_mask(int column)
     return o;
 }
 
-/* Returns the fraction of light that O leaves of a lamp of power 8 and
- * RADIUS pixels at (X, Y). */
+/* Returns the fraction of the light of a lamp of power 8 and RADIUS pixels at
+ * (X, Y) that the mask O does not occlude. */
 static double measure_unoccluded_fraction(struct occlusion *o, double x,
                                           double y, double radius)
 {
@@ -57,7 +59,8 @@ TEST(mask_occludes_a_fraction_of_a_lamp)
     assert_true(measure_unoccluded_fraction(&o, 60, 100, 20) == 0);
     assert_true(fabs(measure_unoccluded_fraction(&o, 128, 100, 20) - 0.5) <
                 0.03);
-    /* area of the segment of a disc beyond half its radius, as a fraction */
+    /* area of the segment of a disc beyond half its radius, as a fraction of
+     * the disc */
     assert_true(fabs(measure_unoccluded_fraction(&o, 118, 100, 20) - 0.1955) <
                 0.04);
     assert_true(fabs(measure_unoccluded_fraction(&o, 128, 100, 0) - 0.5) <
@@ -66,7 +69,7 @@ TEST(mask_occludes_a_fraction_of_a_lamp)
                 1); /* off-screen */
 }
 
-/* Checks that a lamp that crosses the edge of a mask fades in small steps. */
+/* Checks that a lamp that crosses the edge of a mask fades by small steps. */
 TEST(lamp_crossing_a_mask_fades_gradually)
 {
     struct occlusion o = make_half_black_mask(SIDE / 2);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that poses of a scene's objects from files and pipes are applied in
- * order and in the right handedness, and that invalid lines are rejected.
+ * Checks that poses of objects, read from files and pipes, are applied in
+ * order and with the handedness of the scene, and that invalid lines are
+ * rejected.
  */
 #include <fcntl.h>
 #include <math.h>
@@ -25,7 +26,7 @@ static struct poses poses;
 static struct glint_error error;
 
 /* Makes a scene of two objects, a sun and a lamp, with 16 steps per unit and
- * handedness HAND. */
+ * the handedness HAND. */
 static void make_scene_of_two_objects(uint32_t hand)
 {
     header = (struct glint_scene_header){
@@ -60,7 +61,7 @@ static void expect_next_pose(int frame, int thing, int x)
     assert_int_equal(p->at[0], x);
 }
 
-/* Checks that poses are sorted by frame, then by line; "*" counts as frame
+/* Checks that poses are sorted by frame, then by line; the frame "*" counts as
  * 0. */
 TEST(poses_are_sorted_by_frame)
 {
@@ -82,7 +83,7 @@ TEST(poses_are_sorted_by_frame)
     poses_close(&poses);
 }
 
-/* Checks that in a scene of the other handedness a pose is mirrored. */
+/* Checks that a pose is mirrored in a scene of the other handedness. */
 TEST(other_handedness_mirrors_poses)
 {
     static const char text[] = "0,ball,1,2,3,2,.4,.6,.8\n0,sun,1,2,2\n";
@@ -143,7 +144,7 @@ TEST(rejects_wrong_lines)
                      GLINT_E_IO);
 }
 
-/* Checks that a pipe returns lines as they arrive, only when complete. */
+/* Checks that lines from a pipe are returned as they arrive, once complete. */
 TEST(pipe_returns_complete_lines)
 {
     static const char parts[4][64] = {"0,ba",
@@ -178,7 +179,7 @@ TEST(pipe_returns_complete_lines)
     assert_int_equal(write(to, "\n*,ball,9,0,0\n", 14), 14);
     expect_next_pose(6, 0, 144);
     assert_int_equal(poses.n_bad, 3);
-    /* a pipe without a writer, and with a new writer */
+    /* a pipe after its writer closed it, and with a new writer */
     close(to);
     assert_null(poses_next_pose(&poses, 7));
     to = open(scratch_file, O_WRONLY);
@@ -189,7 +190,7 @@ TEST(pipe_returns_complete_lines)
     unlink(scratch_file);
 }
 
-/* Checks that a pipe whose writer never pauses is read only up to its limit
+/* Checks that a pipe that is written without pause is read only up to a limit
  * per frame. */
 TEST(pipe_is_read_up_to_a_limit_per_frame)
 {

@@ -30,7 +30,8 @@ static struct tool_progress start_fake_progress(bool quiet, bool is_terminal)
     return p;
 }
 
-/* Returns what P prints when DONE (0 .. 1) is reached at AT_S seconds. */
+/* Returns what P prints when the fraction DONE (0 .. 1) is reported at the time
+ * AT_S, seconds. */
 static const char *print_progress_at(struct tool_progress *p, double at_s,
                                      double done)
 {
@@ -59,7 +60,7 @@ TEST(short_work_prints_nothing)
     for (int k = 0; k <= 99; k++)
         assert_string_equal(print_progress_at(&p, 0.1 * k, k / 100.), "");
     assert_string_equal(print_progress_at(&p, 500, 1),
-                        ""); /* prints nothing at the end of the work */
+                        ""); /* at the end of the work nothing is printed */
 }
 
 TEST(line_every_ten_seconds)
@@ -72,12 +73,13 @@ TEST(line_every_ten_seconds)
     assert_string_equal(print_progress_at(&p, 10, 0.25),
                         "bake: 25 % in 10 s, about 30 s left\n");
     assert_string_equal(print_progress_at(&p, 19.9, 0.4), "");
-    /* If the estimate falls back, the displayed progress does not. */
+    /* if the estimated fraction decreases, the displayed progress does not */
     assert_string_equal(print_progress_at(&p, 20, 0.2),
                         "bake: 40 % in 20 s, about 80 s left\n");
 }
 
-/* Checks that the second part of the work continues where the first ends. */
+/* Checks that the progress of a second part of the work continues where the
+ * first part ended. */
 TEST(second_part_continues_the_first)
 {
     struct tool_progress p = start_fake_progress(false, false);
@@ -89,8 +91,8 @@ TEST(second_part_continues_the_first)
                         "bake: 80 % in 20 s, about 5 s left\n");
 }
 
-/* Checks that an estimate is printed once, after 5 s, for work of 20 s or
- * more. */
+/* Checks that the estimated time is printed once, after 5 s, if the work takes
+ * 20 s or more. */
 TEST(long_work_prints_an_estimate_once)
 {
     struct tool_progress p = start_fake_progress(false, false);
@@ -108,8 +110,8 @@ TEST(long_work_prints_an_estimate_once)
                         "with a larger --tolerance\n");
 }
 
-/* Checks that a clock that starts at the first report excludes the time before
- * it, and that short work gets an estimate on request. */
+/* Checks that a clock that starts at the first report does not include the time
+ * before it, and that the estimate is printed for short work on request. */
 TEST(clock_of_first_report)
 {
     struct tool_progress p = start_fake_progress(false, false);
@@ -132,7 +134,8 @@ TEST(quiet_prints_nothing)
     }
 }
 
-/* Checks that a terminal gets a bar ten times per second, and at the end. */
+/* Checks that a terminal shows a progress bar that is updated ten times per
+ * second, and at the end. */
 TEST(terminal_gets_a_bar)
 {
     struct tool_progress p = start_fake_progress(false, true);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the quality of a scene that adapts while it runs: in glint live, to
- * hold a frame rate, and to keep a budget. Frame times come from tables, and
- * the clock is fake.
+ * Tests how the quality of a scene adapts while it is drawn, to reach a frame
+ * rate in glint live, and to stay within a budget. Frame times come from
+ * tables, and the clock is fake.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Checks that the --quality of each level is the one with the same
+/* Checks that each level states the --quality that has its quality
  * parameters. */
 TEST(levels_have_their_quality)
 {
@@ -37,7 +37,8 @@ TEST(levels_have_their_quality)
     }
 }
 
-/* Checks that the steps of glint live go down the levels to the last. */
+/* Checks that the steps of glint live go through the levels, down to the
+ * last. */
 TEST(live_steps_follow_the_levels)
 {
     struct live_adapt adapt;
@@ -63,8 +64,8 @@ static void simulate_scene_frame(struct over_scene *over, uint8_t *pixels)
     assert_ok(over_scene_draw(over, &image, 0));
 }
 
-/* Checks that a scene that was drawn coarser and then finer gives the image
- * of a new scene with the same parameters. */
+/* Checks that a scene drawn at a coarser level and then at a finer level gives
+ * the image of a new scene at the latter. */
 TEST(changed_level_equals_a_new_scene)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
@@ -91,7 +92,7 @@ TEST(changed_level_equals_a_new_scene)
 
 /* ------------------------------------------------------------------ budgets */
 
-/* time of each level, ms, at the machine's usual speed */
+/* frame time of each level at the usual speed of the machine, ms */
 static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8};
 
 static struct scene_budget make_scene_budget(void)
@@ -103,8 +104,8 @@ static struct scene_budget make_scene_budget(void)
     return budget;
 }
 
-/* Draws N frames that take SLOWER times the table's time, with a limit of
- * LIMIT_MS. Returns the number of frames above the limit. */
+/* Draws N frames, each of which takes SLOWER times as long as in the table,
+ * with a limit of LIMIT_MS. Returns the number of frames above the limit. */
 static int count_late_frames(struct scene_budget *b, int n, double slower,
                              double limit_ms)
 {
@@ -119,8 +120,8 @@ static int count_late_frames(struct scene_budget *b, int n, double slower,
     return late;
 }
 
-/* Checks that the finest level that fits is reached from finer levels and,
- * later, from coarser ones. */
+/* Checks that the finest level that fits into the budget is reached, first from
+ * finer levels, later from coarser ones. */
 TEST(finest_fitting_level_is_reached)
 {
     struct scene_budget b = make_scene_budget();
@@ -138,11 +139,11 @@ TEST(finest_fitting_level_is_reached)
     count_late_frames(&b, 200, 1, 30);
     assert_int_equal(b.level, 2);
     count_late_frames(&b, 200, .5, 30);
-    /* equals level 0 with the requested parameters */
+    /* has the same parameters as level 0 */
     assert_int_equal(b.level, 1);
 }
 
-/* Checks that a level that is too slow is rarely tried again. */
+/* Checks that a level that is too slow is tried again only rarely. */
 TEST(slow_level_is_rarely_tried)
 {
     struct scene_budget b = make_scene_budget();
@@ -152,7 +153,7 @@ TEST(slow_level_is_rarely_tried)
     assert_true(count_late_frames(&b, 1000, 1, 22) <= 14);
 }
 
-/* Checks that one slow frame changes nothing. */
+/* Checks that a single slow frame does not change the level. */
 TEST(single_slow_frame_changes_nothing)
 {
     struct scene_budget b = make_scene_budget();
@@ -164,10 +165,10 @@ TEST(single_slow_frame_changes_nothing)
     assert_int_equal(b.level, 2);
 }
 
-/* Simulates 200 frames of a scene and a flare with a budget of 60 ms. The
- * flare uses the time that the scene leaves, within LEAST_MS at quality 0
- * and MOST_MS at quality 1. Checks that the scene settles at LEVEL and that
- * at most 10 frames are late, not counting the first 20. */
+/* Simulates 200 frames of a scene and a flare with a common budget of 60 ms.
+ * The flare uses the time that the scene leaves, at least LEAST_MS (quality 0)
+ * and at most MOST_MS (quality 1). Checks that the scene ends at LEVEL, and
+ * that at most 10 frames after the first 20 are late. */
 static void check_budget_shared_with_flare(double least_ms, double most_ms,
                                            int level)
 {
@@ -186,25 +187,25 @@ static void check_budget_shared_with_flare(double least_ms, double most_ms,
         late += i >= 20 && scene_ms + flare_ms > 60;
     }
     assert_int_equal(b.level, level);
-    assert_true(late <= 10); /* late frames caused by trials of a finer level */
+    assert_true(late <= 10); /* frames are late when a finer level is tried */
 }
 
 TEST(budget_is_shared_with_the_flare)
 {
     check_budget_shared_with_flare(1, 2,
-                                   0); /* a flare that needs almost no time */
+                                   0); /* the flare needs almost no time */
     check_budget_shared_with_flare(10, 200,
-                                   2); /* a flare that could use all the time */
-    check_budget_shared_with_flare(
-        30, 200, 2); /* a flare that leaves half of the time */
+                                   2); /* the flare could use all the time */
+    check_budget_shared_with_flare(30, 200,
+                                   2); /* the flare leaves half of the time */
     check_budget_shared_with_flare(50, 200,
-                                   4); /* a flare that leaves almost no time */
+                                   4); /* the flare leaves almost no time */
     assert_true(scene_budget_limit_flare(60, 59, 0) == 6);
 }
 
 static double now_s, step_s;
 
-/* Each reading of the clock advances it by one step. */
+/* a fake clock that advances by one step at each reading */
 double __wrap_tool_clock_s(void);
 double __wrap_tool_clock_s(void)
 {
@@ -212,7 +213,8 @@ double __wrap_tool_clock_s(void)
     return now_s;
 }
 
-/* Checks that images of a scene with a budget equal those of its quality. */
+/* Checks that images of a scene with a budget equal those of the quality that
+ * the budget has selected. */
 TEST(images_equal_those_of_the_quality)
 {
     static const struct tool tool = {.name = "test", .quiet = true};

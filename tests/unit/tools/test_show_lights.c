@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks position and colour of the marks of lights in images of every format,
- * and that nothing is written off-screen.
+ * Checks the marks that show detected lights: their position and colour in
+ * images of every format, and that nothing is written outside the image.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -49,8 +49,8 @@ static struct glint_lamp_track make_lamp_track(int x, int y)
                                      .size_q8 = 2 << 8};
 }
 
-/* Checks that with lines one pixel wide a mark is a cross of 5 pixels, a box
- * of +-8 and the digits 907. */
+/* Checks that a mark drawn with lines one pixel wide is a cross of 5 pixels, a
+ * box of +-8 pixels, and the digits 907. */
 TEST(mark_is_a_cross_a_box_and_digits)
 {
     static const char *const number[5] = {"### ### ###", "# # # #   #",
@@ -78,17 +78,20 @@ TEST(mark_is_a_cross_a_box_and_digits)
         for (int x = 0; number[y][x]; x++)
             assert_int_equal(px[3 * ((12 + y) * WIDTH + 41 + x) + 1] == 255,
                              number[y][x] == '#');
-    assert_int_equal(px[3 * (21 * WIDTH + 33)], 0); /* shadow of the cross */
+    /* the shadow of the cross is black */
+    assert_int_equal(px[3 * (21 * WIDTH + 33)], 0);
     free(mem);
 }
 
-/* Checks green at the mark's centre: (0, 255, 0) is (145, 54, 34) in BT.601
- * limited range and (182, 30, 12) in BT.709 full range. */
+/* Checks that the centre of a mark is green: R, G, B = (0, 255, 0), which is Y,
+ * Cb, Cr = (145, 54, 34) in BT.601 limited range and (182, 30, 12) in BT.709
+ * full range. */
 TEST(marks_are_green_in_every_format)
 {
     static const struct {
         enum glint_pixel_format format;
-        int offset[3]; /* byte offsets of Y Cb Cr or R G B of pixel (30, 20) */
+        /* byte offsets of the samples Y, Cb, Cr or R, G, B of pixel (30, 20) */
+        int offset[3];
         int is_rgb;
     } at[] = {
         {GLINT_RGB24, {5850, 5851, 5852}, 1},
@@ -134,8 +137,8 @@ TEST(writes_rgb565)
     free(mem);
 }
 
-/* Checks that marks inside, across the borders and far off-screen do not
- * write to the guard bytes. */
+/* Checks that marks inside the image, across its borders and far off-screen do
+ * not change the guard bytes. */
 TEST(marks_are_clipped_at_the_borders)
 {
     static const int places[] = {-(1 << 20), -100, -9, -1,     0,      5,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests those functions of glint sweep that do not measure: Pareto fronts, PNG,
- * parameters and quality levels.
+ * Tests the functions of glint sweep that do not measure images: Pareto
+ * fronts, PNG files, parameters and quality levels.
  */
 #include <stdint.h>
 
@@ -14,8 +14,8 @@
 #include "measure/sweep.h"
 #include "support/test.h"
 
-/* Returns whether A dominates B: it is cheaper and not worse, or better and
- * not costlier. */
+/* Returns whether A dominates B: A is cheaper and not worse, or better and not
+ * more expensive. */
 static int point_dominates_point(const double *cost, const double *quality,
                                  int a, int b)
 {
@@ -37,10 +37,10 @@ TEST(pareto_front_matches_hand_computation)
     assert_int_equal(sweep_find_front(cost, quality, 0, front), 0);
 }
 
-/* Checks the height in dB above the line through the quality levels: of a
- * setting on the line between two levels, one above it, one costlier than an
- * equal level, one cheaper than all, and one between levels of which one
- * draws at half resolution. */
+/* Checks the height of a setting, dB, above the line through the quality
+ * levels, for settings that lie on the line between two levels; above it; at an
+ * equal level's quality but a higher cost; below the cost of all levels; and
+ * between levels of which one draws at half resolution. */
 TEST(measures_db_above_the_quality_levels)
 {
     struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
@@ -66,9 +66,9 @@ TEST(measures_db_above_the_quality_levels)
     assert_true(fabs(sweep_compute_gain_above_front(mean, n, 8) + 2) < 1e-9);
 }
 
-/* Checks that no setting dominates one on the front, and that each setting
- * off the front is dominated by one on it. Values are few, so many are
- * equal. */
+/* Checks that no setting dominates a setting on the front, and that each
+ * setting off the front is dominated by one on it. Values are taken from a few
+ * numbers, so that many are equal. */
 TEST(pareto_front_of_many_settings)
 {
     enum { N = 60 };
@@ -100,7 +100,8 @@ TEST(pareto_front_of_many_settings)
     }
 }
 
-/* Checks the checksums of the smallest PNG against zlib's. */
+/* Checks the checksums of the smallest possible PNG file against those of
+ * zlib. */
 TEST(smallest_png_matches_zlib)
 {
     static const uint8_t red[] = {255, 0, 0};
@@ -119,7 +120,7 @@ TEST(smallest_png_matches_zlib)
     free(text);
 }
 
-/* Returns a hash of the settings in S, except the parameter NAME. */
+/* Returns a hash of all settings in S except the parameter NAME. */
 static uint64_t hash_settings_without(const struct settings *s,
                                       const char *name)
 {
@@ -143,8 +144,8 @@ static uint64_t hash_settings_without(const struct settings *s,
     return hash;
 }
 
-/* Checks that each non-default value of a parameter changes the settings,
- * and changes no other parameter. */
+/* Checks that setting a parameter to each non-default value changes this
+ * parameter and no other. */
 TEST(each_parameter_changes_the_settings)
 {
     struct sweep_setting standard = {.alone = -1, .quality = -1};
@@ -181,9 +182,9 @@ static int is_at_half_resolution(const struct settings *settings)
     return glint_dials_half(&settings->dials);
 }
 
-/* Checks that a better level is never coarser, among levels at full
- * resolution and among those at half, and that the middle level is the
- * default settings. */
+/* Checks that better levels are never coarser, separately for levels at full
+ * and at half resolution, and that the middle level has the default
+ * settings. */
 TEST(better_levels_are_never_coarser)
 {
     struct settings last, settings, plain;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the random items of data sets: a line restores every number, numbers
- * stay in their ranges, and none depends on another.
+ * Tests the random parameters of synthetic data sets: the line of an item
+ * restores all its numbers, numbers are in their ranges, and none depends on
+ * another.
  */
 #include <math.h>
 #include <stdint.h>
@@ -83,7 +84,7 @@ TEST(random_numbers_stay_in_range)
                 high[k] = fmax(high[k], read_json_field(&item, k));
             }
     }
-    /* 2000 expected; five standard deviations are 158 */
+    /* 2000 are expected; five standard deviations are 158 */
     assert_in_range(zeros, 1850, 2150);
     for (int k = 0; k < SYNTH_FIELDS; k++) {
         const double span = synth_field[k].high - synth_field[k].low;
@@ -96,7 +97,7 @@ TEST(random_numbers_stay_in_range)
     }
 }
 
-/* Checks that a changed range of one number does not change the others. */
+/* Checks that changing the range of one number does not change the others. */
 TEST(random_numbers_are_independent)
 {
     struct synth_item a = named, b = named;
@@ -105,7 +106,7 @@ TEST(random_numbers_are_independent)
 
     synth_ranges_set_defaults(&ranges);
     synth_item_randomise(&a, &ranges, 3, 14);
-    /* Numbers whose names have the same length are independent as well. */
+    /* numbers whose names have the same length are independent, too */
     assert_true(a.crop_x != a.crop_y);
     assert_true(synth_ranges_parse(&ranges, "level=0.5", &why));
     synth_item_randomise(&b, &ranges, 3, 14);
@@ -123,7 +124,8 @@ TEST(random_numbers_are_independent)
     assert_true(synth_ranges_parse(&ranges, "star=0", &why));
 }
 
-/* Checks that sensor noise has the variance of photon noise plus read noise. */
+/* Checks that the variance of sensor noise is that of photon noise plus read
+ * noise. */
 TEST(noise_is_photon_and_read_noise)
 {
     enum { SIDE = 256, N = 3 * SIDE * SIDE };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the options with which the positions of a zoom lens are baked, by the
- * keys of the models.
+ * Tests the options with which the positions of a zoom lens are baked, by
+ * comparing the keys of the models.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -29,8 +29,9 @@ static void set_zoom_position(struct glint_prescription *at, double along)
         fail_msg("%s", error.text);
 }
 
-/* Bakes both ends and the positions needed for an error of HALFWAY_DB in
- * between. Sets KEY to the keys of the models of the ends. */
+/* Bakes both ends of the zoom and the positions needed for a PSNR of
+ * HALFWAY_DB half-way between positions. Sets KEY to the keys of the models
+ * of both ends. */
 static void bake_zoom_positions(const struct glint_bake_options *options,
                                 double halfway_db, uint64_t key[2])
 {
@@ -55,8 +56,8 @@ static void bake_zoom_positions(const struct glint_bake_options *options,
     free(baked.data);
 }
 
-/* Returns the model key of the position ALONG (0 .. 1) whose neighbour is at
- * BESIDE; BESIDE < 0: no neighbour. */
+/* Returns the model key of the zoom position ALONG (0 .. 1) whose neighbour is
+ * at BESIDE; BESIDE < 0: no neighbour. */
 static uint64_t
 compute_key_of_position(const struct glint_bake_options *options, double along,
                         double beside)
@@ -71,8 +72,8 @@ compute_key_of_position(const struct glint_bake_options *options, double along,
     return glint_bake_key(&at, &with);
 }
 
-/* Checks that both ends are baked with the finest step between positions, which
- * is 1/16 as an interval may be halved four times. */
+/* Checks that both ends are baked with the finest step between positions as
+ * neighbour: 1/16, as an interval may be halved four times. */
 TEST(ends_are_baked_with_a_finest_step)
 {
     struct glint_bake_options options;

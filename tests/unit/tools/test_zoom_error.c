@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the error of a zoom lens of two elements that was baked at both ends:
- * lights come from the reported angles, the error is small at the ends and
- * larger half-way.
+ * the lights are at the reported angles, and the error is small at the ends
+ * and larger half-way.
  */
 #include <math.h>
 #include <stdint.h>
@@ -23,7 +23,7 @@ static const char table[] = "name t\n"
                             "surface  90    4  12  1.62 36\n"
                             "surface -90   40/38  12  air\n";
 
-/* the lens at both ends, and half-way */
+/* the lens at both ends of the zoom, and half-way */
 static struct glint_prescription at[3];
 static struct glint_bake_model model[2];
 static unsigned char *file;
@@ -69,9 +69,9 @@ TEST_CLOSE
     free(file);
 }
 
-/* Measures the errors of the ghosts whose first error is below 0, with
- * lights up to MAX_DEG that are shifted by SHIFT of their spacing. ALONG is
- * the zoom position, LENS the table at that position. */
+/* Measures the errors of ghosts whose first error is below 0, by lights up to
+ * MAX_DEG that are shifted by SHIFT of their spacing. ALONG: zoom position;
+ * LENS: lens table at that position. */
 static void measure_errors_up_to_angle(double max_deg,
                                        const struct glint_prescription *lens,
                                        double along, double shift,
@@ -93,10 +93,10 @@ static void measure_ghost_errors(const struct glint_prescription *lens,
     measure_errors_up_to_angle(MAX_DEG, lens, along, shift, error);
 }
 
-enum { EACH = 4 }; /* one in EACH of the angles is always measured */
+enum { EACH = 4 }; /* one in EACH angles is always measured */
 
-/* Marks the errors of ghost 0 as wanted (-1) and those of the other ghost as
- * done (2). */
+/* Marks the errors of ghost 0 as to be measured (-1), and those of the other
+ * ghost as done (2). */
 static void mark_errors_to_measure(struct zoom_error error[GHOSTS])
 {
     for (int g = 0; g < GHOSTS; g++)
@@ -120,14 +120,14 @@ TEST(errors_at_baked_positions_are_small)
     mark_errors_to_measure(end);
     measure_ghost_errors(&at[0], 0, 0.5, end);
     for (int a = 0; a < ZOOM_ANGLES; a++) {
-        /* 49.2 dB: a model of 50 dB against interpolated exact rays */
+        /* 49.2 dB: a model of 50 dB compared with interpolated exact rays */
         assert_true(end[0].of[a] >= 0 && end[0].of[a] < 1.2e-5);
         assert_true(end[1].of[a] == 2);
     }
 }
 
-/* Checks that the middle is not exact, and that the last angle of one
- * interval is the first of the next. */
+/* Checks that the zoom is not exact half-way, and that the last angle of one
+ * interval is the first angle of the next. */
 TEST(lights_of_adjacent_intervals_meet)
 {
     struct zoom_error begin[GHOSTS], end[GHOSTS];
@@ -141,8 +141,8 @@ TEST(lights_of_adjacent_intervals_meet)
         assert_true(end[0].of[a] == begin[0].of[a + EACH]);
 }
 
-/* Checks that additional angles are measured around the angle where a ghost
- * vanishes (in this test the model's ghost vanishes as well). */
+/* Checks that additional angles are measured around the angle at which a ghost
+ * vanishes. In this test, the model's ghost vanishes there, too. */
 TEST(angles_where_ghosts_vanish_are_measured)
 {
     struct zoom_error halves[GHOSTS], there[GHOSTS];
@@ -165,9 +165,9 @@ TEST(angles_where_ghosts_vanish_are_measured)
     assert_int_equal(ends, 1);
 }
 
-/* Checks that lights go up to 1.5 times the half diagonal, further than this
- * test's model was baked for, so that at the last angles whole ghosts count as
- * errors. */
+/* Checks that lights go up to 1.5 times the half diagonal of the image. This
+ * test's model was baked for smaller angles, so that at the last angles whole
+ * ghosts count as errors. */
 TEST(lights_reach_beyond_the_corner)
 {
     const double corner_mm = 0.5 * hypot(24, 16);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests dirt on the front element: its light is the haze times the fraction of
- * dirt that a pixel's rays pass, as sums over the stop; the same bits for any
- * tiles and workers; none without dirt.
+ * a pixel's rays that pass through dirt, summed over the stop; images are
+ * bit-identical for any tiles and workers; a clean front adds no light.
  */
 #include <math.h>
 #include <stdint.h>
@@ -20,7 +20,7 @@ enum { WIDTH = 131, HEIGHT = 75 };
 
 static const struct glint_real one = {1 << 30, -30};
 
-/* Optics of an octagonal stop behind a front element of 20 mm. */
+/* Optics of an octagonal stop behind a front element 20 mm wide. */
 static const struct glint_front_optics optics = {.tangent = 1. / WIDTH,
                                                  .z = 1.4,
                                                  .radius = 0.12,
@@ -75,9 +75,9 @@ TEST(table_has_the_dust_fractions)
     glint_front_free(dirt);
 }
 
-/* Checks that a mask over the left half of the front (seen from the sensor,
- * x right) covers the right half of the image, whose light comes from there,
- * and that up in the mask is up on the front. */
+/* Checks that a mask over the left half of the front (seen from the sensor, x
+ * right) covers the right half of the image, whose light passes the left half
+ * of the front, and that up in the mask is up on the front. */
 TEST(mask_is_mirrored_by_the_lens)
 {
     static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
@@ -120,7 +120,8 @@ TEST(rejects_invalid_dirt)
 
 /* ---------------------------------------------------------------- the light */
 
-/* A random table of fractions, and haze of the same light in all cells. */
+/* A table of random fractions, and haze whose light is the same in all
+ * cells. */
 struct scene {
     struct bare_flare bare;
     struct glint_veil *veil;
@@ -153,7 +154,7 @@ static void close_haze_scene(struct scene *s)
     free(s->mem);
 }
 
-/* Draws the uniform haze of a lamp onto MEM. LIGHT: light of the haze where the
+/* Draws the uniform haze of a lamp into MEM. LIGHT: light of the haze where the
  * dirt is densest, 1 = white. */
 static void draw_haze_of_lamp(struct scene *s, double light,
                               enum glint_pixel_format format, void *mem)
@@ -184,8 +185,8 @@ static void draw_haze_of_lamp(struct scene *s, double light,
     glint_veil_draw_alone(s->veil, s->bare.flare, &image);
 }
 
-/* Checks that linear images get light times fraction, interpolated linearly
- * between nodes. */
+/* Checks that each pixel of a linear image gets the haze's light times the
+ * fraction of dirt, interpolated linearly between nodes. */
 TEST(linear_light_is_interpolated_between_nodes)
 {
     static int32_t linear_q20[3 * WIDTH * HEIGHT];
@@ -212,9 +213,9 @@ TEST(linear_light_is_interpolated_between_nodes)
     close_haze_scene(&s);
 }
 
-/* Checks codes: tiles, workers and order do not change them bit by bit, for
- * dim light and for light above white; more light is nowhere darker; every
- * machine draws the same. */
+/* Checks images in codes: tiles, workers and order do not change any bit, for
+ * dim light and for light above white; more light makes no pixel darker; and
+ * every machine draws the same image. */
 TEST(codes_are_bit_identical)
 {
     const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);

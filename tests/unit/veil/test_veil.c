@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests veiling glare: amount and distribution of light, the index measured by
- * ISO 9358, the same bits for any workers, tiles and order, and continuity
- * while a lamp moves.
+ * Tests veiling glare: amount and distribution of its light, the veiling glare
+ * index by ISO 9358, bit-identical images for any workers, tiles and order of
+ * jobs, and continuity while a lamp moves.
  */
 #include <math.h>
 #include <stdint.h>
@@ -28,7 +28,7 @@ struct canvas {
     int width, height, cells[2];
     struct bare_flare bare;
     struct glint_veil *veil;
-    void *mem; /* memory of the veil */
+    void *mem; /* memory of the veil renderer */
 };
 
 static void open_veil_canvas(struct canvas *c, int width, int height,
@@ -53,7 +53,7 @@ static void close_veil_canvas(struct canvas *c)
     free(c->mem);
 }
 
-/* Sets TABLE[N] to a Gaussian of SIGMA cells. */
+/* Sets TABLE[N] to a Gaussian with a standard deviation of SIGMA cells. */
 static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
@@ -72,7 +72,8 @@ static void set_gaussian_table(int32_t *table_q30, int n, double sigma)
     table_q30[0] = rest;
 }
 
-/* Makes a spread of SIGMA pixels with the fraction SHARE of all light. */
+/* Makes a Gaussian spread function with a standard deviation of SIGMA pixels,
+ * which spreads the fraction SHARE of all light. */
 static struct glint_veil_spread make_gaussian_spread(const struct canvas *c,
                                                      double sigma, double share)
 {
@@ -95,8 +96,8 @@ static struct glint_image make_image_over_memory(const struct canvas *c,
     return glint_image_over(mem, format, c->width, c->height);
 }
 
-/* Draws the veil onto black in linear light. Returns the sum of channel
- * CHANNEL, white x pixels. */
+/* Draws the veil onto black in linear light. Returns the sum of CHANNEL over
+ * all pixels, white x pixels. */
 static double draw_veil_linear(struct canvas *c, int channel)
 {
     const struct glint_image image =
@@ -125,8 +126,8 @@ static void add_lamp_to_veil(struct canvas *c, double x, double y, double power)
 
 /* ------------------------------------------------------------------- light */
 
-/* Checks that for any image size and lamp position the veil has the
- * specified fraction of the light, within 0.1 %. */
+/* Checks that for any image size and lamp position the total light of the veil
+ * is the specified fraction of the lamp's light, within 0.1 %. */
 TEST(veil_has_its_fraction_of_the_light)
 {
     static const int size[][2] = {{163, 121}, {64, 36}, {97, 3},  {1, 1},
@@ -144,7 +145,8 @@ TEST(veil_has_its_fraction_of_the_light)
             clear_veil_light(&c);
             add_lamp_to_veil(&c, x * c.width, y * c.height, 500);
             glint_veil_spread_light(c.veil, &s, 1);
-            /* weights are not exact at the middle of three columns */
+            /* the interpolation weights are not exact at the middle of three
+             * columns */
             assert_true(fabs(draw_veil_linear(&c, 0) / 15 - 1) < 1e-3);
             assert_true(fabs(draw_veil_linear(&c, 1) / 7.5 - 1) < 1e-3);
             assert_true(draw_veil_linear(&c, 2) == 0);
@@ -152,8 +154,9 @@ TEST(veil_has_its_fraction_of_the_light)
         }
 }
 
-/* Checks that far from borders and wider than cells a lamp's veil is the
- * specified Gaussian, widened by the interpolation between cells. */
+/* Checks that the veil of a lamp is the specified Gaussian, widened by the
+ * interpolation between cells, if it is far from borders and wider than
+ * cells. */
 TEST(veil_of_a_lamp_is_a_gaussian)
 {
     struct canvas c;
@@ -169,8 +172,8 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     draw_veil_linear(&c, 0);
     for (int y = 30; y < 90; y++)
         for (int x = 40; x < 120; x++) {
-            /* a quadratic spline adds a quarter of a squared cell, twice;
-             * cells are 4 pixels */
+            /* a quadratic spline adds a quarter of a squared cell, twice; cells
+             * are 4 pixels wide */
             const double v = sigma * sigma + 0.5 * 16;
             const double r2 = pow(x + 0.5 - 81.3, 2) + pow(y + 0.5 - 60.2, 2);
             const double want =
@@ -184,9 +187,10 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     close_veil_canvas(&c);
 }
 
-/* Checks, in each format, that on uniform white the veil is uniform, and
- * that a black spot in it has the veiling glare index of ISO 9358: with the
- * share V / (1 - V), V of the white light. */
+/* Checks, in each format, that the veil of uniform white is uniform, and that
+ * the veil in a black spot has the light V of the white around it, the veiling
+ * glare index of ISO 9358. The spread has the fraction V / (1 - V) of the
+ * light. */
 TEST(black_spot_has_the_veiling_glare_index)
 {
     static uint8_t codes[4 * MAX_WIDTH * MAX_HEIGHT];
@@ -225,8 +229,8 @@ TEST(black_spot_has_the_veiling_glare_index)
     }
 }
 
-/* Checks that the veil of an image has the position and colour of the
- * image's light, in linear light. */
+/* Checks that the veil of an image has the position and colour of the light in
+ * the image, in linear light. */
 TEST(veil_of_an_image_has_its_colours)
 {
     static uint8_t codes[3 * MAX_WIDTH * MAX_HEIGHT];
@@ -254,7 +258,7 @@ TEST(veil_of_an_image_has_its_colours)
         at[0] += linear_q20[3 * i] * 0x1p-20 * (i % 161 + 0.5);
         at[1] += linear_q20[3 * i] * 0x1p-20 * (i / 161 + 0.5);
     }
-    /* a cell of four pixels covers three to five pixels here */
+    /* here a cell of four pixels covers three to five pixels */
     assert_true(fabs(sum[0] / (600 * 0.2) - 1) < 0.03);
     assert_true(fabs(sum[1] / sum[0] - 0.5029) < 2e-3); /* sRGB 188 */
     assert_true(sum[2] == 0);
@@ -265,8 +269,9 @@ TEST(veil_of_an_image_has_its_colours)
 
 /* ------------------------------------------------------------------ flicker */
 
-/* Checks that a lamp that moves by 0.05 px does not change the veil's total
- * light, and that no pixel changes by more than the Gaussian's slope allows. */
+/* Moves a lamp by 0.05 px per frame. Checks that the total light of the veil
+ * does not change, and that no pixel changes by more than the slope of the
+ * Gaussian allows. */
 TEST(moving_lamp_keeps_the_veil_steady)
 {
     static int32_t before_q20[MAX_N];
@@ -302,7 +307,7 @@ TEST(moving_lamp_keeps_the_veil_steady)
 
 /* --------------------------------------------------------------------- bits */
 
-/* Sets a spread to random numbers, without floating point. */
+/* Sets the spread function S to random numbers, without floating point. */
 static void set_random_spread(struct glint_veil_spread *s,
                               const struct canvas *c, uint32_t *seed)
 {
@@ -321,7 +326,7 @@ static void set_random_spread(struct glint_veil_spread *s,
                                    -38 - rng_int_below(seed, 4)};
 }
 
-/* Draws the veil of a random image (seed SEED) onto it. */
+/* Draws the veil of a random image (seed SEED) onto that image. */
 static void draw_veil_of_random_image(uint32_t seed, int tile_log2,
                                       int n_workers, uint32_t order,
                                       enum glint_pixel_format format,
@@ -350,8 +355,8 @@ static void draw_veil_of_random_image(uint32_t seed, int tile_log2,
     close_veil_canvas(&c);
 }
 
-/* Checks that workers, tiles and the order of jobs do not change the image
- * bit by bit, in any format, and that every machine draws the same. */
+/* Checks that workers, tiles and the order of jobs do not change any bit of the
+ * image, in any format, and that every machine draws the same image. */
 TEST(veil_is_bit_identical)
 {
     const uint64_t want = UINT64_C(0x8c34ca68742ff06b);
@@ -379,8 +384,8 @@ TEST(veil_is_bit_identical)
 
 /* ----------------------------------------------------------------- extremes */
 
-/* Checks lamps of any power at and outside the borders: more power is
- * nowhere less light, and lamps outside the limit are skipped. */
+/* Checks lamps of any power at the borders and outside the image: more power
+ * makes no pixel darker, and lamps beyond the limit are skipped. */
 TEST(extreme_lamps_give_valid_veils)
 {
     static const double place[][2] = {{0, 0},     {160, 90}, {80.5, 45},

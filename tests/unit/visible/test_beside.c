@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests a ghost baked together with the same ghost at a nearby zoom position:
- * ranges and boxes contain what is visible at either position, and models
- * include the barrels that clip at either.
+ * its ranges of angles and pupil boxes contain the light that is visible at
+ * either position, and its model contains the barrels that clip at either
+ * position.
  */
 #include <math.h>
 #include <stdint.h>
@@ -18,12 +19,12 @@
 enum {
     MAX_DEG = 9,
     GHOSTS = 7,
-    CUT = 3,  /* index of a ghost without light above 7 degrees */
+    CUT = 3,  /* index of a ghost that has no light above 7 degrees */
     UNCUT = 2 /* index of a ghost that no barrel clips */
 };
 
-/* The second group moves by 12 mm, and so do its barrels; end position
- * first. */
+/* The second group moves by 12 mm with its barrels; the first column is the end
+ * position. */
 static const char table[] = "name t\n"
                             "f-number 8\n"
                             "film 24 16\n"
@@ -77,8 +78,9 @@ static bool is_in_a_range(double (*range)[2], int n, double lo, double hi)
     return false;
 }
 
-/* Checks that every range of either position is inside a range of both,
- * which begins and ends where one of either does. */
+/* Checks that every range of angles of either position lies inside a common
+ * range, and that common ranges begin and end where a range of either position
+ * does. */
 TEST(ranges_cover_those_of_both_positions)
 {
     int wider = 0;
@@ -113,7 +115,8 @@ TEST(ranges_cover_those_of_both_positions)
     assert_true(wider > 0);
 }
 
-/* Checks that touching ranges are joined, and that ranges are sorted. */
+/* Checks that adjacent ranges of angles are joined, and that ranges are
+ * sorted. */
 TEST(touching_ranges_are_joined)
 {
     static const struct {
@@ -151,8 +154,8 @@ TEST(touching_ranges_are_joined)
     assert_true(full[0][0] == 0 && full[0][1] == 0.1);
 }
 
-/* Returns the index in RAYS of the ray with the position of ray I of OF; -1:
- * none. */
+/* Returns the index in RAYS of the ray that has the position of ray I of OF;
+ * -1: there is none. */
 static int find_ray_at_position(const struct glint_zone_rays *rays,
                                 const struct glint_zone_rays *of, int i)
 {
@@ -170,8 +173,8 @@ static double compute_ray_margin(const struct glint_zone_rays *rays, int i)
     return fmax(rays->at[RAY_EXCESS][i], rays->at[RAY_FIELD][i]);
 }
 
-/* Checks that each ray lands where it does at a single position, and that
- * its excess over the rims is the smaller one of both positions. */
+/* Checks that rays land where they do at a single position, and that their
+ * distance outside the rims is the smaller one of both positions. */
 TEST(rays_land_as_at_a_single_position)
 {
     static struct glint_visible_profile profile;
@@ -206,8 +209,8 @@ TEST(rays_land_as_at_a_single_position)
     assert_true(own > 100 && beside > 100);
 }
 
-/* Checks that boxes of both positions contain those of either, and are no
- * wider. */
+/* Checks that the pupil box for both positions contains the box of each, and is
+ * no wider than both together. */
 TEST(boxes_contain_those_of_both_positions)
 {
     static struct glint_visible_profile of[3];
@@ -235,8 +238,8 @@ TEST(boxes_contain_those_of_both_positions)
     assert_true(moved > 0);
 }
 
-/* Returns the number of green rays that pass GHOST of the model DATA at
- * DEGREES; -1: it has no polynomials there. */
+/* Returns the number of green rays that pass GHOST at DEGREES in the model
+ * DATA; -1: the model has no polynomials there. */
 static int count_passing_green_rays(const unsigned char *data, size_t bytes,
                                     int ghost, double degrees)
 {
@@ -271,8 +274,8 @@ static int count_passing_green_rays(const unsigned char *data, size_t bytes,
     return n;
 }
 
-/* Checks that a barrel which clips only at the other position is chosen: the
- * rear one, a fifth as wide there. */
+/* Checks that the model contains a barrel that clips only at the other
+ * position: the rear one, which is a fifth as wide there. */
 TEST(barrel_of_the_other_position_is_chosen)
 {
     static const double rgb_nm[] = {650, 532, 450};
@@ -302,9 +305,9 @@ TEST(barrel_of_the_other_position_is_chosen)
     assert_int_equal(n[1], 1);
 }
 
-/* Checks that if a ghost is visible only at the other position, the model
- * baked with that position has its polynomials, and its barrels block all
- * light. */
+/* Checks a ghost that is visible only at the other position: a model baked with
+ * that position has polynomials for it, and its barrels block all light at its
+ * own position. */
 TEST(ghost_visible_at_the_other_position_is_baked)
 {
     const bool ghosts[GHOSTS] = {[CUT] = true};
@@ -333,7 +336,7 @@ TEST(ghost_visible_at_the_other_position_is_baked)
         free(data[k]);
 }
 
-/* Checks that a different lens is rejected as a position. */
+/* Checks that a table of a different lens is rejected as the other position. */
 TEST(rejects_a_different_lens)
 {
     struct glint_prescription other = at[1];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks lights beyond 60 degrees: which lenses get the special rules for them,
- * and barrels that the light of a fisheye grazes.
+ * Checks lights beyond 60 degrees: for which lenses the special rules for them
+ * apply, and barrels that the light of a fisheye grazes.
  */
 #include <math.h>
 #include <stdint.h>
@@ -44,8 +44,8 @@ TEST(wide_angle_ghosts_are_marked_far)
     assert_false(visible.far);
 }
 
-/* Makes zone DEG of GHOST and finds its barrels, by the rules for FAR lights
- * or the normal ones. */
+/* Makes the zone of GHOST between the angles DEG and finds its barrels, by the
+ * rules for lights beyond 60 degrees if FAR, otherwise by the normal rules. */
 static void find_barrels_of_zone(int ghost, const double deg[2], bool far,
                                  struct glint_zone_rays *rays)
 {
@@ -65,8 +65,9 @@ enum { GRAZED = 61 };
 static const double grazed_deg[2] = {82.85, 83.25};
 
 /* Checks a ghost whose rays pass the second surface, almost a hemisphere,
- * within 0.003 of its rim and are invalid outside: its barrel blocks a part
- * of the light, though no ray passes outside by 1e-3. */
+ * within 0.003 of its rim. Rays outside the rim are invalid. The barrel at this
+ * surface must be found, as it blocks a part of the light, although no ray
+ * passes more than 1e-3 outside. */
 TEST(grazed_barrel_is_found)
 {
     static struct glint_zone_rays rays;
@@ -79,10 +80,10 @@ TEST(grazed_barrel_is_found)
     assert_true(rays.missed_cut > 1e-4);
 }
 
-/* Checks that the barrel that blocks most of the rays passing the glass is
- * chosen first, even if others block more rays in total. A ray that misses a
- * surface is outside it, so a barrel there can block it: four barrels block
- * all. */
+/* Checks that the barrel that blocks most of the rays that pass the glass is
+ * chosen first, even if other barrels block more rays in total. A ray that
+ * misses a surface counts as outside its rim, so the barrel there can block it:
+ * four barrels block all such rays. */
 TEST(barrel_that_blocks_most_is_first)
 {
     static struct glint_zone_rays rays;
@@ -97,7 +98,7 @@ TEST(barrel_that_blocks_most_is_first)
 
 /* --------------------------------------------------------------------- fits */
 
-/* tolerances of a bake for a film 36 mm wide */
+/* tolerances of a bake for a sensor 36 mm wide */
 static struct glint_brightness brightness;
 static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .faint_sensor_mm = 1.3e-3,
@@ -114,8 +115,8 @@ static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .brightness = &brightness};
 static struct glint_zone_buffers buffers;
 
-/* Fits the zone of the grazed barrel. STOPPED: one in STOPPED rays counts as
- * blocked for a reason that the fit does not know; 0: none. */
+/* Fits the zone of the grazed barrel. STOPPED: one in STOPPED rays is marked as
+ * blocked for a reason that the fit cannot represent; 0: none. */
 static void fit_zone_of_grazed_barrel(bool far, int stopped,
                                       struct glint_fitted_system *system,
                                       struct glint_zone_errors *errors)
@@ -129,7 +130,7 @@ static void fit_zone_of_grazed_barrel(bool far, int stopped,
 
     glint_brightness_set_angles(&brightness, 85);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
-        /* a level much lower than this ghost's brightness */
+        /* a level far below the brightness of this ghost */
         brightness.level[k] = 1e-9;
     find_barrels_of_zone(GRAZED, grazed_deg, true, &buffers.rays);
     visible.far = far;
@@ -147,7 +148,7 @@ static void free_fitted_system(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
-/* Returns the RMS error of the barrel's fit over rays that graze it. */
+/* Returns the RMS error of the fitted barrel over the rays that graze it. */
 static double compute_barrel_rms_error(const struct glint_fitted_system *system)
 {
     const struct glint_fitted_output *o =
@@ -174,10 +175,10 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
     return sqrt(sum / n);
 }
 
-/* Checks that the grazed barrel is fitted to less than a hundredth of 0.003
- * of its rim, in which the whole ghost lies, and that it is fitted less
- * precisely by the rules for lights nearer to the axis, where such barrels
- * matter little. */
+/* Checks that the grazed barrel is fitted with an error below a hundredth of
+ * 0.003 of its rim, the range that contains the whole ghost, and that it is
+ * fitted less precisely by the rules for lights nearer to the axis, for which
+ * such barrels matter little. */
 TEST(grazed_barrel_is_fitted_within_its_margin)
 {
     struct glint_fitted_system system;
@@ -190,9 +191,9 @@ TEST(grazed_barrel_is_fitted_within_its_margin)
     }
 }
 
-/* Checks that for lights this far off the axis, rays that pass although they
- * should not count as errors of outlines: a tenth of the visible rays is
- * five times the tolerance. */
+/* Checks lights far off the axis: rays that pass although barrels should block
+ * them count as errors of the outline. A tenth of the visible rays is five
+ * times the tolerance. */
 TEST(leaking_rays_count_as_outline_errors)
 {
     struct glint_fitted_system system;

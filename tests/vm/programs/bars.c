@@ -11,8 +11,8 @@
 #include "device.h"
 #include "layout.h"
 
-/* Returns channel C at (X, Y), 0 .. 255. Bars range from white to black by
- * decreasing luma. */
+/* Returns channel C, 0 .. 255, of the bars at (X, Y). The bars go from white to
+ * black by decreasing luma. */
 static uint32_t find_bar_colour(unsigned x, unsigned y, unsigned width,
                                 unsigned height, unsigned c)
 {

@@ -27,8 +27,8 @@ static int is_control_requested(const struct v4l2_queryctrl *query,
            strcmp(name, (const char *)query->name) == 0;
 }
 
-/* Prints the control NAME, or all controls if NAME is NULL; or sets it to
- * VALUE unless that is NULL. Returns the number of controls. */
+/* Prints the control NAME, or all controls if NAME is NULL. If VALUE is not
+ * NULL, sets the control NAME to it instead. Returns the number of controls. */
 static int print_or_set_controls(int fd, const char *name, const char *value)
 {
     int n = 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * device.h - shared by the guest's programs: parsing of the command line, and
- * ioctls that end the program on failure.
+ * device.h - functions for the programs that run in the virtual machine: they
+ * parse the command line, and call ioctl(), ending the program on failure.
  */
 #ifndef GLINT_VM_DEVICE_H
 #define GLINT_VM_DEVICE_H
@@ -40,8 +40,8 @@ __attribute__((unused)) static int try_ioctl(int fd, unsigned long request,
     return rc;
 }
 
-/* Calls ioctl(); on failure ends the program with a message that contains
- * NAME. */
+/* Calls ioctl(). On failure, prints a message that contains NAME and ends the
+ * program. */
 __attribute__((unused)) static void must_ioctl(int fd, unsigned long request,
                                                void *arg, const char *name)
 {
@@ -93,9 +93,9 @@ __attribute__((unused)) static uint8_t *read_file(const char *path,
     return bytes;
 }
 
-/* Returns the bytes of a tightly packed frame, as in files, or 0 for
- * compressed formats. Not the sizeimage of v4l2loopback, which is rounded up
- * to pages. */
+/* Returns the number of bytes of a frame in a file, without padding, or 0 for
+ * compressed formats. This differs from the sizeimage of v4l2loopback, which is
+ * rounded up to pages. */
 __attribute__((unused)) static size_t
 packed_bytes(uint32_t fourcc, uint32_t width, uint32_t height)
 {
@@ -113,8 +113,8 @@ packed_bytes(uint32_t fourcc, uint32_t width, uint32_t height)
     die("%.4s: no such format here", (const char *)&fourcc);
 }
 
-/* Sets the format of a single-planar device and checks that it was accepted
- * unchanged. Returns its sizeimage. */
+/* Sets the format of a single-planar device and checks that the device accepted
+ * it unchanged. Returns its sizeimage. */
 __attribute__((unused)) static uint32_t set_format(int fd, uint32_t type,
                                                    uint32_t fourcc,
                                                    uint32_t width,

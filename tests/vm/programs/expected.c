@@ -31,7 +31,8 @@ static struct glint_pixel_layout convert_to_pixel_layout(const struct layout *l)
     return p;
 }
 
-/* Writes a pixel with 8 bits per channel, like the emulator's screenshot. */
+/* Writes a pixel with 8 bits per channel, like the screenshots of the
+ * emulator. */
 static void write_rgb_pixel(const struct layout *l, const uint8_t *at,
                             FILE *file)
 {
@@ -105,7 +106,7 @@ int main(int argc, char **argv)
     if (glint_y4m_reader_open(&in, argv[3], &error) != GLINT_OK)
         exit_with_error(error.text);
     while (glint_y4m_reader_next(&in, &next, &error) == GLINT_OK && next)
-        frame = next; /* points to the same memory for each frame */
+        frame = next; /* NEXT points to the same memory for each frame */
     if (!frame || *error.text)
         exit_with_error(*error.text ? error.text : "no frame");
     if (yuyv && (frame->format != GLINT_I422 || frame->width != w ||

@@ -30,7 +30,8 @@ struct feed {
     size_t packed_bytes;
     struct frame *frame;
     int n_frames;
-    uint32_t n_buffers; /* 0: frames are written by write() */
+    /* number of buffers of the device; 0: frames are written by write() */
+    uint32_t n_buffers;
     uint8_t *memory[N_BUFFERS];
 };
 
@@ -60,8 +61,8 @@ static void add_frame_file(struct feed *feed, const char *path)
     } while (at < n_bytes);
 }
 
-/* Declares BT.709's curve. Must be last, as S_FMT with only size and format
- * would reset it. */
+/* Declares the transfer curve of BT.709. Must be the last call, as S_FMT with
+ * only size and format would reset the curve. */
 static void set_transfer_curve(int fd)
 {
     struct v4l2_format format = {.type = V4L2_BUF_TYPE_VIDEO_OUTPUT};
@@ -71,8 +72,8 @@ static void set_transfer_curve(int fd)
     must_ioctl(fd, VIDIOC_S_FMT, &format, "VIDIOC_S_FMT");
 }
 
-/* Returns the index of the HDMI output, the first that accepts DV timings; -1
- * if there is none, as with v4l2loopback. */
+/* Returns the index of the HDMI output, which is the first that accepts DV
+ * timings; -1: there is none, as with v4l2loopback. */
 static int find_hdmi_output(int fd)
 {
     struct v4l2_output output = {.index = 0};
@@ -97,8 +98,8 @@ static double compute_timings_fps(const struct v4l2_bt_timings *bt)
     return (double)bt->pixelclock / pixels;
 }
 
-/* Returns the progressive timings of a size whose rate is nearest to FPS, or
- * to 60 if FPS is 0. */
+/* Returns the progressive timings for a size whose frame rate is nearest to
+ * FPS, or to 60 if FPS is 0. */
 static struct v4l2_dv_timings find_nearest_timings(int fd, uint32_t width,
                                                    uint32_t height, double fps)
 {
@@ -134,8 +135,8 @@ static void set_control_by_name(int fd, const char *name, int32_t value)
     die("no control \"%s\"", name);
 }
 
-/* Sets the same timings on both ends of the cable, and the format on the
- * camera. */
+/* Sets the same timings on the output and on the input at the other end of the
+ * cable, and sets the format of the camera. */
 static void connect_hdmi_ends(int out, int socket, const char *camera,
                               uint32_t fourcc, uint32_t width, uint32_t height,
                               double fps)
@@ -184,8 +185,8 @@ static void request_buffers(struct feed *feed)
     }
 }
 
-/* Returns the index of a buffer that the device does not use; waits until there
- * is one. */
+/* Waits until there is a buffer that the device does not use, and returns its
+ * index. */
 static uint32_t wait_for_free_buffer(const struct feed *feed, long i)
 {
     if (i < (long)feed->n_buffers)
@@ -196,7 +197,8 @@ static uint32_t wait_for_free_buffer(const struct feed *feed, long i)
     return buffer.index;
 }
 
-/* Writes a frame by write(), as v4l2loopback does not count queued frames. */
+/* Writes a frame by write(), for v4l2loopback, which does not count queued
+ * frames. */
 static void write_frame(int fd, const struct frame *frame)
 {
     ssize_t n = write(fd, frame->bytes, frame->n_bytes);

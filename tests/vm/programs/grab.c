@@ -49,7 +49,8 @@ static void start_camera(struct camera *camera)
     must_ioctl(camera->fd, VIDIOC_STREAMON, &type, "VIDIOC_STREAMON");
 }
 
-/* Copies the next frame to DST[image_bytes]. Returns its number of bytes. */
+/* Copies the next frame of the camera to DST[image_bytes]. Returns its number
+ * of bytes. */
 static size_t copy_next_frame(const struct camera *camera, uint8_t *dst)
 {
     struct pollfd ready = {.fd = camera->fd, .events = POLLIN};

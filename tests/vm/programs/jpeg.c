@@ -2,8 +2,7 @@
  *
  * jpeg encode VIDEO.y4m OUT.jpg
  *     Writes the first frame, C422 of limited range, as a camera would send it:
- *     4:2:2, full range. Its colours become grey.
- * jpeg decode OUT.y4m IN.jpg...
+ * 4:2:2, full range. The image has no colours. jpeg decode OUT.y4m IN.jpg...
  * Decodes frames of one size and format like those that glint receives from a
  * camera.
  */
@@ -33,7 +32,7 @@ static uint8_t widen_to_full_range(uint8_t code)
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
 }
 
-/* Compresses a row of LUMA with grey chroma. */
+/* Compresses a row of LUMA; its chroma is grey. */
 static void compress_luma_row(struct jpeg_compress_struct *j,
                               const uint8_t *luma)
 {

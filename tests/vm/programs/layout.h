@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * layout.h - packed pixel layouts by their names in device trees: fields from
- * the highest bit down, as in r5g6b5 or x8r8g8b8. A name ends in "-shifted" for
- * a panel that does not repeat high bits in low ones, so that its white is not
- * quite white, as on the emulated VGA card with 5 bits per channel.
+ * layout.h - packed pixel layouts by their names in device trees: each lists
+ * its fields from the highest bit down, as in r5g6b5 or x8r8g8b8. A name ends
+ * in "-shifted" for a panel that does not repeat high bits in low ones, so
+ * that its white is not quite white, as on the emulated VGA card with 5 bits
+ * per channel.
  */
 #ifndef GLINT_VM_LAYOUT_H
 #define GLINT_VM_LAYOUT_H
@@ -14,11 +15,12 @@
 
 struct layout {
     unsigned n_bytes;
-    unsigned length[3], offset[3]; /* bits of red, green, blue */
+    /* length and offset, bits, of red, green, blue */
+    unsigned length[3], offset[3];
     int shifted;
 };
 
-/* Sets *LAYOUT by NAME. Returns 0 if the name is unknown. */
+/* Sets *LAYOUT to the layout called NAME. Returns 0 if the name is unknown. */
 __attribute__((unused)) static int layout_of(const char *name,
                                              struct layout *layout)
 {
@@ -42,8 +44,8 @@ __attribute__((unused)) static int layout_of(const char *name,
     return at % 8 == 0 && at >= 16 && at <= 32;
 }
 
-/* Returns channel C of the displayed pixel, 0 .. 255, for the value FIELD.
- * If high bits are repeated in low ones, the max value gives 255. */
+/* Returns how the panel displays the value FIELD of channel C, 0 .. 255. If the
+ * panel repeats high bits in low ones, the max value gives 255. */
 __attribute__((unused)) static uint8_t shown(const struct layout *layout,
                                              unsigned c, uint32_t field)
 {

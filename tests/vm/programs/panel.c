@@ -53,7 +53,8 @@ static int read_raw_screen(const char *path, const struct layout *layout,
  * Not compressed: blocks of one row, as the format allows. */
 struct png {
     FILE *file;
-    uint32_t crc, s1, s2; /* CRC-32 of the chunk; the two sums of Adler-32 */
+    /* CRC-32 of the current chunk; both sums of Adler-32 */
+    uint32_t crc, s1, s2;
 };
 
 static void write_bytes(struct png *png, const uint8_t *bytes, size_t n)

@@ -41,8 +41,8 @@ static double random_noise(void)
     return sum;
 }
 
-/* Returns the luma at (X, Y), 16 .. 235: lamps are white with a glow around
- * them; the sky is brighter at the bottom. */
+/* Returns the luma of pixel (X, Y), 16 .. 235: white lamps with a glow, on a
+ * sky that is brighter at the bottom. */
 static uint8_t compute_luma(const struct scene *s, int frame, int x, int y)
 {
     double v = 24 + 24.0 * y / s->height;
@@ -60,7 +60,8 @@ static uint8_t compute_luma(const struct scene *s, int frame, int x, int y)
     return (uint8_t)fmax(16, fmin(235, floor(v + 0.5)));
 }
 
-/* Returns Y, Cb, Cr of the bar at X: BT.709, 75 %, from white to black. */
+/* Returns Y, Cb, Cr of the colour bar at column X: BT.709, 75 %, from white to
+ * black. */
 static const uint8_t *find_bar_colour(const struct scene *s, int x)
 {
     static const uint8_t bar[8][3] = {
@@ -70,7 +71,8 @@ static const uint8_t *find_bar_colour(const struct scene *s, int x)
     return bar[8 * x / s->width];
 }
 
-/* Returns whether row Y is in the lowest sixth, which contains the bars. */
+/* Returns whether row Y is in the lowest sixth of the image, which contains the
+ * colour bars. */
 static int is_row_of_bars(const struct scene *s, int y)
 {
     return y >= s->height - s->height / 6;
@@ -91,8 +93,8 @@ static void write_yuyv_frame(const struct scene *s, const uint8_t *luma,
         }
 }
 
-/* Writes luma, then chroma: for NV12 interleaved and at half resolution in
- * both directions, else two planes at half the width. */
+/* Writes the luma plane, then chroma: for NV12 one interleaved plane at half
+ * resolution in both directions, otherwise two planes of half the width. */
 static void write_planar_frame(const struct scene *s, const uint8_t *luma,
                                int nv12, FILE *file)
 {
