@@ -13,7 +13,7 @@
 #include "control/playback.h"
 #include "fuzz/fuzz.h"
 
-static const struct control_form *find_command_form(enum control_verb verb)
+static const struct control_form *find_command_syntax(enum control_verb verb)
 {
     static const struct control_form option = {.verb = CONTROL_OPTION,
                                                .word = "",
@@ -33,8 +33,8 @@ static const struct control_form *find_command_form(enum control_verb verb)
 
 /* Writes the command L as text, parses the text, and checks that the command is
  * unchanged. */
-static void check_line_round_trip(const struct control_line *l,
-                                  const struct control_form *f)
+static void check_command_round_trip(const struct control_line *l,
+                                     const struct control_form *f)
 {
     char text[CONTROL_LINE];
     struct control_line again;
@@ -57,21 +57,21 @@ static void check_line_round_trip(const struct control_line *l,
         require(again.v[i] == l->v[i]);
 }
 
-static void check_parsed_line(const struct control_line *l)
+static void check_parsed_command(const struct control_line *l)
 {
     const struct control_form *f;
 
     require(l->frame >= -1 && l->frame <= CONTROL_MOST_FRAME);
     if (l->verb == CONTROL_NONE)
         return;
-    f = find_command_form(l->verb);
+    f = find_command_syntax(l->verb);
     require(l->n >= f->least && l->n <= f->most && !l->is_change);
     for (int i = 0; i < l->n; i++)
         require(l->v[i] >= f->lowest && l->v[i] <= f->highest);
     for (int i = 0; i < 2; i++)
         require((*l->name[i] != 0) == (i < f->names + f->behind) &&
                 strlen(l->name[i]) < CONTROL_NAME);
-    check_line_round_trip(l, f);
+    check_command_round_trip(l, f);
 }
 
 static void parse_control_text(const char *text, struct playback *playback)
@@ -84,7 +84,7 @@ static void parse_control_text(const char *text, struct playback *playback)
         require(!strncmp(error.text, "fuzz:7:", 7) && atoi(error.text + 7) > 0);
         return;
     }
-    check_parsed_line(&line);
+    check_parsed_command(&line);
     playback_execute_line(playback, &line);
     frame = playback_next_frame(playback, .04);
     require(frame >= 0 && frame <= playback->last);

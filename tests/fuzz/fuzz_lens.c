@@ -22,8 +22,8 @@ static void check_ray_is_valid(const struct glint_ray *ray)
 
 /* Traces nine rays, spread over the front element, at angles up to 83
  * degrees. */
-static void trace_rays_over_front(const struct glint_prescription *lens,
-                                  const struct glint_ghost *ghost)
+static void trace_rays_over_front_element(const struct glint_prescription *lens,
+                                          const struct glint_ghost *ghost)
 {
     enum { RAYS = 9 };
     static struct glint_path path;
@@ -70,9 +70,9 @@ static void trace_all_ghosts(const struct glint_prescription *lens, size_t pick)
     require(isfinite(optics.entrance_z_mm) && isfinite(optics.length_mm));
     require(optics.stop_radius_mm > 0.0);
     require(n <= GLINT_MAX_GHOSTS);
-    trace_rays_over_front(lens, NULL);
+    trace_rays_over_front_element(lens, NULL);
     if (n > 0)
-        trace_rays_over_front(lens, &ghosts[pick % (size_t)n]);
+        trace_rays_over_front_element(lens, &ghosts[pick % (size_t)n]);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

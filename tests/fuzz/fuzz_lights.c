@@ -15,7 +15,7 @@
 
 enum { ROWS = 50, ROW_BYTES = 300, FRAMES = 3 };
 
-static void check_table_row(const struct lamp_row *r)
+static void check_lamp_row_values(const struct lamp_row *r)
 {
     require(r->frame >= -1 && r->frame < 1000000000);
     require(fabs(r->x) <= 1e6 && fabs(r->y) <= 1e6);
@@ -40,7 +40,7 @@ static void check_lamp_values(const struct lamp_list *list, int frame)
 }
 
 /* Writes row R to TEXT with 17 digits, which represent every double exactly. */
-static int print_table_row(char *text, const struct lamp_row *r, int as_json)
+static int print_lamp_row(char *text, const struct lamp_row *r, int as_json)
 {
     const char *const format =
         as_json ? "{\"frame\":%s,\"x\":%.17g,\"y\":%.17g,\"power\":%.17g,"
@@ -56,7 +56,7 @@ static int print_table_row(char *text, const struct lamp_row *r, int as_json)
                     r->rgb[0], r->rgb[1], r->rgb[2], r->size);
 }
 
-static void check_row_round_trip(const struct lamp_list *list, int as_json)
+static void check_lamp_row_round_trip(const struct lamp_list *list, int as_json)
 {
     static char text[ROWS * ROW_BYTES];
     struct lamp_list again;
@@ -65,7 +65,7 @@ static void check_row_round_trip(const struct lamp_list *list, int as_json)
     int n = 0;
 
     for (; n < list->n && n < ROWS; n++)
-        bytes += (size_t)print_table_row(text + bytes, &list->row[n], as_json);
+        bytes += (size_t)print_lamp_row(text + bytes, &list->row[n], as_json);
     require(!lamp_list_parse(&again, text, bytes, "again", &error));
     require(again.n == n);
     for (int i = 0; i < n; i++) {
@@ -88,11 +88,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     if (status == GLINT_OK) {
         for (int i = 0; i < list.n; i++)
-            check_table_row(&list.row[i]);
+            check_lamp_row_values(&list.row[i]);
         for (int frame = 0; frame < FRAMES; frame++)
             check_lamp_values(&list, frame);
-        check_row_round_trip(&list, 0);
-        check_row_round_trip(&list, 1);
+        check_lamp_row_round_trip(&list, 0);
+        check_lamp_row_round_trip(&list, 1);
     } else {
         require(status == GLINT_E_FORMAT && list.n == 0 && !list.row);
         require(!memcmp(error.text, "fuzz:", 5));

@@ -73,7 +73,8 @@ static void check_ray_grids(struct glint_transfer *t)
 
 /* Checks that the pupil window of an opening lies inside the pupil box of the
  * ghost. */
-static void check_window_in_box(struct glint_transfer *t, int32_t opening_q30)
+static void check_window_is_inside_pupil_box(struct glint_transfer *t,
+                                             int32_t opening_q30)
 {
     static struct glint_window_nodes nodes;
     const struct glint_box_window *w = &t->window;
@@ -104,15 +105,16 @@ static void check_ghost_at_azimuth(const struct glint_lens *lens, int ghost,
     require(t.outputs >> GLINT_OUT_KINDS == 0 && (t.outputs & 31) == 31);
     check_traced_rays(&t);
     check_ray_grids(&t);
-    check_window_in_box(&t, 1 << 29);
-    check_window_in_box(&t, 1 << 20);
+    check_window_is_inside_pupil_box(&t, 1 << 29);
+    check_window_is_inside_pupil_box(&t, 1 << 20);
     check_ray_grids(&t);
 }
 
 /* Checks GHOST at ten azimuths of the light, or at one if the ghosts of the
  * model do not depend on the azimuth. */
-static void check_ghost_bundle(const struct glint_lens *lens, int ghost,
-                               int32_t sine_q30, int32_t wave_q24)
+static void check_ghost_at_all_azimuths(const struct glint_lens *lens,
+                                        int ghost, int32_t sine_q30,
+                                        int32_t wave_q24)
 {
     static const struct glint_azimuth at[] = {
         {ONE, 0},     {0, ONE},          {-ONE, 0},       {0, -ONE},
@@ -134,19 +136,20 @@ static void check_ghost(const struct glint_lens *lens, int ghost, uint32_t pick)
     const int32_t lo = lens->header->wave_lo_q24;
     const int32_t hi = lens->header->wave_hi_q24;
 
-    check_ghost_bundle(lens, ghost, 0, lo);
-    check_ghost_bundle(lens, ghost, ONE, hi);
+    check_ghost_at_all_azimuths(lens, ghost, 0, lo);
+    check_ghost_at_all_azimuths(lens, ghost, ONE, hi);
     if (g->n_systems > 0) {
         const struct glint_model_system *s =
             &lens->system[g->first_system + pick % g->n_systems];
         const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
 
-        check_ghost_bundle(lens, ghost, a - 1, lo);
-        check_ghost_bundle(lens, ghost, a, s->wave_lo_q24);
-        check_ghost_bundle(lens, ghost, a + (b - a) / 3, lo + (hi - lo) / 3);
-        check_ghost_bundle(lens, ghost, b, s->wave_hi_q24);
-        check_ghost_bundle(lens, ghost, b + 1, INT32_MIN);
-        check_ghost_bundle(lens, ghost, b, INT32_MAX);
+        check_ghost_at_all_azimuths(lens, ghost, a - 1, lo);
+        check_ghost_at_all_azimuths(lens, ghost, a, s->wave_lo_q24);
+        check_ghost_at_all_azimuths(lens, ghost, a + (b - a) / 3,
+                                    lo + (hi - lo) / 3);
+        check_ghost_at_all_azimuths(lens, ghost, b, s->wave_hi_q24);
+        check_ghost_at_all_azimuths(lens, ghost, b + 1, INT32_MIN);
+        check_ghost_at_all_azimuths(lens, ghost, b, INT32_MAX);
     }
 }
 
@@ -242,17 +245,17 @@ static void check_ghost_of_zoom(const struct glint_zoom_lens *zoom, int ghost,
     const int32_t lo = zoom->header.wave_lo_q24;
     const int32_t hi = zoom->header.wave_hi_q24;
 
-    check_ghost_bundle(&zoom->lens, ghost, 0, lo);
-    check_ghost_bundle(&zoom->lens, ghost, ONE, hi);
+    check_ghost_at_all_azimuths(&zoom->lens, ghost, 0, lo);
+    check_ghost_at_all_azimuths(&zoom->lens, ghost, ONE, hi);
     if (g->n_systems > 0) {
         const struct glint_model_system *const s =
             &below->system[g->first_system + pick % g->n_systems];
         const int32_t a = s->sine_lo_q30, b = s->sine_hi_q30;
 
-        check_ghost_bundle(&zoom->lens, ghost, a, lo);
-        check_ghost_bundle(&zoom->lens, ghost, a + (b - a) / 3,
-                           lo + (hi - lo) / 3);
-        check_ghost_bundle(&zoom->lens, ghost, b, hi);
+        check_ghost_at_all_azimuths(&zoom->lens, ghost, a, lo);
+        check_ghost_at_all_azimuths(&zoom->lens, ghost, a + (b - a) / 3,
+                                    lo + (hi - lo) / 3);
+        check_ghost_at_all_azimuths(&zoom->lens, ghost, b, hi);
     }
 }
 

@@ -38,9 +38,9 @@ static enum glint_status read_mesh_from_input(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-static enum glint_status make_texture_picture(void *ctx, const char *name,
-                                              struct glint_image *image,
-                                              struct glint_error *error)
+static enum glint_status make_picture_for_texture(void *ctx, const char *name,
+                                                  struct glint_image *image,
+                                                  struct glint_error *error)
 {
     const int side = (int)strlen(name) % 9 + 1;
     uint8_t *mem = calloc(3, (size_t)side * 3);
@@ -139,7 +139,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct rest rest = {data + bytes, size - bytes};
     const struct glint_description_files files = {&rest,
                                                   read_mesh_from_input,
-                                                  make_texture_picture,
+                                                  make_picture_for_texture,
                                                   read_mesh_from_input,
                                                   read_mesh_from_input,
                                                   read_mesh_from_input};

@@ -13,7 +13,7 @@
 
 /* Scatters uniform light, then a chequered pattern, in a small map of the
  * translucent medium. */
-static void scatter_test_light(const struct glint_translucent *t)
+static void scatter_light_in_small_map(const struct glint_translucent *t)
 {
     const size_t side = (size_t)1 << t->header->side_log2;
     const size_t n = 3 * side * side;
@@ -38,7 +38,7 @@ static void open_translucent_blob(const uint8_t *data, size_t size)
     if (glint_translucent_open(&stone, copy, size, &reason) != GLINT_OK)
         require(reason && *reason);
     else if (stone.header->side_log2 == GLINT_TRANSLUCENT_LEAST_LOG2)
-        scatter_test_light(&stone);
+        scatter_light_in_small_map(&stone);
     free(copy);
 }
 

@@ -18,7 +18,8 @@ struct memory {
     size_t bytes, chunk;
 };
 
-static ptrdiff_t read_from_memory(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_stream_bytes_from_memory(void *ctx, void *dst,
+                                               size_t bytes)
 {
     struct memory *const m = ctx;
     size_t n = m->bytes < m->chunk ? m->bytes : m->chunk;
@@ -108,8 +109,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (size < 1)
         return 0;
     memory = (struct memory){data + 1, size - 1, 1 + data[0] % 200U};
-    if (!glint_y4m_reader_start(&reader, read_from_memory, &memory, "fuzz",
-                                &error))
+    if (!glint_y4m_reader_start(&reader, read_stream_bytes_from_memory, &memory,
+                                "fuzz", &error))
         read_all_frames(&reader);
     glint_y4m_reader_close(&reader);
     return 0;

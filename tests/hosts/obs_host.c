@@ -23,9 +23,9 @@ enum { WAIT_S = 3600, FRAME_MS = 40, POLL_US = 2000, SLOW_POLLS = 100000 };
 
 /* Sets the number of rows, and of bytes per row, of each plane of a WIDTH x
  * HEIGHT frame. Returns the number of planes. */
-static int find_plane_sizes(enum video_format format, uint32_t width,
-                            uint32_t height, uint32_t bytes[3],
-                            uint32_t rows[3])
+static int compute_plane_sizes(enum video_format format, uint32_t width,
+                               uint32_t height, uint32_t bytes[3],
+                               uint32_t rows[3])
 {
     const uint32_t w2 = (width + 1) / 2, h2 = (height + 1) / 2;
 
@@ -83,7 +83,7 @@ static void *create_source_without_data(obs_data_t *settings,
     return source;
 }
 
-static void ignore_source_call(void *data)
+static void do_nothing_with_source(void *data)
 {
     (void)data;
 }
@@ -92,8 +92,8 @@ static struct obs_source_frame *
 record_output_frame(void *data, struct obs_source_frame *frame)
 {
     uint32_t bytes[3], rows[3];
-    const int n = find_plane_sizes(frame->format, frame->width, frame->height,
-                                   bytes, rows);
+    const int n = compute_plane_sizes(frame->format, frame->width,
+                                      frame->height, bytes, rows);
     unsigned char *to;
 
     (void)data;
@@ -113,13 +113,13 @@ static struct obs_source_info feed = {.id = "host_feed",
                                       .output_flags = OBS_SOURCE_ASYNC_VIDEO,
                                       .get_name = get_source_name,
                                       .create = create_source_without_data,
-                                      .destroy = ignore_source_call};
+                                      .destroy = do_nothing_with_source};
 static struct obs_source_info probe = {.id = "host_probe",
                                        .type = OBS_SOURCE_TYPE_FILTER,
                                        .output_flags = OBS_SOURCE_ASYNC_VIDEO,
                                        .get_name = get_source_name,
                                        .create = create_source_without_data,
-                                       .destroy = ignore_source_call,
+                                       .destroy = do_nothing_with_source,
                                        .filter_video = record_output_frame};
 
 /* ---------------------------------------------------------------------- run */
@@ -275,7 +275,8 @@ int main(int argc, char **argv)
     }
     start_obs(argv[1]);
     r.format = find_format_by_name(argv[2]);
-    r.n_planes = find_plane_sizes(r.format, r.width, r.height, r.bytes, r.rows);
+    r.n_planes =
+        compute_plane_sizes(r.format, r.width, r.height, r.bytes, r.rows);
     for (int p = 0; p < r.n_planes; p++)
         r.size += (size_t)r.bytes[p] * r.rows[p];
     r.source = obs_source_create_private("host_feed", "feed", NULL);

@@ -44,7 +44,7 @@ struct stage {
     double exposure;
 };
 
-static double random_between(uint32_t *seed, double low, double high)
+static double random_number_between(uint32_t *seed, double low, double high)
 {
     return low + (high - low) * rng_unit(seed);
 }
@@ -67,22 +67,24 @@ static struct shape make_frame_parameters(int i)
     s.width = width[rng_int_below(&seed, dirty ? 1 : 3)];
     s.height = s.width * 9 / 16;
     s.n_lamps = lamps[rng_int_below(&seed, dirty ? 2 : 4)];
-    s.angle = random_between(&seed, 1, 25);
-    s.stops = random_between(&seed, -5, 1);
-    s.quality = random_between(&seed, 0, dirty ? 0.5 : 0.75);
-    s.dim = rng_int_below(&seed, 3) ? 0 : exp2(random_between(&seed, -2, 2));
+    s.angle = random_number_between(&seed, 1, 25);
+    s.stops = random_number_between(&seed, -5, 1);
+    s.quality = random_number_between(&seed, 0, dirty ? 0.5 : 0.75);
+    s.dim =
+        rng_int_below(&seed, 3) ? 0 : exp2(random_number_between(&seed, -2, 2));
     s.dispersion = rng_int_below(&seed, 4) ? 0 : 1;
     s.starburst = rng_int_below(&seed, 3) ? 0 : 1;
-    s.star_stops = random_between(&seed, 3, 14);
+    s.star_stops = random_number_between(&seed, 3, 14);
     s.veil = rng_int_below(&seed, 4) ? 0 : 0.02;
     s.haze = rng_int_below(&seed, 5) ? 0 : 0.02;
     s.dust = dirty && rng_int_below(&seed, 3)
-                 ? exp2(random_between(&seed, -9, -5))
+                 ? exp2(random_number_between(&seed, -9, -5))
                  : 0;
     s.soft = dirty && rng_int_below(&seed, 3) == 0
-                 ? random_between(&seed, 0.01, 0.1)
+                 ? random_number_between(&seed, 0.01, 0.1)
                  : 0;
-    s.round = rng_int_below(&seed, 4) ? 0 : random_between(&seed, 0.1, 0.9);
+    s.round =
+        rng_int_below(&seed, 4) ? 0 : random_number_between(&seed, 0.1, 0.9);
     return s;
 }
 
@@ -112,7 +114,7 @@ static void exit_with_error(const char *what)
     exit(1);
 }
 
-static void open_stage(struct stage *s, const struct shape *shape)
+static void open_lens_stage(struct stage *s, const struct shape *shape)
 {
     set_frame_settings(&s->opened.settings, shape);
     if (opened_lens_open(&s->tool, &s->opened.lens, &s->opened.settings,
@@ -125,7 +127,7 @@ static void open_stage(struct stage *s, const struct shape *shape)
     canvas_set_lamps(s->lamp, shape->n_lamps, shape->angle);
 }
 
-static void close_stage(struct stage *s)
+static void close_lens_stage(struct stage *s)
 {
     canvas_free(&s->canvas);
     glint_frame_finish(&s->frame);
@@ -187,7 +189,7 @@ static void draw_frame_twice(struct stage *s, const struct shape *shape)
         exit_with_error("no memory");
 }
 
-static void count_lit_in_row(const struct stage *s, double *counted)
+static void count_lit_pixels_of_row(const struct stage *s, double *counted)
 {
     struct glint_planned b;
 
@@ -242,7 +244,7 @@ static void print_frame_costs(struct stage *s, const struct shape *shape,
     for (int k = 0; k < GLINT_COST_KINDS; k++)
         fprintf(file, " %g", planned.count[k]);
     fprintf(file, " |");
-    count_lit_in_row(s, counted);
+    count_lit_pixels_of_row(s, counted);
     counted[GLINT_COST_LIT] = count_lit_pixels(s);
     for (int k = GLINT_COST_LIT + 1; k < GLINT_COST_KINDS; k++)
         counted[k] = planned.count[k];
@@ -273,7 +275,7 @@ int main(int argc, char **argv)
             exit_with_error(path);
         if (i < first)
             continue;
-        open_stage(s, &shape);
+        open_lens_stage(s, &shape);
         s->exposure = exposure;
         if (!from &&
             find_frame_exposure(&s->frame, s->lamp, &s->exposure) != GLINT_OK)
@@ -283,7 +285,7 @@ int main(int argc, char **argv)
             print_frame_costs(s, &shape, to);
             fflush(to);
         }
-        close_stage(s);
+        close_lens_stage(s);
         memset(s, 0, sizeof *s);
     }
     free(s);

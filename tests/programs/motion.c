@@ -73,8 +73,8 @@ static bool measure_code_errors(struct sweep *s, const struct glint_lamp *lamp,
     return true;
 }
 
-static bool measure_frame(struct sweep *s, double theta,
-                          float error[2][SAMPLES])
+static bool measure_frame_errors(struct sweep *s, double theta,
+                                 float error[2][SAMPLES])
 {
     const struct glint_lamp lamp = stage_make_lamp(theta, AZIMUTH, s->power);
 
@@ -85,7 +85,7 @@ static bool measure_frame(struct sweep *s, double theta,
 
 /* ---------------------------------------------------------------- measures */
 
-static double max_block_mean_change(const float *a, const float *b)
+static double compute_max_block_mean_change(const float *a, const float *b)
 {
     double worst = 0;
 
@@ -104,8 +104,8 @@ static double max_block_mean_change(const float *a, const float *b)
     return worst;
 }
 
-static double relative_flux_change(const struct sweep *s, const float *a,
-                                   const float *b)
+static double compute_relative_flux_change(const struct sweep *s,
+                                           const float *a, const float *b)
 {
     double sum = 0;
 
@@ -131,7 +131,7 @@ static double measure_edge_crawl(const float *a, const float *b)
     return at / 16.0;
 }
 
-static bool sweep_light(struct sweep *s)
+static bool measure_light_sweep(struct sweep *s)
 {
     const int steps = (int)lrint((s->to - s->from) / STEP_DEG);
     FILE *const csv = s->csv ? fopen(s->csv, "w") : NULL;
@@ -145,12 +145,13 @@ static bool sweep_light(struct sweep *s)
         float(*before)[SAMPLES] = s->error[~k & 1];
         struct sample now;
 
-        ok = measure_frame(s, theta, here);
+        ok = measure_frame_errors(s, theta, here);
         if (k == 0 || !ok)
             continue;
-        now = (struct sample){max_block_mean_change(here[0], before[0]),
-                              relative_flux_change(s, here[0], before[0]),
-                              measure_edge_crawl(here[1], before[1])};
+        now =
+            (struct sample){compute_max_block_mean_change(here[0], before[0]),
+                            compute_relative_flux_change(s, here[0], before[0]),
+                            measure_edge_crawl(here[1], before[1])};
         s->worst.jump = fmax(s->worst.jump, now.jump);
         s->worst.flux = fmax(s->worst.flux, now.flux);
         s->worst.crawl = fmax(s->worst.crawl, now.crawl);
@@ -224,7 +225,7 @@ int main(int argc, char **argv)
                         "[--jump CODES] [--flux SHARE] [--crawl CODES]\n");
         return 2;
     }
-    if (!open_light_sweep(&s) || !sweep_light(&s))
+    if (!open_light_sweep(&s) || !measure_light_sweep(&s))
         return 1;
     ok = check_error_limit(&s, "block mean", s.worst.jump, s.bound.jump,
                            "codes");

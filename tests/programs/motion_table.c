@@ -153,8 +153,8 @@ static double compute_correlation(const struct result *r, int n)
     return (s[4] - s[0] * s[1] / n) / sqrt(x * y);
 }
 
-static void print_method_row(const struct method *method, int n, int n_frames,
-                             const struct result *result)
+static void print_errors_of_method(const struct method *method, int n,
+                                   int n_frames, const struct result *result)
 {
     for (int i = 0; i < n; i++) {
         const struct result *r = &result[i];
@@ -184,7 +184,7 @@ static void compare_localisers(int reset_every, int digits,
 
         localise_all_tracks(&options, method, n, result);
         printf("| %s | | | | | |\n", motions[m]);
-        print_method_row(method, n, n_frames, result);
+        print_errors_of_method(method, n, n_frames, result);
     }
 }
 

@@ -109,7 +109,8 @@ static double sum_lamp_powers(const struct glint_lamp *lamp, int n)
     return sum;
 }
 
-static bool track_occluded_lamp(const struct scene *s, struct passing *p)
+static bool measure_occluded_lamp_power(const struct scene *s,
+                                        struct passing *p)
 {
     static struct glint_lamp lamp[GLINT_LAMP_DETECTOR_MAX];
     const struct glint_view view = glint_view_fit(WIDTH, HEIGHT, 36, 24);
@@ -137,7 +138,8 @@ static bool track_occluded_lamp(const struct scene *s, struct passing *p)
 
 /* Returns the RMS difference between the power in a frame and the visible
  * fraction LAG frames earlier. */
-static double rms_difference(const struct passing *p, double full, int lag)
+static double compute_rms_difference_at_lag(const struct passing *p,
+                                            double full, int lag)
 {
     double sum = 0;
 
@@ -155,8 +157,10 @@ static void print_scene_errors(const struct scene *s, const struct passing *p,
     for (int i = 20; i < 30; i++)
         full += p->power[i] / 10;
     for (int i = 1; i < 10; i++)
-        lag =
-            rms_difference(p, full, i) < rms_difference(p, full, lag) ? i : lag;
+        lag = compute_rms_difference_at_lag(p, full, i) <
+                      compute_rms_difference_at_lag(p, full, lag)
+                  ? i
+                  : lag;
     for (int i = 30; i < FRAMES; i++) {
         least_share = fmin(least_share, p->share[i]);
         least = fmin(least, p->power[i] / full);
@@ -170,8 +174,8 @@ static void print_scene_errors(const struct scene *s, const struct passing *p,
         printf("| %s | %.0f, %.0f | %.2f | %.2f | %.3f | %d: %.3f | %.2f | "
                "%.2f |\n",
                s->name, s->radius, s->pole, least_share, least,
-               rms_difference(p, full, 0), lag, rms_difference(p, full, lag),
-               share_step, step);
+               compute_rms_difference_at_lag(p, full, 0), lag,
+               compute_rms_difference_at_lag(p, full, lag), share_step, step);
 }
 
 int main(int argc, char **argv)
@@ -190,7 +194,7 @@ int main(int argc, char **argv)
                "| RMS | lag: RMS | largest step of the share | of power |\n"
                "|---|---|---|---|---|---|---|---|");
     for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
-        if (!track_occluded_lamp(&scenes[i], &p))
+        if (!measure_occluded_lamp_power(&scenes[i], &p))
             return 1;
         print_scene_errors(&scenes[i], &p, log);
     }

@@ -44,7 +44,7 @@ struct camera {
     int *stack;
 };
 
-static void open_camera(struct camera *c, int width, int height)
+static void open_simulated_camera(struct camera *c, int width, int height)
 {
     struct glint_lamp_finder_config cfg;
     size_t bytes;
@@ -66,7 +66,7 @@ static void open_camera(struct camera *c, int width, int height)
         exit(1);
 }
 
-static void close_camera(struct camera *c)
+static void close_simulated_camera(struct camera *c)
 {
     free(c->image.plane[0]);
     free(c->coarse.plane[0]);
@@ -171,8 +171,9 @@ static void print_spot_features(struct camera *c, int id, double power,
 
 /* Renders the camera's image of SCENE times GAIN, with noise of standard
  * deviation SIGMA codes. Every fourth image, by its number K, is RGB565. */
-static void expose_scene(struct camera *c, const struct power_picture *scene,
-                         double gain, double sigma, int k, uint32_t *seed)
+static void render_camera_image(struct camera *c,
+                                const struct power_picture *scene, double gain,
+                                double sigma, int k, uint32_t *seed)
 {
     uint8_t *px = c->image.plane[0], *to = c->coarse.plane[0];
 
@@ -192,14 +193,14 @@ static void expose_scene(struct camera *c, const struct power_picture *scene,
 
 /* ----------------------------------------------------------------- rendered */
 
-static double random_between(double low, double high, uint32_t *seed)
+static double random_number_between(double low, double high, uint32_t *seed)
 {
     return low + (high - low) * rng_unit(seed);
 }
 
 /* Sets RGB to the colour of a random lamp, luminance 1: white, tungsten,
  * sodium, blue, warm white or green. */
-static void random_colour(double *rgb, uint32_t *seed)
+static void choose_random_lamp_colour(double *rgb, uint32_t *seed)
 {
     static const double colours[6][3] = {{1, 1, 1},      {1, 0.55, 0.18},
                                          {1, 0.4, 0.02}, {0.35, 0.55, 1},
@@ -208,26 +209,26 @@ static void random_colour(double *rgb, uint32_t *seed)
     double y;
 
     for (int i = 0; i < 3; i++)
-        rgb[i] = from[i] * random_between(0.9, 1.1, seed);
+        rgb[i] = from[i] * random_number_between(0.9, 1.1, seed);
     y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     for (int i = 0; i < 3; i++)
         rgb[i] /= y;
 }
 
-static struct power_lamp random_lamp(int i, int width, int height,
-                                     uint32_t *seed)
+static struct power_lamp make_random_lamp(int i, int width, int height,
+                                          uint32_t *seed)
 {
     struct power_lamp l = {.shape = (enum power_shape)(i % POWER_SHAPES)};
 
     l.radius = 0.3 * pow(100, rng_unit(seed));
-    l.x = width / 2 + random_between(-1, 1, seed);
-    l.y = height / 2 + random_between(-1, 1, seed);
-    l.angle = random_between(0, 3.14, seed);
-    l.sigma = random_between(0.5, 1.3, seed);
+    l.x = width / 2 + random_number_between(-1, 1, seed);
+    l.y = height / 2 + random_number_between(-1, 1, seed);
+    l.angle = random_number_between(0, 3.14, seed);
+    l.sigma = random_number_between(0.5, 1.3, seed);
     l.glare = 0.01 * pow(8, rng_unit(seed));
-    l.reach = random_between(1, 3, seed);
-    l.fall = random_between(2.3, 3.3, seed);
-    random_colour(l.rgb, seed);
+    l.reach = random_number_between(1, 3, seed);
+    l.fall = random_number_between(2.3, 3.3, seed);
+    choose_random_lamp_colour(l.rgb, seed);
     return l;
 }
 
@@ -248,14 +249,14 @@ static void print_rendered_lamps(int i)
 
     for (int k = 0; k < 5; k++)
         rng_unit(&seed);
-    lamp = random_lamp(i, W, H, &seed);
-    power = exp2(random_between(9, 16, &seed));
-    black = i % 4 == 3 ? random_between(0.1, 0.6, &seed)
+    lamp = make_random_lamp(i, W, H, &seed);
+    power = exp2(random_number_between(9, 16, &seed));
+    black = i % 4 == 3 ? random_number_between(0.1, 0.6, &seed)
                        : 0.001 * pow(50, rng_unit(&seed));
-    slope = random_between(0, 0.6, &seed);
-    noise = random_between(0, 3, &seed);
+    slope = random_number_between(0, 0.6, &seed);
+    noise = random_number_between(0, 3, &seed);
     power_draw_lamp(light, W, H, &lamp);
-    open_camera(&c, W, H);
+    open_simulated_camera(&c, W, H);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = exp2(-k - rng_unit(&seed));
 
@@ -266,7 +267,7 @@ static void print_rendered_lamps(int i)
                 scene.rgb[3 * p + j] =
                     ((double)light[p] * power * lamp.rgb[j] * gain +
                      black * (1 + slope * (p % W - W / 2) / W));
-        expose_scene(&c, &scene, 1, noise, k, &seed);
+        render_camera_image(&c, &scene, 1, noise, k, &seed);
         if (measure_bright_region(&c, &scene, 1, (int)lamp.x, (int)lamp.y,
                                   c.spot) > 0 &&
             c.spot->area >= 2 && c.spot->area < W * H / 5) {
@@ -275,7 +276,7 @@ static void print_rendered_lamps(int i)
             print_spot_features(&c, i, power * gain, c.spot);
         }
     }
-    close_camera(&c);
+    close_simulated_camera(&c);
     free(light);
     free(scene.rgb);
 }
@@ -330,7 +331,8 @@ static void apply_random_lens(struct power_picture *s, double over,
 {
     const int n = s->width * s->height;
     double *light = malloc(sizeof *light * (size_t)n);
-    const struct power_lamp lens = random_lamp(0, s->width, s->height, seed);
+    const struct power_lamp lens =
+        make_random_lamp(0, s->width, s->height, seed);
 
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < n; i++)
@@ -359,11 +361,12 @@ static void print_view_lamps(const struct glint_float_image *p, int id,
     memcpy(truth.rgb, scene.rgb, bytes);
     base = 0.7 / fmax(compute_mean(&scene), 1e-4);
     apply_random_lens(&scene, 8 / base, &seed);
-    open_camera(&c, width, height);
+    open_simulated_camera(&c, width, height);
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = base * exp2(-k);
 
-        expose_scene(&c, &scene, gain, random_between(0, 3, &seed), k, &seed);
+        render_camera_image(&c, &scene, gain,
+                            random_number_between(0, 3, &seed), k, &seed);
         c.n = glint_lamp_finder_find(c.finder, c.seen, c.spot, MAX_SPOTS);
         glint_profile_measure(c.profile, c.seen, c.spot, c.n);
         for (int i = 0; i < c.n; i++) {
@@ -376,7 +379,7 @@ static void print_view_lamps(const struct glint_float_image *p, int id,
                 print_spot_features(&c, PANORAMA + id / 100, power, &c.spot[i]);
         }
     }
-    close_camera(&c);
+    close_simulated_camera(&c);
     free(scene.rgb);
     free(truth.rgb);
 }

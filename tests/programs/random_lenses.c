@@ -21,8 +21,8 @@
 enum { WIDTH = 144, HEIGHT = 96, MANY_GHOSTS = 60 };
 
 /* Returns a lamp of power 1, inside the image or slightly off-screen. */
-static struct glint_lamp random_lamp(const struct stage *s, uint64_t seed,
-                                     int number)
+static struct glint_lamp make_random_lamp(const struct stage *s, uint64_t seed,
+                                          int number)
 {
     uint64_t r = ~seed * UINT64_C(0xd1342543de82ef95) + (uint64_t)number;
     const double half =
@@ -62,7 +62,7 @@ static int compare_lens_with_exact(uint64_t seed, int number)
 
     if (tries < 0 || !stage_set_up_lens(&s, blades))
         return print_lens_result(&s, number, "refused", tries, 0, &m, 0);
-    lamp = bright = random_lamp(&s, seed, number);
+    lamp = bright = make_random_lamp(&s, seed, number);
     if (!stage_bake_model(&s, 4, fmin(89, lamp.theta_deg + 0.5)))
         return print_lens_result(&s, number, "refused", tries, lamp.theta_deg,
                                  &m, 0);

@@ -97,7 +97,7 @@ static double find_exposure_scale(int n)
 
 /* Returns the min PSNR, dB, of frames with reuse whose lights have moved by up
  * to PX pixels, against frames without reuse. */
-static double min_psnr(int n, double scale, double px)
+static double measure_min_psnr(int n, double scale, double px)
 {
     uint64_t noise = 1;
     struct glint_measure m;
@@ -127,11 +127,11 @@ static void print_reuse_figures(int n)
     draw_with_reuse(n, scale, 0.5, got);
     printf("%.17g %zu %zu", scale, bytes, stage.drawn.need_bytes);
     for (double px = 0.25; px <= 1; px *= 2)
-        printf(" %.1f", min_psnr(n, scale, px));
+        printf(" %.1f", measure_min_psnr(n, scale, px));
     puts("");
 }
 
-static void measure_case(int n, double scale)
+static void measure_reuse_case(int n, double scale)
 {
     uint64_t noise = 1;
 
@@ -164,7 +164,7 @@ int main(int argc, char **argv)
         return 2;
     street_lamps(&stage, lamps, n);
     if (argc == 4)
-        measure_case(n, atof(argv[3]));
+        measure_reuse_case(n, atof(argv[3]));
     else
         print_reuse_figures(n);
     glint_frame_finish(&plain);

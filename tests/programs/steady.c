@@ -63,7 +63,7 @@ static double sum_flare_light(struct steady *s)
 
 /* Returns how far STEP lies outside the interval between 0 and OWN. Both are
  * logarithms of ratios of light. */
-static double compute_excess_step(double step, double own)
+static double compute_step_outside_interval(double step, double own)
 {
     const double low = fmin(own, 0), high = fmax(own, 0);
 
@@ -93,7 +93,7 @@ static void record_light_step(struct steady *s, double total, double own)
     if (!is_cut && s->total > least && total > least) {
         const double step = log(total / s->total);
         const double ours =
-            exp(compute_excess_step(step, log(own / s->own))) - 1;
+            exp(compute_step_outside_interval(step, log(own / s->own))) - 1;
 
         const double alone =
             exp(fmax(fabs(step) - compute_true_light_span(s), 0)) - 1;
@@ -170,7 +170,8 @@ static int set_street_lamps(struct night_lamp *lamp)
     return 5;
 }
 
-static int set_noise_scene(struct night *night, int i, struct night_lamp *lamp)
+static int set_lamps_in_noise(struct night *night, int i,
+                              struct night_lamp *lamp)
 {
     (void)i;
     night->sigma = 4;
@@ -184,7 +185,8 @@ static int set_single_sun(struct night *night, int i, struct night_lamp *lamp)
     return 1;
 }
 
-static int set_sun_entering(struct night *night, int i, struct night_lamp *lamp)
+static int set_sun_entering_image(struct night *night, int i,
+                                  struct night_lamp *lamp)
 {
     const int n = set_street_lamps(lamp);
 
@@ -193,9 +195,10 @@ static int set_sun_entering(struct night *night, int i, struct night_lamp *lamp)
     return n + 1;
 }
 
-static int set_sun_leaving(struct night *night, int i, struct night_lamp *lamp)
+static int set_sun_leaving_image(struct night *night, int i,
+                                 struct night_lamp *lamp)
 {
-    return set_sun_entering(night, FRAMES - i, lamp);
+    return set_sun_entering_image(night, FRAMES - i, lamp);
 }
 
 static int set_lamps_behind_poles(struct night *night, int i,
@@ -218,8 +221,8 @@ static int set_lamp_behind_pole(struct night *night, int i,
     return 1;
 }
 
-static int set_view_from_train(struct night *night, int i,
-                               struct night_lamp *lamp)
+static int set_lamps_seen_from_train(struct night *night, int i,
+                                     struct night_lamp *lamp)
 {
     const int n = set_street_lamps(lamp);
 
@@ -229,7 +232,8 @@ static int set_view_from_train(struct night *night, int i,
     return n;
 }
 
-static int set_scene_cuts(struct night *night, int i, struct night_lamp *lamp)
+static int set_lamps_with_scene_cuts(struct night *night, int i,
+                                     struct night_lamp *lamp)
 {
     if (i / 40 % 2 == 0)
         return set_street_lamps(lamp);
@@ -243,14 +247,14 @@ static const struct {
     const char *name;
     lamps_fn *lamps;
 } scenes[] = {
-    {"noise", set_noise_scene},
+    {"noise", set_lamps_in_noise},
     {"a sun enters", set_single_sun},
-    {"a sun enters among lamps", set_sun_entering},
-    {"a sun leaves lamps", set_sun_leaving},
+    {"a sun enters among lamps", set_sun_entering_image},
+    {"a sun leaves lamps", set_sun_leaving_image},
     {"lamps behind poles", set_lamps_behind_poles},
     {"a lamp alone behind poles", set_lamp_behind_pole},
-    {"lamps from a train", set_view_from_train},
-    {"hard cuts", set_scene_cuts},
+    {"lamps from a train", set_lamps_seen_from_train},
+    {"hard cuts", set_lamps_with_scene_cuts},
 };
 
 /* Returns the sum of the light of LAMP's visible pixels, white x pixels. Sets

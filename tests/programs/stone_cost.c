@@ -80,7 +80,7 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static int is_set_selected(int set, const char *only)
+static int is_instruction_set_selected(int set, const char *only)
 {
     return only ? !strcmp(set_of[set].name, only)
                 : (set_of[set].bits & ~glint_sets_here()) == 0;
@@ -102,7 +102,7 @@ static void time_light_map(struct glint_spread *s,
         for (int k = 0; k < SETS; k++) {
             double start;
 
-            if (!is_set_selected(k, only))
+            if (!is_instruction_set_selected(k, only))
                 continue;
             s->convolve = glint_choose_convolve_kernel(set_of[k].bits);
             idle(s);
@@ -113,15 +113,15 @@ static void time_light_map(struct glint_spread *s,
         }
     idle(s);
     for (int k = 0; k < SETS; k++)
-        if (is_set_selected(k, only)) {
+        if (is_instruction_set_selected(k, only)) {
             qsort(took[k], (size_t)frames, sizeof **took, compare_doubles);
             printf("%s %.3f %016llx\n", set_of[k].name,
                    1000 * took[k][frames / 2], (unsigned long long)hash[k]);
         }
 }
 
-static int measure_instruction_sets(const struct glint_translucent *stone,
-                                    int frames, const char *only)
+static int time_instruction_sets(const struct glint_translucent *stone,
+                                 int frames, const char *only)
 {
     const int side = 1 << stone->header->side_log2;
     const size_t n = (size_t)side * (size_t)side;
@@ -159,8 +159,7 @@ int main(int argc, char **argv)
     if (file && data && frames > 0 && frames <= MOST &&
         glint_translucent_open(&stone, data, fread(data, 1, LIMIT, file),
                                &reason) == GLINT_OK)
-        code =
-            measure_instruction_sets(&stone, frames, argc > 3 ? argv[3] : NULL);
+        code = time_instruction_sets(&stone, frames, argc > 3 ? argv[3] : NULL);
     else
         fprintf(stderr, "stone_cost: %s\n", reason);
     if (file)

@@ -90,7 +90,7 @@ judge_candidate(struct glint_scatter_rows *rows,
     if (glint_scatter_judge(rows, o, NULL, &j) != GLINT_OK)
         exit_with_error("out of memory");
     kept = j;
-    glint_scatter_judgement_close(&j);
+    glint_scatter_free_judgement(&j);
     return kept;
 }
 
@@ -98,7 +98,7 @@ static struct glint_scatter_candidate make_fit_candidate(enum run run)
 {
     struct glint_scatter_candidate o;
 
-    glint_scatter_candidate_defaults(&o, run_of[run].kind);
+    glint_scatter_set_default_candidate(&o, run_of[run].kind);
     o.terms = run_of[run].terms;
     o.clusters = run_of[run].clusters;
     return o;
@@ -132,8 +132,8 @@ static void open_medium_rows(struct table *t, int i)
     }
 }
 
-static void print_table_heads(const char *first, const char *const *column,
-                              int n)
+static void print_table_headings(const char *first, const char *const *column,
+                                 int n)
 {
     printf("\n| %s |", first);
     for (int i = 0; i < n; i++)
@@ -160,7 +160,7 @@ static void print_model_errors(const struct table *t)
         printf(", %d x %d texels, kernels of %d: rows in %.1f processor "
                "seconds\n",
                t->side, t->side, t->kernel, t->seconds[i]);
-        print_table_heads("model", columns, 12);
+        print_table_headings("model", columns, 12);
         for (int run = 0; run < RUNS; run++) {
             const struct glint_scatter_judgement *j = &t->j[i][run];
 
@@ -180,7 +180,7 @@ static void print_published_comparison(const struct table *t, const char *title,
                                        const char *theirs)
 {
     printf("\n### %s\n", title);
-    print_table_heads("model", stone_name, STONES);
+    print_table_headings("model", stone_name, STONES);
     for (int k = 0; k < n; k++) {
         printf("| %s |", run_of[runs[k]].name);
         for (int i = 0; i < STONES; i++)
@@ -191,7 +191,7 @@ static void print_published_comparison(const struct table *t, const char *title,
     printf("\nSource, its own four or eight stones: %s\n", theirs);
 }
 
-static void print_source_tables(const struct table *t)
+static void print_published_tables(const struct table *t)
 {
     static const enum run in_72[] = {TUCKER15, TUCKER5, PEERS10, PEERS20};
     static const enum run in_74[] = {LOG5, SVD5};
@@ -216,8 +216,8 @@ static void print_source_tables(const struct table *t)
 }
 
 /* Copies ROWS to OFF and shifts a random 30 % of them by one texel. */
-static void shift_some_rows(const struct glint_scatter_rows *rows,
-                            struct glint_scatter_rows *off)
+static void shift_random_rows(const struct glint_scatter_rows *rows,
+                              struct glint_scatter_rows *off)
 {
     const size_t texels = (size_t)rows->side * (size_t)rows->side;
     const size_t k2 = (size_t)rows->kernel * (size_t)rows->kernel;
@@ -244,9 +244,9 @@ static void print_shifted_row_errors(struct table *t)
     static const char *const columns[] = {"T = 1", "T = 2", "T = 5", "T = 15"};
     struct glint_scatter_rows off;
 
-    shift_some_rows(&t->rows[0], &off);
+    shift_random_rows(&t->rows[0], &off);
     printf("\n### Turned rows (C3): RMSE, P = 4, chess 4 x 4\n");
-    print_table_heads("rows", columns, 4);
+    print_table_headings("rows", columns, 4);
     for (int way = 0; way < 4; way++) {
         printf("| %s, %s |",
                way & 2 ? "30 % of them a texel off" : "as they are",
@@ -274,7 +274,7 @@ static void print_polynomial_errors(struct table *t)
 
     printf("\n### Terms and degrees (C5, figure 4.6): RMSE, and how much "
            "smaller than 8-byte rows, veins\n");
-    print_table_heads("Tucker", columns, GRID_DEGREES);
+    print_table_headings("Tucker", columns, GRID_DEGREES);
     for (int k = 0; k < GRID_TERMS; k++) {
         printf("| T = %d |", terms[k]);
         for (int p = 1; p <= GRID_DEGREES; p++) {
@@ -301,7 +301,7 @@ static void print_logarithm_errors(struct table *t)
     printf("\n### ln(R' / a + b), b = 1, S = 5 (C6): RMSE, share of entries "
            "below 0 (%d entries a row)\n",
            n);
-    print_table_heads("stone", columns, 7);
+    print_table_headings("stone", columns, 7);
     for (int i = 0; i < STONES; i++) {
         const struct glint_scatter_judgement *found = &t->j[i][LOG5];
 
@@ -369,8 +369,8 @@ static void print_row_sum_times(struct table *t)
 }
 
 /* Returns the CPU seconds of scattering an image by FIT, entry by entry. */
-static double time_light_by_entries(const struct glint_scatter_fit *fit,
-                                    const double *light, double *out)
+static double time_scattering_by_entries(const struct glint_scatter_fit *fit,
+                                         const double *light, double *out)
 {
     const int n = fit->side * fit->side, k2 = fit->kernel * fit->kernel;
     const double start = cpu_seconds();
@@ -390,8 +390,8 @@ static double time_light_by_entries(const struct glint_scatter_fit *fit,
 
 /* Returns the CPU seconds of scattering an image by the baked integers of the
  * fit to ROWS. */
-static double time_light_by_integers(struct glint_scatter_rows *rows,
-                                     const double *light, double *out)
+static double time_scattering_by_integers(struct glint_scatter_rows *rows,
+                                          const double *light, double *out)
 {
     struct glint_scatter_fit fit;
     struct glint_stone_report report;
@@ -419,7 +419,7 @@ static double time_light_by_integers(struct glint_scatter_rows *rows,
 }
 
 /* Prints table C12: CPU seconds of scattering an image of 64 x 64 texels. */
-static void print_image_times(void)
+static void print_scattering_times(void)
 {
     enum { SIDE = 64, N = 3 * SIDE * SIDE };
     static double light[N], out[N];
@@ -441,8 +441,8 @@ static void print_image_times(void)
     for (int i = 0; i < 5; i++)
         glint_scatter_light_rows(&rows, light, out);
     by_rows_s = (cpu_seconds() - start) / 5;
-    by_terms_s = time_light_by_entries(&fit, light, out);
-    by_integers_s = time_light_by_integers(&rows, light, out);
+    by_terms_s = time_scattering_by_entries(&fit, light, out);
+    by_integers_s = time_scattering_by_integers(&rows, light, out);
     printf("\n### One picture (C12)\n\n64 x 64 texels, RGB, kernels of 21, "
            "one thread: %.1f ms by all rows, %.1f ms by five terms entry by "
            "entry, %.2f ms by the integers of four kernels of rank 3, in plain "
@@ -459,12 +459,12 @@ int main(void)
 
     for (int i = 0; i < STONES; i++)
         open_medium_rows(&t, i);
-    print_source_tables(&t);
+    print_published_tables(&t);
     print_shifted_row_errors(&t);
     print_polynomial_errors(&t);
     print_logarithm_errors(&t);
     print_row_sum_times(&t);
-    print_image_times();
+    print_scattering_times();
     print_model_errors(&t);
     for (int i = 0; i < STONES; i++)
         glint_scatter_close(&t.rows[i]);

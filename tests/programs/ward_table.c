@@ -100,7 +100,7 @@ static void find_best_mipmap_bias(const struct glint_environment *e,
     for (o.bias_q8 = -512; o.bias_q8 <= 256; o.bias_q8 += 128) {
         double here[WAYS];
 
-        ward_lookup_picture(e, material, &o, got);
+        ward_render_by_lookups(e, material, &o, got);
         compute_psnr(want, got, here);
         for (int w = 0; w < WAYS; w++)
             db[w] = fmax(db[w], here[w]);
@@ -117,19 +117,19 @@ static void measure_environment_map(struct map *m, int a,
 
     for (int k = 0; k < 2; k++)
         material.alpha_q24[k] = (int32_t)lrint(0x1p24 * alphas[a][k]);
-    ward_sum_texels(&m->sphere, alphas[a], want);
-    ward_lookup_picture(&m->environment[1][0], &material, &o, got);
+    ward_render_by_texel_sums(&m->sphere, alphas[a], want);
+    ward_render_by_lookups(&m->environment[1][0], &material, &o, got);
     compute_psnr(want, got, db[0]);
     find_best_mipmap_bias(&m->environment[1][0], &material, want, got, db[1]);
     find_best_mipmap_bias(&m->environment[0][0], &material, want, got, db[2]);
     o.rule = GLINT_WARD_CONSTANT;
-    ward_lookup_picture(&m->environment[1][0], &material, &o, got);
+    ward_render_by_lookups(&m->environment[1][0], &material, &o, got);
     compute_psnr(want, got, db[3]);
-    ward_lookup_picture(&m->environment[0][0], &material, &o, got);
+    ward_render_by_lookups(&m->environment[0][0], &material, &o, got);
     compute_psnr(want, got, db[4]);
     for (int k = 0; k < 5; k++) {
         o.samples = samples[k];
-        ward_lookup_picture(&m->environment[0][1], &material, &o, got);
+        ward_render_by_lookups(&m->environment[0][1], &material, &o, got);
         add_environment_lights(&m->environment[0][1], alphas[a], got);
         compute_psnr(want, got, db[5 + k]);
     }

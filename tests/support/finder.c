@@ -12,9 +12,9 @@
 struct glint_spot finder_spot[FINDER_SPOTS];
 uint32_t finder_seed = 1;
 
-int finder_find_lamps_up_to(const struct glint_lamp_finder_config *cfg,
-                            const struct glint_image *image, int max,
-                            int *dropped)
+int finder_find_at_most_n_lamps(const struct glint_lamp_finder_config *cfg,
+                                const struct glint_image *image, int max,
+                                int *dropped)
 {
     const size_t bytes = glint_lamp_finder_bytes(cfg);
     struct glint_lamp_finder *finder;
@@ -37,7 +37,7 @@ int finder_find_lamps_up_to(const struct glint_lamp_finder_config *cfg,
 int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
                       const struct glint_image *image)
 {
-    return finder_find_lamps_up_to(cfg, image, FINDER_SPOTS, NULL);
+    return finder_find_at_most_n_lamps(cfg, image, FINDER_SPOTS, NULL);
 }
 
 int32_t finder_threshold_stops_q8(int code)
@@ -71,12 +71,12 @@ finder_default_config(const struct glint_image *image)
     return cfg;
 }
 
-double finder_spot_x(int i)
+double finder_centroid_x_of_spot(int i)
 {
     return finder_spot[i].x_q8 / 256.0;
 }
 
-double finder_spot_y(int i)
+double finder_centroid_y_of_spot(int i)
 {
     return finder_spot[i].y_q8 / 256.0;
 }

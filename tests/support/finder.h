@@ -15,13 +15,13 @@ extern struct glint_spot finder_spot[FINDER_SPOTS];
 /* seed of the byte with which the memory of each new finder is filled */
 extern uint32_t finder_seed;
 
-/* finder_find_lamps_up_to() finds at most MAX lamps of IMAGE, stores them in
- * finder_spot and returns their number. The finder gets exactly the memory
+/* finder_find_at_most_n_lamps() finds at most MAX lamps of IMAGE, stores them
+ * in finder_spot and returns their number. The finder gets exactly the memory
  * that it requests, filled with a random byte. Sets *DROPPED to
  * glint_lamp_finder_dropped(); if DROPPED is NULL, that must be 0. */
-int finder_find_lamps_up_to(const struct glint_lamp_finder_config *cfg,
-                            const struct glint_image *image, int max,
-                            int *dropped);
+int finder_find_at_most_n_lamps(const struct glint_lamp_finder_config *cfg,
+                                const struct glint_image *image, int max,
+                                int *dropped);
 
 int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
                       const struct glint_image *image);
@@ -40,8 +40,8 @@ finder_config_without_filters(const struct glint_image *image, int low,
 struct glint_lamp_finder_config
 finder_default_config(const struct glint_image *image);
 
-double finder_spot_x(int i);
+double finder_centroid_x_of_spot(int i);
 
-double finder_spot_y(int i);
+double finder_centroid_y_of_spot(int i);
 
 #endif

@@ -14,7 +14,7 @@ static const int32_t octagon[8][2] = {
     {-992008094, 410903207}, {-992008094, -410903207}, {-410903207, -992008094},
     {410903207, -992008094}, {992008094, -410903207}};
 
-struct glint_flare_config octagonal_stop_config(void)
+struct glint_flare_config make_octagonal_stop_config(void)
 {
     struct glint_flare_config c = {.width = WIDTH,
                                    .height = HEIGHT,

@@ -27,7 +27,7 @@ struct ghost {
 extern const struct ghost ghosts[N_GHOSTS];
 
 /* Returns a configuration with an octagonal stop and memory for all ghosts. */
-struct glint_flare_config octagonal_stop_config(void);
+struct glint_flare_config make_octagonal_stop_config(void);
 
 /* Allocates and returns a flare with configuration C. Sets *MEM to its memory,
  * which the caller frees. */

@@ -177,7 +177,7 @@ void model_append_ghosts(struct model_image *m,
     model_seal_checksum(m);
 }
 
-struct model_image model_make_auto(void)
+struct model_image model_make_three_ghosts(void)
 {
     static const struct glint_model_ghost ghosts[] = {
         {0, 1, 0, 2}, {0, 2, 0, 0}, {1, 3, 2, 2}};

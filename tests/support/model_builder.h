@@ -2,7 +2,7 @@
  *
  * Builds small models in memory, whose polynomials can be evaluated by hand.
  *
- *     struct model_image m = model_make_auto();
+ *     struct model_image m = model_make_three_ghosts();
  *     glint_lens_open(&lens, m.data, m.bytes, &reason);
  *     free(m.data);
  *
@@ -85,6 +85,6 @@ void model_append_ghosts(struct model_image *m,
 /* Returns a model of three ghosts. Ghost 0 has two ranges of angles, sines 0 ..
  * 1/4 and 1/4 .. 1/2, the second with halved coefficients; ghost 1 is never
  * visible; ghost 2 has two bands of wavelengths. */
-struct model_image model_make_auto(void);
+struct model_image model_make_three_ghosts(void);
 
 #endif

@@ -8,7 +8,7 @@
 
 enum { FINE = 5, SOURCES = 40, KERNEL = 1 << 18 };
 
-static double gaussian_noise(uint32_t *seed)
+static double make_gaussian_noise(uint32_t *seed)
 {
     double sum = -6;
 
@@ -180,7 +180,7 @@ static void make_srgb_tables(void)
                                       : 1.055 * pow(light, 1 / 2.4) - 0.055);
     }
     for (int i = 0; i < NOISE; i++)
-        noise[i] = gaussian_noise(&seed);
+        noise[i] = make_gaussian_noise(&seed);
 }
 
 void power_expose_codes(uint8_t *rgb, const struct power_picture *scene,

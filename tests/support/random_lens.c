@@ -24,28 +24,28 @@ static const struct glass catalogue[] = {
 
 enum { N_CATALOGUE = sizeof catalogue / sizeof *catalogue };
 
-static double random_log_uniform(uint64_t *r, double low, double high)
+static double choose_log_uniform_number(uint64_t *r, double low, double high)
 {
     return exp(stage_random_uniform(r, log(low), log(high)));
 }
 
-static bool happens_with_probability(uint64_t *r, double p)
+static bool is_true_with_probability(uint64_t *r, double p)
 {
     return stage_random_uniform(r, 0, 1) < p;
 }
 
-static int random_below(uint64_t *r, int n)
+static int random_integer_below(uint64_t *r, int n)
 {
     return (int)(stage_random_bits(r) % (uint64_t)n);
 }
 
 static void choose_glass(uint64_t *r, struct glint_surface *s)
 {
-    const struct glass *g = &catalogue[random_below(r, N_CATALOGUE)];
+    const struct glass *g = &catalogue[random_integer_below(r, N_CATALOGUE)];
 
     s->nd = g->nd;
     s->vd = g->vd;
-    if (happens_with_probability(r, 0.5)) {
+    if (is_true_with_probability(r, 0.5)) {
         s->nd = stage_random_uniform(r, 1.4, 2.1);
         s->vd = stage_random_uniform(r, 18, 95);
     }
@@ -61,7 +61,7 @@ static double compute_sag(double radius, double height)
 
 /* Chooses glasses, semi-diameters of at least 0.1 .. 0.5, and radii of
  * curvature that grow with the number of surfaces. */
-static void choose_surface_shapes(uint64_t *r, struct glint_prescription *l)
+static void choose_glasses_and_radii(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);
     double semi = stage_random_uniform(r, 0.1, 0.5);
@@ -73,16 +73,18 @@ static void choose_surface_shapes(uint64_t *r, struct glint_prescription *l)
 
         *s = (struct glint_surface){.nd = 1};
         if (left == 0) /* groups of 2 to 4 surfaces; the last may have 1 */
-            left = rest <= 3 ? rest : rest == 4 ? 2 : 2 + random_below(r, 3);
+            left = rest <= 3   ? rest
+                   : rest == 4 ? 2
+                               : 2 + random_integer_below(r, 3);
         left--;
         if (left > 0)
             choose_glass(r, s);
         semi *= stage_random_uniform(r, 0.9, 1.1);
         s->semi_mm = semi;
-        if (!happens_with_probability(r, 0.12))
+        if (!is_true_with_probability(r, 0.12))
             s->radius_mm =
-                (happens_with_probability(r, 0.5) ? 1 : -1) *
-                fmax(1.05 * semi, weak * random_log_uniform(r, 0.4, 8));
+                (is_true_with_probability(r, 0.5) ? 1 : -1) *
+                fmax(1.05 * semi, weak * choose_log_uniform_number(r, 0.4, 8));
     }
 }
 
@@ -91,7 +93,7 @@ static void choose_surface_shapes(uint64_t *r, struct glint_prescription *l)
  * between or after the surfaces. */
 static void choose_thicknesses(uint64_t *r, struct glint_prescription *l)
 {
-    l->stop_after = random_below(r, l->n_surfaces + 1);
+    l->stop_after = random_integer_below(r, l->n_surfaces + 1);
     l->stop_semi_mm =
         l->surface[l->stop_after == 0 ? 0 : l->stop_after - 1].semi_mm *
         stage_random_uniform(r, 0.5, 1);
@@ -103,7 +105,7 @@ static void choose_thicknesses(uint64_t *r, struct glint_prescription *l)
             last ? s->semi_mm : fmin(s->semi_mm, s[1].semi_mm);
         const double out = compute_sag(s->radius_mm, fmin(height, s->semi_mm));
         const double in = last ? 0 : compute_sag(s[1].radius_mm, height);
-        const double more = random_log_uniform(r, 0.003, 0.15);
+        const double more = choose_log_uniform_number(r, 0.003, 0.15);
 
         if (to_stop) {
             s->thickness_mm = fmax(0, out) + more;
@@ -114,7 +116,7 @@ static void choose_thicknesses(uint64_t *r, struct glint_prescription *l)
     if (l->stop_after == 0)
         l->stop_thickness_mm = fmax(0, -compute_sag(l->surface[0].radius_mm,
                                                     l->surface[0].semi_mm)) +
-                               random_log_uniform(r, 0.003, 0.15);
+                               choose_log_uniform_number(r, 0.003, 0.15);
 }
 
 static void choose_coatings(uint64_t *r, struct glint_prescription *l)
@@ -127,10 +129,10 @@ static void choose_coatings(uint64_t *r, struct glint_prescription *l)
         struct glint_surface *s = &l->surface[k];
 
         if ((before > 0) != (s->vd > 0) &&
-            happens_with_probability(r, coated)) {
+            is_true_with_probability(r, coated)) {
             s->coating.nm = stage_random_uniform(r, 350, 800);
             s->coating.n_films = 1;
-            s->coating.film[0].index = happens_with_probability(r, 0.5)
+            s->coating.film[0].index = is_true_with_probability(r, 0.5)
                                            ? 1.38
                                            : stage_random_uniform(r, 1.2, 2.3);
             s->coating.film[0].quarters = 1;
@@ -160,7 +162,7 @@ static double *find_gap_before_sensor(struct glint_prescription *l)
 
 /* Chooses the f-number and sensor size, and focuses the lens. Returns false if
  * the lens forms no image, or forms it inside itself. */
-static bool set_focus_and_film(uint64_t *r, struct glint_prescription *l)
+static bool choose_sensor_and_focus(uint64_t *r, struct glint_prescription *l)
 {
     struct glint_optics o;
     double behind;
@@ -169,16 +171,17 @@ static bool set_focus_and_film(uint64_t *r, struct glint_prescription *l)
     glint_optics_of(l, &o);
     if (!(o.focal_mm > 1e-3 && o.focal_mm < 1e3 && o.stop_radius_mm > 1e-6))
         return false;
-    scale_lens(l, random_log_uniform(r, 1, 1e4) / o.focal_mm);
+    scale_lens(l, choose_log_uniform_number(r, 1, 1e4) / o.focal_mm);
     glint_optics_of(l, &o);
     behind = o.back_focal_mm;
     if (l->stop_after == l->n_surfaces)
         behind -= l->surface[l->n_surfaces - 1].thickness_mm;
     *find_gap_before_sensor(l) = behind * stage_random_uniform(r, 0.98, 1.02);
-    l->f_number = fmin(1000, fmax(0.5, o.stop_radius_mm / l->stop_semi_mm *
-                                           random_log_uniform(r, 1.001, 30)));
-    l->film_width_mm =
-        fmin(100, fmax(1, o.focal_mm * random_log_uniform(r, 0.05, 1.5)));
+    l->f_number =
+        fmin(1000, fmax(0.5, o.stop_radius_mm / l->stop_semi_mm *
+                                 choose_log_uniform_number(r, 1.001, 30)));
+    l->film_width_mm = fmin(
+        100, fmax(1, o.focal_mm * choose_log_uniform_number(r, 0.05, 1.5)));
     l->film_height_mm = l->film_width_mm / stage_random_uniform(r, 1, 2.4);
     return behind > 0;
 }
@@ -249,10 +252,10 @@ static bool make_lens_candidate(uint64_t *r, struct glint_prescription *l,
 
     memset(l, 0, sizeof *l);
     l->n_surfaces = n < 64 ? n : 64;
-    choose_surface_shapes(r, l);
+    choose_glasses_and_radii(r, l);
     choose_thicknesses(r, l);
     choose_coatings(r, l);
-    if (!set_focus_and_film(r, l))
+    if (!choose_sensor_and_focus(r, l))
         return false;
     write_lens_table(l, number, text);
     return glint_prescription_parse(l, text, strlen(text), "random", &error) ==

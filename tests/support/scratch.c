@@ -36,7 +36,7 @@ void scratch_remove_dir(void)
     assert_int_equal(rmdir(scratch_dir), 0);
 }
 
-const char *scratch_path_of(const char *name)
+const char *scratch_make_path(const char *name)
 {
     static char path[2][80];
     static int turn;
@@ -48,7 +48,7 @@ const char *scratch_path_of(const char *name)
 
 void scratch_write_file(const char *name, const char *data, size_t bytes)
 {
-    FILE *const f = fopen(scratch_path_of(name), "wb");
+    FILE *const f = fopen(scratch_make_path(name), "wb");
 
     assert_non_null(f);
     assert_int_equal(fwrite(data, 1, bytes, f), bytes);

@@ -5,7 +5,7 @@
  *
  *     TEST_GROUP(scratch_create_dir, scratch_remove_dir);
  *     scratch_write_file("a.ppm", BYTES("P6 1 1 255 abc"));
- *     unlink(scratch_path_of("a.ppm"));
+ *     unlink(scratch_make_path("a.ppm"));
  */
 #ifndef GLINT_TESTS_SCRATCH_H
 #define GLINT_TESTS_SCRATCH_H
@@ -28,7 +28,7 @@ void scratch_remove_dir(void);
 
 /* Returns the path of file NAME in the folder. The result is valid until the
  * next but one call. */
-const char *scratch_path_of(const char *name);
+const char *scratch_make_path(const char *name);
 
 /* Writes DATA[BYTES] to file NAME in the folder; fails the test on an error. */
 void scratch_write_file(const char *name, const char *data, size_t bytes);

@@ -28,7 +28,7 @@ struct base {
     double edge[3][3], normal[3][3], det;
 };
 
-static double round_value(const struct base *b, double x)
+static double round_to_arithmetic(const struct base *b, double x)
 {
     return four_round_value(b->arithmetic, x);
 }
@@ -36,24 +36,27 @@ static double round_value(const struct base *b, double x)
 static double compute_dot(const struct base *b, const double x[3],
                           const double y[3])
 {
-    return round_value(b, round_value(b, round_value(b, x[0] * y[0]) +
-                                             round_value(b, x[1] * y[1])) +
-                              round_value(b, x[2] * y[2]));
+    return round_to_arithmetic(
+        b, round_to_arithmetic(b, round_to_arithmetic(b, x[0] * y[0]) +
+                                      round_to_arithmetic(b, x[1] * y[1])) +
+               round_to_arithmetic(b, x[2] * y[2]));
 }
 
 static void set_base_matrix(struct base *b, const double (*const from[4])[3])
 {
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            b->edge[i][k] = round_value(b, (*from[i])[k] - (*from[3])[k]);
+            b->edge[i][k] =
+                round_to_arithmetic(b, (*from[i])[k] - (*from[3])[k]);
     for (int i = 0; i < 3; i++) {
         const double *x = b->edge[(i + 1) % 3], *y = b->edge[(i + 2) % 3];
 
         for (int k = 0; k < 3; k++) {
             const int l = (k + 1) % 3, m = (k + 2) % 3;
 
-            b->normal[i][k] = round_value(b, round_value(b, x[l] * y[m]) -
-                                                 round_value(b, x[m] * y[l]));
+            b->normal[i][k] =
+                round_to_arithmetic(b, round_to_arithmetic(b, x[l] * y[m]) -
+                                           round_to_arithmetic(b, x[m] * y[l]));
         }
     }
     b->det = compute_dot(b, b->edge[0], b->normal[0]);
@@ -61,25 +64,26 @@ static void set_base_matrix(struct base *b, const double (*const from[4])[3])
 
 /* Sets PLACE to where POINT moves in the motion that takes the four points FROM
  * to the points TO. */
-static void move_point_by_bases(const struct base *b,
-                                const double (*const from[4])[3],
-                                const double (*const to[4])[3],
-                                const double point[3], double place[3])
+static void map_point_by_moved_base(const struct base *b,
+                                    const double (*const from[4])[3],
+                                    const double (*const to[4])[3],
+                                    const double point[3], double place[3])
 {
     double off[3], weight[4], sum = 0;
 
     for (int k = 0; k < 3; k++)
-        off[k] = round_value(b, point[k] - (*from[3])[k]);
+        off[k] = round_to_arithmetic(b, point[k] - (*from[3])[k]);
     for (int i = 0; i < 3; i++) {
-        weight[i] = round_value(b, compute_dot(b, off, b->normal[i]) / b->det);
-        sum = round_value(b, sum + weight[i]);
+        weight[i] =
+            round_to_arithmetic(b, compute_dot(b, off, b->normal[i]) / b->det);
+        sum = round_to_arithmetic(b, sum + weight[i]);
     }
-    weight[3] = round_value(b, 1 - sum);
+    weight[3] = round_to_arithmetic(b, 1 - sum);
     for (int k = 0; k < 3; k++) {
         place[k] = 0;
         for (int i = 0; i < 4; i++)
-            place[k] = round_value(
-                b, place[k] + round_value(b, weight[i] * (*to[i])[k]));
+            place[k] = round_to_arithmetic(
+                b, place[k] + round_to_arithmetic(b, weight[i] * (*to[i])[k]));
     }
 }
 
@@ -114,19 +118,19 @@ static bool four_solve_affine_map(enum four_arithmetic arithmetic,
     if (b.det == 0)
         return false;
     for (int i = 0; i < 4; i++)
-        move_point_by_bases(&b, from, to, point[i], map[i]);
+        map_point_by_moved_base(&b, from, to, point[i], map[i]);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++)
-            map[i][k] = round_value(&b, map[i][k] - map[3][k]);
+            map[i][k] = round_to_arithmetic(&b, map[i][k] - map[3][k]);
     return true;
 }
 
 /* Sets FOUR to the indices of the four foods (landmarks), among those observed
  * before, that the method l->fit uses. Returns false if there are fewer than
  * four. */
-static bool choose_four_foods(const struct four *l, int n,
-                              const double (*seen)[3], const bool *is_new,
-                              int four[4])
+static bool choose_four_food_items(const struct four *l, int n,
+                                   const double (*seen)[3], const bool *is_new,
+                                   int four[4])
 {
     int known[MOST], m = 0;
     double best = -1;
@@ -180,9 +184,10 @@ static void extend_motion_chain(struct four *l, double map[4][3])
 
 /* Sets MAP to the affine motion of the body since the reference frame, solved
  * from four of the N observed foods. Returns NULL or an error text. */
-static const char *solve_body_motion(struct four *l, int n,
-                                     const double (*seen)[3],
-                                     const bool *is_new, double map[4][3])
+static const char *solve_motion_from_four_foods(struct four *l, int n,
+                                                const double (*seen)[3],
+                                                const bool *is_new,
+                                                double map[4][3])
 {
     const double(*const places)[3] = l->fit == FOUR_CHAIN
                                          ? (const double(*)[3])l->last
@@ -190,7 +195,7 @@ static const char *solve_body_motion(struct four *l, int n,
     const double(*from[4])[3], (*to[4])[3];
     int four[4];
 
-    if (!choose_four_foods(l, n, seen, is_new, four))
+    if (!choose_four_food_items(l, n, seen, is_new, four))
         return "fewer than four foods are known, which this fit takes";
     for (int i = 0; i < 4; i++) {
         from[i] = &seen[four[i]];
@@ -231,7 +236,8 @@ static const char *compute_body_pose(struct four *l, int n,
                                      struct glint_located *located)
 {
     double map[4][3], row[3][3];
-    const char *const wrong = solve_body_motion(l, n, seen, is_new, map);
+    const char *const wrong =
+        solve_motion_from_four_foods(l, n, seen, is_new, map);
 
     if (wrong)
         return wrong;

@@ -12,8 +12,9 @@
 
 #define NO_ERROR_DB 999.0
 
-void glint_scatter_candidate_defaults(struct glint_scatter_candidate *candidate,
-                                      enum glint_scatter_candidate_kind kind)
+void glint_scatter_set_default_candidate(
+    struct glint_scatter_candidate *candidate,
+    enum glint_scatter_candidate_kind kind)
 {
     *candidate = (struct glint_scatter_candidate){
         .kind = kind,
@@ -27,7 +28,8 @@ void glint_scatter_candidate_defaults(struct glint_scatter_candidate *candidate,
     };
 }
 
-static bool is_in_range(const struct glint_scatter_candidate *o)
+static bool
+are_candidate_parameters_in_range(const struct glint_scatter_candidate *o)
 {
     return o->kind >= 0 && o->kind < GLINT_CANDIDATES && o->terms >= 1 &&
            o->terms <= GLINT_SCATTER_MAX_TERMS && o->rank >= 1 &&
@@ -100,7 +102,7 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
     }
 }
 
-double glint_scatter_peak(const struct glint_scatter_rows *rows)
+double glint_scatter_largest_entry(const struct glint_scatter_rows *rows)
 {
     const size_t n = (size_t)rows->side * (size_t)rows->side * 3 *
                      (size_t)glint_scatter_count_entries(rows->kernel);
@@ -111,8 +113,8 @@ double glint_scatter_peak(const struct glint_scatter_rows *rows)
     return (double)most;
 }
 
-void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
-                       const double *row)
+void glint_store_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x,
+                             int c, const double *row)
 {
     float *to = glint_scatter_get_row(rebuilt, x, c);
 
@@ -149,18 +151,17 @@ static enum glint_status rebuild_rows_by_runtime_fit(
     return GLINT_OK;
 }
 
-static enum glint_status rebuild_rows(struct glint_scatter_rows *rows,
-                                      struct glint_scatter_candidate *o,
-                                      const struct glint_watch *watch,
-                                      struct glint_scatter_rows *rebuilt)
+static enum glint_status rebuild_rows_by_candidate(
+    struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     static glint_rebuild_fn *const published[] = {
         [GLINT_CANDIDATE_SVD] = glint_rebuild_svd,
-        [GLINT_CANDIDATE_LOG_SVD] = glint_rebuild_log_svd,
-        [GLINT_CANDIDATE_TUCKER] = glint_rebuild_tucker,
-        [GLINT_CANDIDATE_ALS] = glint_rebuild_als,
-        [GLINT_CANDIDATE_PEERS] = glint_rebuild_peers,
-        [GLINT_CANDIDATE_SUBEDIT] = glint_rebuild_subedit,
+        [GLINT_CANDIDATE_LOG_SVD] = glint_rebuild_svd_of_logarithms,
+        [GLINT_CANDIDATE_TUCKER] = glint_rebuild_tucker_terms,
+        [GLINT_CANDIDATE_ALS] = glint_rebuild_nonnegative_factors,
+        [GLINT_CANDIDATE_PEERS] = glint_rebuild_cluster_factors,
+        [GLINT_CANDIDATE_SUBEDIT] = glint_rebuild_radial_profiles,
     };
 
     return published[o->kind]
@@ -211,7 +212,8 @@ static double measure_row_errors(const struct glint_scatter_rows *rows,
 
 /* Returns the total number of row entries, three channels, whose texels lie
  * inside the square of the medium. */
-static double count_entries_in_square(const struct glint_scatter_rows *rows)
+static double
+count_row_entries_inside_medium(const struct glint_scatter_rows *rows)
 {
     double n = 0;
 
@@ -238,8 +240,8 @@ static void measure_entry_errors(const struct glint_scatter_rows *rows,
                                  struct glint_scatter_judgement *j)
 {
     const int texels = rows->side * rows->side;
-    const double peak = glint_scatter_peak(rows),
-                 all = count_entries_in_square(rows);
+    const double peak = glint_scatter_largest_entry(rows),
+                 all = count_row_entries_inside_medium(rows);
     const double unit = peak > 0 ? peak : 1;
     double square = 0, one_way = 0;
 
@@ -303,11 +305,12 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
     enum glint_status status;
 
     *judgement = (struct glint_scatter_judgement){.candidate = *candidate};
-    if (!is_in_range(candidate))
+    if (!are_candidate_parameters_in_range(candidate))
         return GLINT_E_ARGUMENT;
     if (!glint_scatter_allocate_rows(&rebuilt, rows->side, rows->kernel, false))
         return GLINT_E_MEMORY;
-    status = rebuild_rows(rows, &judgement->candidate, watch, &rebuilt);
+    status =
+        rebuild_rows_by_candidate(rows, &judgement->candidate, watch, &rebuilt);
     judgement->seconds = (double)(clock() - start) / CLOCKS_PER_SEC;
     judgement->bytes =
         glint_scatter_candidate_bytes(candidate, texels, entries);
@@ -316,11 +319,11 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
         status = measure_errors(rows, &rebuilt, judgement);
     glint_scatter_close(&rebuilt);
     if (status != GLINT_OK)
-        glint_scatter_judgement_close(judgement);
+        glint_scatter_free_judgement(judgement);
     return status;
 }
 
-void glint_scatter_judgement_close(struct glint_scatter_judgement *judgement)
+void glint_scatter_free_judgement(struct glint_scatter_judgement *judgement)
 {
     free(judgement->error);
     free(judgement->light);

@@ -59,8 +59,8 @@ static void fit_row_factors(const struct glint_positive *p, int x,
     }
 }
 
-static void add_row_to_sums(const struct glint_positive *p, int x,
-                            const struct sums *s)
+static void add_row_to_kernel_sums(const struct glint_positive *p, int x,
+                                   const struct sums *s)
 {
     const size_t m = (size_t)p->m, n = (size_t)p->n;
 
@@ -112,8 +112,9 @@ static void set_initial_factors(const struct glint_positive *p)
         p->h[i] = 0.5 + (double)(i * 104729LL % 997) / 997;
 }
 
-enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
-                                     const struct glint_watch *watch)
+enum glint_status glint_fit_nonnegative_factors(const struct glint_positive *p,
+                                                int rounds,
+                                                const struct glint_watch *watch)
 {
     const size_t m = (size_t)p->m, terms = (size_t)p->terms;
     const size_t all = terms * m * (terms + 1);
@@ -128,7 +129,7 @@ enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
         for (int x = 0; x < p->n; x++) {
             p->row(p->ctx, x, s.value, s.weight);
             fit_row_factors(p, x, &s);
-            add_row_to_sums(p, x, &s);
+            add_row_to_kernel_sums(p, x, &s);
         }
         fit_kernels_h(p, &s);
         if (glint_watch_report_progress(watch, (double)i / rounds))
@@ -148,8 +149,8 @@ struct over {
     int *cluster; /* [texels]: cluster index of each row */
 };
 
-static void read_relative_row(const void *ctx, int x, double *value,
-                              double *weight)
+static void read_row_divided_by_mean(const void *ctx, int x, double *value,
+                                     double *weight)
 {
     const struct over *p = ctx;
     const int k2 = glint_scatter_count_entries(p->rows->kernel);
@@ -225,23 +226,23 @@ static void cluster_rows(struct over *p)
     }
 }
 
-static enum glint_status rebuild_channel(struct over *p,
-                                         struct glint_positive *q, double *row,
-                                         const struct glint_watch *watch,
-                                         struct glint_scatter_rows *rebuilt)
+static enum glint_status
+rebuild_channel_by_factors(struct over *p, struct glint_positive *q,
+                           double *row, const struct glint_watch *watch,
+                           struct glint_scatter_rows *rebuilt)
 {
     enum glint_status status;
 
     if (!p->plain)
         cluster_rows(p);
-    status = glint_positive_fit(q, ROUNDS, watch);
+    status = glint_fit_nonnegative_factors(q, ROUNDS, watch);
     for (int x = 0; x < q->n && status == GLINT_OK; x++) {
         const double *g = p->mean + (size_t)p->cluster[x] * (size_t)q->m;
 
         sum_row_terms(q, x, row);
         for (int d = 0; d < q->m && !p->plain; d++)
             row[d] *= g[d];
-        glint_rebuilt_row(rebuilt, x, p->c, row);
+        glint_store_rebuilt_row(rebuilt, x, p->c, row);
     }
     return status;
 }
@@ -252,7 +253,7 @@ static enum glint_status rebuild_rows(struct over *p, int terms,
 {
     const int texels = p->rows->side * p->rows->side;
     const int k2 = glint_scatter_count_entries(p->rows->kernel);
-    struct glint_positive q = {texels, k2,   terms, read_relative_row,
+    struct glint_positive q = {texels, k2,   terms, read_row_divided_by_mean,
                                p,      NULL, NULL};
     double *row = malloc((size_t)k2 * sizeof *row);
     enum glint_status status = GLINT_E_MEMORY;
@@ -267,7 +268,7 @@ static enum glint_status rebuild_rows(struct over *p, int terms,
         struct glint_watch_part part = {watch, p->c / 3.0, 1 / 3.0};
         const struct glint_watch share = glint_watch_make_for_part(&part);
 
-        status = rebuild_channel(p, &q, row, &share, rebuilt);
+        status = rebuild_channel_by_factors(p, &q, row, &share, rebuilt);
     }
     free(row);
     free(q.f);
@@ -277,20 +278,18 @@ static enum glint_status rebuild_rows(struct over *p, int terms,
     return status;
 }
 
-enum glint_status glint_rebuild_als(const struct glint_scatter_rows *rows,
-                                    struct glint_scatter_candidate *o,
-                                    const struct glint_watch *watch,
-                                    struct glint_scatter_rows *rebuilt)
+enum glint_status glint_rebuild_nonnegative_factors(
+    const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     struct over p = {.rows = rows, .clusters = 1, .plain = true};
 
     return rebuild_rows(&p, o->terms, watch, rebuilt);
 }
 
-enum glint_status glint_rebuild_peers(const struct glint_scatter_rows *rows,
-                                      struct glint_scatter_candidate *o,
-                                      const struct glint_watch *watch,
-                                      struct glint_scatter_rows *rebuilt)
+enum glint_status glint_rebuild_cluster_factors(
+    const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     struct over p = {.rows = rows, .clusters = o->clusters};
 

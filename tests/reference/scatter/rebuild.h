@@ -20,21 +20,22 @@ typedef enum glint_status glint_rebuild_fn(
     const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
     const struct glint_watch *watch, struct glint_scatter_rows *rebuilt);
 
-glint_rebuild_fn glint_rebuild_svd, glint_rebuild_log_svd, glint_rebuild_tucker,
-    glint_rebuild_als, glint_rebuild_peers, glint_rebuild_subedit;
+glint_rebuild_fn glint_rebuild_svd, glint_rebuild_svd_of_logarithms,
+    glint_rebuild_tucker_terms, glint_rebuild_nonnegative_factors,
+    glint_rebuild_cluster_factors, glint_rebuild_radial_profiles;
 
 /* Returns the largest entry of ROWS. */
-double glint_scatter_peak(const struct glint_scatter_rows *rows);
+double glint_scatter_largest_entry(const struct glint_scatter_rows *rows);
 
 /* Stores ROW as channel C of the row of texel X in REBUILT; entries outside the
  * square become 0. */
-void glint_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x, int c,
-                       const double *row);
+void glint_store_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x,
+                             int c, const double *row);
 
 /* Fits one Tucker(1, 1) term f h' to the matrix LEFT[n][k2], sets F[n] and
  * H[k2], and subtracts the term from LEFT. Returns the square of its singular
  * value. */
-double glint_tucker_term(float *left, int n, int k2, double *f, double *h);
+double glint_fit_tucker_term(float *left, int n, int k2, double *f, double *h);
 
 /* Factorises V, n rows of m entries, into non-negative F[terms][n] and
  * H[terms][m] by alternating least squares, one term after the other, clamped
@@ -45,7 +46,8 @@ struct glint_positive {
     const void *ctx;
     double *f, *h;
 };
-enum glint_status glint_positive_fit(const struct glint_positive *p, int rounds,
-                                     const struct glint_watch *watch);
+enum glint_status
+glint_fit_nonnegative_factors(const struct glint_positive *p, int rounds,
+                              const struct glint_watch *watch);
 
 #endif

@@ -86,8 +86,8 @@ static void solve_radial_profile(const struct subedit *p, int x, bool alone)
     }
 }
 
-static void rebuild_channel(const struct subedit *p, double *row,
-                            struct glint_scatter_rows *rebuilt)
+static void rebuild_channel_by_profiles(const struct subedit *p, double *row,
+                                        struct glint_scatter_rows *rebuilt)
 {
     for (int x = 0; x < p->rows->side * p->rows->side; x++) {
         for (int d = 0; d < glint_scatter_count_entries(p->rows->kernel); d++) {
@@ -101,7 +101,7 @@ static void rebuild_channel(const struct subedit *p, double *row,
                                                        p->radius[d])) /
                                   2);
         }
-        glint_rebuilt_row(rebuilt, x, p->c, row);
+        glint_store_rebuilt_row(rebuilt, x, p->c, row);
     }
 }
 
@@ -125,20 +125,19 @@ static enum glint_status rebuild_channels(struct subedit *p, double *row,
             p->profile = p->next;
             p->next = other;
         }
-        rebuild_channel(p, row, rebuilt);
+        rebuild_channel_by_profiles(p, row, rebuilt);
     }
     return GLINT_OK;
 }
 
-enum glint_status glint_rebuild_subedit(const struct glint_scatter_rows *rows,
-                                        struct glint_scatter_candidate *o,
-                                        const struct glint_watch *watch,
-                                        struct glint_scatter_rows *rebuilt)
+enum glint_status glint_rebuild_radial_profiles(
+    const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     const size_t values = VALUES * (size_t)rows->side * (size_t)rows->side;
     const size_t k2 = (size_t)glint_scatter_count_entries(rows->kernel);
     struct subedit p = {.rows = rows,
-                        .floor = FLOOR * glint_scatter_peak(rows)};
+                        .floor = FLOOR * glint_scatter_largest_entry(rows)};
     double *memory = calloc(2 * values + 2 * k2, sizeof *memory);
     enum glint_status status = GLINT_E_MEMORY;
 

@@ -22,7 +22,7 @@ struct channel {
     double a, b;
 };
 
-static void read_row(const void *ctx, int i, double *to)
+static void copy_row_to_doubles(const void *ctx, int i, double *to)
 {
     const struct channel *p = ctx;
     const float *row = glint_scatter_get_row(p->rows, i * p->step, p->c);
@@ -36,8 +36,8 @@ static double invert_log_encoding(const struct channel *p, double value)
     return p->logs ? p->a * (exp(value) - p->b) : value;
 }
 
-static void set_row_from_terms(const struct glint_terms *t, int rows, int k2,
-                               int x, double *row)
+static void sum_terms_of_row(const struct glint_terms *t, int rows, int k2,
+                             int x, double *row)
 {
     for (int d = 0; d < k2; d++)
         row[d] = 0;
@@ -57,11 +57,12 @@ static struct glint_tall make_row_matrix(const struct channel *p)
 
     return (struct glint_tall){(texels + p->step - 1) / p->step,
                                glint_scatter_count_entries(p->rows->kernel),
-                               read_row, p};
+                               copy_row_to_doubles, p};
 }
 
-static enum glint_status rebuild_channel(const struct channel *p, int n,
-                                         struct glint_scatter_rows *rebuilt)
+static enum glint_status
+rebuild_channel_by_svd(const struct channel *p, int n,
+                       struct glint_scatter_rows *rebuilt)
 {
     const struct glint_tall m = make_row_matrix(p);
     double *row = malloc((size_t)m.columns * sizeof *row);
@@ -72,10 +73,10 @@ static enum glint_status rebuild_channel(const struct channel *p, int n,
         return GLINT_E_MEMORY;
     }
     for (int x = 0; x < m.rows; x++) {
-        set_row_from_terms(&terms, m.rows, m.columns, x, row);
+        sum_terms_of_row(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
             row[d] = invert_log_encoding(p, row[d]);
-        glint_rebuilt_row(rebuilt, x, p->c, row);
+        glint_store_rebuilt_row(rebuilt, x, p->c, row);
     }
     free(row);
     glint_terms_free(&terms);
@@ -92,7 +93,7 @@ static enum glint_status rebuild_channels(struct channel *p, int n,
     for (p->c = 0; p->c < 3 && status == GLINT_OK; p->c++)
         status = glint_watch_report_progress(watch, p->c / 3.0)
                      ? GLINT_E_CLOSED
-                     : rebuild_channel(p, n, rebuilt);
+                     : rebuild_channel_by_svd(p, n, rebuilt);
     return status;
 }
 
@@ -123,7 +124,7 @@ static bool measure_log_fit_error(const struct channel *p, int n,
     for (int x = 0; x < m.rows; x++) {
         const float *data = glint_scatter_get_row(p->rows, x * p->step, p->c);
 
-        set_row_from_terms(&terms, m.rows, m.columns, x, row);
+        sum_terms_of_row(&terms, m.rows, m.columns, x, row);
         for (int d = 0; d < m.columns; d++)
             *square += pow(invert_log_encoding(p, row[d]) - (double)data[d], 2);
     }
@@ -141,7 +142,7 @@ search_parameters(const struct glint_scatter_rows *rows,
     static const double as[] = {1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100, 1000};
     static const double bs[] = {1e-2, 0.1, 1};
     const int texels = rows->side * rows->side;
-    const double peak = glint_scatter_peak(rows);
+    const double peak = glint_scatter_largest_entry(rows);
     struct channel p = {.rows = rows,
                         .c = 1,
                         .step = texels > SEARCHED ? texels / SEARCHED : 1,
@@ -166,15 +167,14 @@ search_parameters(const struct glint_scatter_rows *rows,
     return GLINT_OK;
 }
 
-enum glint_status glint_rebuild_log_svd(const struct glint_scatter_rows *rows,
-                                        struct glint_scatter_candidate *o,
-                                        const struct glint_watch *watch,
-                                        struct glint_scatter_rows *rebuilt)
+enum glint_status glint_rebuild_svd_of_logarithms(
+    const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     struct glint_watch_part first = {watch, 0, 0.5}, second = {watch, 0.5, 0.5};
     const struct glint_watch early = glint_watch_make_for_part(&first);
     const struct glint_watch late = glint_watch_make_for_part(&second);
-    const double peak = glint_scatter_peak(rows);
+    const double peak = glint_scatter_largest_entry(rows);
     struct channel p = {.rows = rows, .logs = true};
     enum glint_status status = GLINT_OK;
 

@@ -45,7 +45,7 @@ make_candidate(enum glint_scatter_candidate_kind kind, int terms)
 {
     struct glint_scatter_candidate o;
 
-    glint_scatter_candidate_defaults(&o, kind);
+    glint_scatter_set_default_candidate(&o, kind);
     if (terms > 0)
         o.terms = terms;
     return o;
@@ -60,7 +60,7 @@ judge_rows(struct glint_scatter_rows *rows,
 
     assert_ok(glint_scatter_judge(rows, o, NULL, &j));
     kept = j;
-    glint_scatter_judgement_close(&j);
+    glint_scatter_free_judgement(&j);
     return kept;
 }
 
@@ -163,7 +163,7 @@ TEST(c4_tucker)
         memcpy(left + x * K2, glint_scatter_get_row(&stone[1], x, 1),
                K2 * sizeof *left);
     for (int t = 0; t < 5; t++)
-        assert_near(sqrt(glint_tucker_term(left, TEXELS, K2, f, h)),
+        assert_near(sqrt(glint_fit_tucker_term(left, TEXELS, K2, f, h)),
                     terms.value[t], 1e-5 * terms.value[0]);
     free(left);
     glint_terms_free(&terms);
@@ -340,7 +340,7 @@ TEST(c13_spread)
     assert_near(largest, j.largest, 0);
     assert_true(j.p50 < j.p95 && j.p95 < j.largest);
     assert_near(below, 0.95 * TEXELS, 2);
-    glint_scatter_judgement_close(&j);
+    glint_scatter_free_judgement(&j);
 }
 
 /* Checks that all models give finite results for a black medium and for a

@@ -4,7 +4,7 @@
  * and published models, all rebuilt from the same rows, in double precision.
  *
  *     glint_scatter_judge(&rows, &candidate, &watch, &judgement);
- *     glint_scatter_judgement_close(&judgement);
+ *     glint_scatter_free_judgement(&judgement);
  *
  * Sizes are computed as in the publications: 8 bytes per number.
  */
@@ -54,8 +54,9 @@ struct glint_scatter_candidate {
 };
 
 /* Sets CANDIDATE to model KIND with 5 terms, rank 3, degree 4, one cluster. */
-void glint_scatter_candidate_defaults(struct glint_scatter_candidate *candidate,
-                                      enum glint_scatter_candidate_kind kind);
+void glint_scatter_set_default_candidate(
+    struct glint_scatter_candidate *candidate,
+    enum glint_scatter_candidate_kind kind);
 
 /* Returns the size in bytes of the model CANDIDATE for TEXELS rows of ENTRIES
  * entries each, three channels. */
@@ -102,7 +103,7 @@ glint_scatter_judge(struct glint_scatter_rows *rows,
                     const struct glint_watch *watch,
                     struct glint_scatter_judgement *judgement);
 
-void glint_scatter_judgement_close(struct glint_scatter_judgement *judgement);
+void glint_scatter_free_judgement(struct glint_scatter_judgement *judgement);
 
 #ifdef __cplusplus
 }

@@ -33,7 +33,7 @@ struct tucker {
     double *most;
 };
 
-static float *residual_row(const struct tucker *p, float *all, int x)
+static float *address_of_residual_row(const struct tucker *p, float *all, int x)
 {
     return all + (size_t)x * (size_t)p->k2;
 }
@@ -44,8 +44,8 @@ static void compute_residual_rows(const struct tucker *p, bool turned)
 {
     for (int x = 0; x < p->n; x++) {
         const float *rgb = glint_scatter_get_row(p->rows, x, 0);
-        float *to = residual_row(p, p->left, x),
-              *scratch = residual_row(p, p->model, x);
+        float *to = address_of_residual_row(p, p->left, x),
+              *scratch = address_of_residual_row(p, p->model, x);
         int first = 0;
 
         for (int d = 0; d < p->k2; d++) {
@@ -63,8 +63,8 @@ static void compute_residual_rows(const struct tucker *p, bool turned)
 
 /* Sets the weights F to the least-squares solution LEFT H / |H|^2 for a fixed
  * kernel H. */
-static void fit_weights_f(const float *left, int n, int k2, double *f,
-                          const double *h)
+static void fit_row_weights(const float *left, int n, int k2, double *f,
+                            const double *h)
 {
     double square = 0;
 
@@ -82,8 +82,8 @@ static void fit_weights_f(const float *left, int n, int k2, double *f,
 
 /* Sets the kernel H to the least-squares solution LEFT' F / |F|^2 for fixed
  * weights F. Returns |F|^2 |H|^2, the square of the term's norm. */
-static double fit_kernel_h(const float *left, int n, int k2, const double *f,
-                           double *h)
+static double fit_term_kernel(const float *left, int n, int k2, const double *f,
+                              double *h)
 {
     double square = 0, length = 0;
 
@@ -102,15 +102,15 @@ static double fit_kernel_h(const float *left, int n, int k2, const double *f,
     return square * length;
 }
 
-double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
+double glint_fit_tucker_term(float *left, int n, int k2, double *f, double *h)
 {
     double before = -1, square = 0;
 
     for (int d = 0; d < k2; d++)
         h[d] = 1 + (double)(d * 7919 % 101) / 101;
     for (int i = 0; i < ROUNDS; i++) {
-        fit_weights_f(left, n, k2, f, h);
-        square = fit_kernel_h(left, n, k2, f, h);
+        fit_row_weights(left, n, k2, f, h);
+        square = fit_term_kernel(left, n, k2, f, h);
         if (fabs(square - before) <= STILL * square)
             break;
         before = square;
@@ -124,9 +124,9 @@ double glint_tucker_term(float *left, int n, int k2, double *f, double *h)
 /* Fits one term to the residual and subtracts it. */
 static void fit_and_subtract_term(const struct tucker *p)
 {
-    glint_tucker_term(p->left, p->n, p->k2, p->f, p->h);
+    glint_fit_tucker_term(p->left, p->n, p->k2, p->f, p->h);
     for (int x = 0; x < p->n; x++) {
-        float *model = residual_row(p, p->model, x);
+        float *model = address_of_residual_row(p, p->model, x);
 
         for (int d = 0; d < p->k2; d++)
             model[d] += (float)(p->f[x] * p->h[d]);
@@ -161,9 +161,10 @@ static void fit_row_polynomial(const struct tucker *p, int x, int c, int degree,
 }
 
 /* Sets MEAN[k2] to the row of texel X as the terms model it, rotated back. */
-static void set_mean_row(const struct tucker *p, int x, double *mean)
+static void compute_modelled_mean_row(const struct tucker *p, int x,
+                                      double *mean)
 {
-    const float *model = residual_row(p, p->model, x);
+    const float *model = address_of_residual_row(p, p->model, x);
 
     for (int d = 0; d < p->k2; d++)
         mean[(d + p->first[x]) % p->k2] = (double)model[d];
@@ -174,7 +175,7 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
 {
     double most = 0;
 
-    set_mean_row(p, x, mean);
+    compute_modelled_mean_row(p, x, mean);
     for (int d = 0; d < p->k2; d++)
         most = fmax(most, fabs(mean[d]));
     for (int d = 0; d < p->k2 && most > 0; d++)
@@ -188,7 +189,7 @@ static void rebuild_row(const struct tucker *p, int x, int degree, double *mean,
             for (int i = degree - 1; i >= 0; i--)
                 row[d] = row[d] * mean[d] + coef[i];
         }
-        glint_rebuilt_row(rebuilt, x, c, row);
+        glint_store_rebuilt_row(rebuilt, x, c, row);
     }
 }
 
@@ -208,10 +209,9 @@ static enum glint_status rebuild_rows(const struct tucker *p,
     return GLINT_OK;
 }
 
-enum glint_status glint_rebuild_tucker(const struct glint_scatter_rows *rows,
-                                       struct glint_scatter_candidate *o,
-                                       const struct glint_watch *watch,
-                                       struct glint_scatter_rows *rebuilt)
+enum glint_status glint_rebuild_tucker_terms(
+    const struct glint_scatter_rows *rows, struct glint_scatter_candidate *o,
+    const struct glint_watch *watch, struct glint_scatter_rows *rebuilt)
 {
     const size_t n = (size_t)rows->side * (size_t)rows->side;
     const size_t k2 = (size_t)glint_scatter_count_entries(rows->kernel);

@@ -172,10 +172,11 @@ compute_light_visibility(const struct twin *twin, const struct twin_hit *hit,
     return (double)reached / n;
 }
 
-double reference_light_at_hit(const struct twin *twin,
-                              const struct twin_hit *hit,
-                              const struct glint_described_light *light,
-                              double toward[3], double rgb[3], double *share)
+double reference_compute_light_at_hit(const struct twin *twin,
+                                      const struct twin_hit *hit,
+                                      const struct glint_described_light *light,
+                                      double toward[3], double rgb[3],
+                                      double *share)
 {
     const double distance =
         compute_light_at_place(light, hit->place, toward, rgb);
@@ -232,8 +233,8 @@ static void compute_phong_terms(const struct twin *twin,
     reference_add_environment(twin, hit, toward, colour, rgb);
     for (int i = 0; i < s->n_lights; i++) {
         double l[3], light[3], glint, share, shine = 0;
-        const double facing =
-            reference_light_at_hit(twin, hit, &s->light[i], l, light, &share);
+        const double facing = reference_compute_light_at_hit(
+            twin, hit, &s->light[i], l, light, &share);
 
         if (facing <= 0)
             continue;
@@ -241,7 +242,7 @@ static void compute_phong_terms(const struct twin *twin,
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
         if (m->is_metal)
-            shine = reference_metal_reflection(
+            shine = reference_compute_metal_reflection(
                 twin, hit, toward, l,
                 compute_light_sine_radius(&s->light[i], hit->place));
         for (int c = 0; c < 3; c++)
@@ -368,10 +369,10 @@ static void add_mirrored_light(const struct twin *twin,
     if (reference_intersect_scene(twin, &next, HUGE_VAL, &met))
         compute_phong_terms(twin, &met, next.toward, rgb);
     else
-        reference_background_light(
+        reference_compute_background_light(
             twin, next.toward,
             twin->pixel_tan * twin->pixel_tan / 4 +
-                2 * reference_widening_of_alpha(twin, hit, ray->toward),
+                2 * reference_compute_alpha_widening(twin, hit, ray->toward),
             rgb);
     add_light_source(pixel, twin->scene->material[hit->material].reflect, rgb);
 }
@@ -394,7 +395,7 @@ static void add_transmitted_light(const struct twin *twin,
         if (!reference_intersect_scene(twin, &p.ray, HUGE_VAL, &at)) {
             if (s->background == GLINT_BEHIND_CAMERA && !p.is_bent)
                 pixel->cover -= (float)p.weight;
-            reference_background_light(
+            reference_compute_background_light(
                 twin, p.ray.toward, twin->pixel_tan * twin->pixel_tan / 4, rgb);
             add_light_source(pixel, p.weight, rgb);
             return;
@@ -456,8 +457,8 @@ struct twin_pixel reference_trace_ray(const struct twin *twin,
 
     if (!find_first_object(twin, ray, &hit)) {
         pixel.cover = s->background != GLINT_BEHIND_CAMERA;
-        reference_background_light(twin, ray->toward,
-                                   twin->pixel_tan * twin->pixel_tan / 4, rgb);
+        reference_compute_background_light(
+            twin, ray->toward, twin->pixel_tan * twin->pixel_tan / 4, rgb);
         add_light_source(&pixel, 1, rgb);
         return pixel;
     }
@@ -512,7 +513,7 @@ static void render_row(void *ctx, int y, int worker)
     }
 }
 
-void reference_aim_camera(struct twin *twin, const struct twin_view *view)
+void reference_set_pixel_size(struct twin *twin, const struct twin_view *view)
 {
     struct twin_ray middle, beside;
     double off[3];
@@ -534,6 +535,6 @@ void reference_render_image(const struct twin *twin,
     struct twin seen = *twin;
     struct drawing drawing = {&seen, view, pixels};
 
-    reference_aim_camera(&seen, view);
+    reference_set_pixel_size(&seen, view);
     glint_workers_run(workers, view->height, render_row, &drawing);
 }

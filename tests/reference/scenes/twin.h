@@ -129,18 +129,19 @@ bool reference_intersect_object(const struct twin *twin, int object,
 
 /* Completes HIT on object O. On entry, HIT contains the triangle, and uv the
  * barycentric coordinates of its second and third corner. */
-void reference_finish_triangle_hit(const struct twin *twin,
-                                   const struct glint_described_object *o,
-                                   struct twin_hit *hit);
+void reference_complete_triangle_hit(const struct twin *twin,
+                                     const struct glint_described_object *o,
+                                     struct twin_hit *hit);
 
 /* Computes the light of LIGHT at HIT. Sets TOWARD to its direction, RGB to
  * the light that a white surface facing it would reflect, SHARE to the
  * visible fraction of LIGHT. Returns the cosine between TOWARD and the
  * shading normal. */
-double reference_light_at_hit(const struct twin *twin,
-                              const struct twin_hit *hit,
-                              const struct glint_described_light *light,
-                              double toward[3], double rgb[3], double *share);
+double reference_compute_light_at_hit(const struct twin *twin,
+                                      const struct twin_hit *hit,
+                                      const struct glint_described_light *light,
+                                      double toward[3], double rgb[3],
+                                      double *share);
 
 /* Returns the light that the primary ray RAY sees. Requires the light maps of
  * translucent objects, which reference_render_image() computes. */
@@ -149,7 +150,7 @@ struct twin_pixel reference_trace_ray(const struct twin *twin,
 
 /* Sets the pixel size of TWIN from VIEW; reference_render_image() does this
  * itself. */
-void reference_aim_camera(struct twin *twin, const struct twin_view *view);
+void reference_set_pixel_size(struct twin *twin, const struct twin_view *view);
 
 /* Draws PIXELS[height][width]. */
 void reference_render_image(const struct twin *twin,

@@ -68,8 +68,9 @@ static int wrap_texel_index(int x, int y, int side)
 
 /* Sets RGB to the light in direction TOWARD, interpolated bilinearly from the
  * texels of mipmap LEVEL; LEVEL -1 is the irradiance map. */
-static void interpolate_level(const struct glint_environment *e, int level,
-                              const double toward[3], double rgb[3])
+static void interpolate_within_mipmap_level(const struct glint_environment *e,
+                                            int level, const double toward[3],
+                                            double rgb[3])
 {
     const int side = 1 << (level < 0 ? GLINT_ENVIRONMENT_IRRADIANCE_LOG2
                                      : (int)e->level[level].side_log2);
@@ -94,19 +95,19 @@ static void interpolate_level(const struct glint_environment *e, int level,
 /* Sets RGB to the light at a fractional mipmap LEVEL. The weights of the two
  * nearest levels interpolate the variance of their blur, which is 4 times as
  * large for the coarser level. */
-static void interpolate_levels(const struct glint_environment *e,
-                               const double toward[3], double level,
-                               double rgb[3])
+static void interpolate_between_mipmap_levels(const struct glint_environment *e,
+                                              const double toward[3],
+                                              double level, double rgb[3])
 {
     const double last = e->header->n_levels - 1;
     const double held = fmin(fmax(level, 0), last);
     const int k = (int)held;
     double next[3];
 
-    interpolate_level(e, k, toward, rgb);
+    interpolate_within_mipmap_level(e, k, toward, rgb);
     if (held <= k)
         return;
-    interpolate_level(e, k + 1, toward, next);
+    interpolate_within_mipmap_level(e, k + 1, toward, next);
     for (int c = 0; c < 3; c++)
         rgb[c] += (pow(4, held - k) - 1) / 3 * (next[c] - rgb[c]);
 }
@@ -152,9 +153,9 @@ static double compute_normal_curvature(const struct twin *twin,
     return most;
 }
 
-double reference_widening_of_alpha(const struct twin *twin,
-                                   const struct twin_hit *hit,
-                                   const double toward[3])
+double reference_compute_alpha_widening(const struct twin *twin,
+                                        const struct twin_hit *hit,
+                                        const double toward[3])
 {
     const double no = fmax(-vec_dot(hit->shading, toward), LEAST_COSINE);
     const double bend =
@@ -164,8 +165,8 @@ double reference_widening_of_alpha(const struct twin *twin,
     return turns * turns / 2;
 }
 
-void reference_metal_frame(const struct twin *twin, const struct twin_hit *hit,
-                           double frame[3][3])
+void reference_make_metal_frame(const struct twin *twin,
+                                const struct twin_hit *hit, double frame[3][3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[hit->object];
@@ -208,21 +209,22 @@ static double compute_lobe_weight(const struct glint_described_material *m,
     return fmin(weight, MOST_WEIGHT);
 }
 
-double reference_metal_reflection(const struct twin *twin,
-                                  const struct twin_hit *hit,
-                                  const double toward[3],
-                                  const double to_light[3], double radius)
+double reference_compute_metal_reflection(const struct twin *twin,
+                                          const struct twin_hit *hit,
+                                          const double toward[3],
+                                          const double to_light[3],
+                                          double radius)
 {
     const struct glint_described_material *m =
         &twin->scene->material[hit->material];
-    const double wider =
-        radius * radius / 8 + reference_widening_of_alpha(twin, hit, toward);
+    const double wider = radius * radius / 8 +
+                         reference_compute_alpha_widening(twin, hit, toward);
     const double hand = twin->scene->left_handed ? 1 : -1;
     const double i[3] = {to_light[0], to_light[1], hand * to_light[2]};
     const double o[3] = {-toward[0], -toward[1], -hand * toward[2]};
     double frame[3][3], h[3], hn, ni, no, slope = 0, area = 4;
 
-    reference_metal_frame(twin, hit, frame);
+    reference_make_metal_frame(twin, hit, frame);
     vec_add_scaled(i, 1, o, h);
     vec_normalise(h);
     hn = vec_dot(h, frame[2]);
@@ -271,8 +273,8 @@ static double radical_inverse(unsigned i, int n)
 
 /* Computes N half-vector slopes, which sample the lobe of alpha 1. Their mean
  * square along each axis is SPREAD / 2. */
-static void draw_lobe_slopes(int n, const double spread[2],
-                             double slope[GLINT_WARD_SAMPLES][2])
+static void compute_lobe_sample_slopes(int n, const double spread[2],
+                                       double slope[GLINT_WARD_SAMPLES][2])
 {
     for (int k = 0; k < n; k++) {
         const double v = radical_inverse((unsigned)k, 5);
@@ -315,7 +317,8 @@ static void add_lobe_sample(const struct twin *twin, const double slope[2],
     weight = compute_lobe_weight(m, ho, h[2], fmin(in[2], 1), out[2]);
     for (int k = 0; k < 3; k++)
         vec_add_scaled(toward, in[k], frame[k], toward);
-    interpolate_levels(&twin->around, toward, level + .5 * log2(ho), light);
+    interpolate_between_mipmap_levels(&twin->around, toward,
+                                      level + .5 * log2(ho), light);
     for (int c = 0; c < 3; c++)
         rgb[c] += weight * light[c];
 }
@@ -363,10 +366,10 @@ static void add_metal_reflection(const struct twin *twin,
     const double back[3] = {-toward[0], -toward[1], -hand * toward[2]};
 
     if (!is_whole)
-        draw_lobe_slopes(n, spread, slope);
+        compute_lobe_sample_slopes(n, spread, slope);
     level = log2(2 * sqrt(2 * blur) / sqrt(4 * GLINT_PI) *
                  (1 << twin->around.header->side_log2));
-    reference_metal_frame(twin, hit, frame);
+    reference_make_metal_frame(twin, hit, frame);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(frame[k], back);
         /* from the axes of baked scenes to those of the scene text */
@@ -385,8 +388,8 @@ static void add_metal_reflection(const struct twin *twin,
 
 /* -------------------------------------------------------------------- whole */
 
-void reference_irradiance(const struct twin *twin, const double shading[3],
-                          double rgb[3])
+void reference_add_irradiance(const struct twin *twin, const double shading[3],
+                              double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     double normal[3], light[3];
@@ -394,7 +397,7 @@ void reference_irradiance(const struct twin *twin, const double shading[3],
     if (!s->n_environments)
         return;
     rotate_to_environment(twin, shading, normal);
-    interpolate_level(&twin->around, -1, normal, light);
+    interpolate_within_mipmap_level(&twin->around, -1, normal, light);
     for (int c = 0; c < 3; c++)
         rgb[c] += s->environment[0].scale * light[c];
 }
@@ -410,15 +413,16 @@ void reference_add_environment(const struct twin *twin,
 
     if (!s->n_environments)
         return;
-    reference_irradiance(twin, hit->shading, light);
+    reference_add_irradiance(twin, hit->shading, light);
     for (int c = 0; c < 3; c++)
         rgb[c] += m->diffuse * colour[c] * light[c];
     if (m->is_metal)
         add_metal_reflection(twin, hit, toward, rgb);
 }
 
-void reference_background_light(const struct twin *twin, const double toward[3],
-                                double spread, double rgb[3])
+void reference_compute_background_light(const struct twin *twin,
+                                        const double toward[3], double spread,
+                                        double rgb[3])
 {
     const struct glint_description *s = twin->scene;
     const struct glint_environment *e = &twin->around;
@@ -430,7 +434,7 @@ void reference_background_light(const struct twin *twin, const double toward[3],
     if (s->background != GLINT_BEHIND_ENVIRONMENT)
         return;
     rotate_to_environment(twin, toward, to);
-    interpolate_levels(
+    interpolate_between_mipmap_levels(
         e, to,
         .5 * log2(seen * ldexp(1, 2 * (int)e->header->side_log2) / GLINT_PI),
         rgb);

@@ -10,8 +10,8 @@
 
 /* Adds the irradiance of a white surface with normal SHADING in the environment
  * to RGB. */
-void reference_irradiance(const struct twin *twin, const double shading[3],
-                          double rgb[3]);
+void reference_add_irradiance(const struct twin *twin, const double shading[3],
+                              double rgb[3]);
 
 /* Adds the environment light that the surface at HIT with diffuse COLOUR
  * reflects towards the origin of a ray along TOWARD. */
@@ -23,25 +23,27 @@ void reference_add_environment(const struct twin *twin,
 /* Returns the light that metal at HIT reflects from a light source in direction
  * TO_LIGHT whose angular radius has the sine RADIUS. The unit is the light of a
  * white surface under the source; the metal's colour is not included. */
-double reference_metal_reflection(const struct twin *twin,
-                                  const struct twin_hit *hit,
-                                  const double toward[3],
-                                  const double to_light[3], double radius);
+double reference_compute_metal_reflection(const struct twin *twin,
+                                          const struct twin_hit *hit,
+                                          const double toward[3],
+                                          const double to_light[3],
+                                          double radius);
 
 /* Returns the value to add to the squared alphas of Ward's lobe so that it
  * covers the change of the normal within a pixel. */
-double reference_widening_of_alpha(const struct twin *twin,
-                                   const struct twin_hit *hit,
-                                   const double toward[3]);
+double reference_compute_alpha_widening(const struct twin *twin,
+                                        const struct twin_hit *hit,
+                                        const double toward[3]);
 
 /* Sets FRAME to tangent, bitangent and normal of the metal at HIT, in the axes
  * of baked scenes. */
-void reference_metal_frame(const struct twin *twin, const struct twin_hit *hit,
-                           double frame[3][3]);
+void reference_make_metal_frame(const struct twin *twin,
+                                const struct twin_hit *hit, double frame[3][3]);
 
 /* Sets RGB to the background light around direction TOWARD, averaged over a
  * spot with the angular variance SPREAD. */
-void reference_background_light(const struct twin *twin, const double toward[3],
-                                double spread, double rgb[3]);
+void reference_compute_background_light(const struct twin *twin,
+                                        const double toward[3], double spread,
+                                        double rgb[3]);
 
 #endif

@@ -25,7 +25,7 @@ struct squares {
     struct square *of; /* [down][across] */
 };
 
-static void add_highlight_sums(struct sums *to, const struct sums *from)
+static void add_sums_to_highlight(struct sums *to, const struct sums *from)
 {
     to->flux += from->flux;
     to->square += from->square;
@@ -92,12 +92,13 @@ static void flood_fill_squares(struct squares *q, int x, int y, struct sums *to)
     if (s->is_taken || !(s->sums.flux > 0))
         return;
     s->is_taken = true;
-    add_highlight_sums(to, &s->sums);
+    add_sums_to_highlight(to, &s->sums);
     for (int k = 0; k < 9; k++)
         flood_fill_squares(q, x + k % 3 - 1, y + k / 3 - 1, to);
 }
 
-static bool are_highlights_near(const struct sums *a, const struct sums *b)
+static bool are_highlights_within_merge_distance(const struct sums *a,
+                                                 const struct sums *b)
 {
     return hypot(a->at[0] / a->flux - b->at[0] / b->flux,
                  a->at[1] / a->flux - b->at[1] / b->flux) < NEAR;
@@ -118,8 +119,8 @@ static int merge_near_highlights(struct sums *s, int n)
 {
     for (int i = 0; i < n; i++)
         for (int k = i + 1; k < n; k++)
-            if (are_highlights_near(&s[i], &s[k])) {
-                add_highlight_sums(&s[i], &s[k]);
+            if (are_highlights_within_merge_distance(&s[i], &s[k])) {
+                add_sums_to_highlight(&s[i], &s[k]);
                 s[k] = s[n - 1];
                 qsort(s, (size_t)(n - 1), sizeof *s, compare_highlight_flux);
                 return merge_near_highlights(s, n - 1);
@@ -172,7 +173,7 @@ int reference_find_highlights(const struct twin *twin,
     q.of = calloc((size_t)q.across * (size_t)q.down, sizeof *q.of);
     if (!q.of)
         return -1;
-    reference_aim_camera(&seen, view);
+    reference_set_pixel_size(&seen, view);
     sum_light_of_squares(&seen, view, &q);
     n = find_highlights(&q, found);
     free(q.of);

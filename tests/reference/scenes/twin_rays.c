@@ -90,9 +90,9 @@ static bool intersect_plane(const struct glint_described_object *o,
 
 /* ------------------------------------------------------------------ meshes */
 
-void reference_finish_triangle_hit(const struct twin *twin,
-                                   const struct glint_described_object *o,
-                                   struct twin_hit *hit)
+void reference_complete_triangle_hit(const struct twin *twin,
+                                     const struct glint_described_object *o,
+                                     struct twin_hit *hit)
 {
     const struct glint_described_triangle *t =
         &twin->scene->triangle[hit->triangle];
@@ -142,7 +142,7 @@ static bool intersect_mesh_object(const struct twin *twin, int object,
     if (!reference_intersect_mesh(twin, object, &local, most, hit))
         return false;
     vec_add_scaled(ray->from, hit->t, ray->toward, hit->place);
-    reference_finish_triangle_hit(twin, o, hit);
+    reference_complete_triangle_hit(twin, o, hit);
     return true;
 }
 

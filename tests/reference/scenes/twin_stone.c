@@ -218,7 +218,7 @@ static bool compute_texel_hit(const struct twin *twin, int object, int x, int y,
         hit->triangle = i;
         hit->uv[0] = share[1];
         hit->uv[1] = share[2];
-        reference_finish_triangle_hit(twin, o, hit);
+        reference_complete_triangle_hit(twin, o, hit);
         if (vec_dot(hit->shading, hit->normal) < 0)
             vec_add_scaled(hit->shading, -2, hit->shading, hit->shading);
     }
@@ -254,12 +254,12 @@ static void compute_incident_light_map(const struct twin *twin, int object)
         rgb[0] = rgb[1] = rgb[2] = 0;
         if (!compute_texel_hit(twin, object, i % m->width, i / m->width, &hit))
             continue;
-        reference_irradiance(twin, hit.shading, rgb);
+        reference_add_irradiance(twin, hit.shading, rgb);
         for (int c = 0; c < CHANNELS; c++)
             rgb[c] *= mean;
         for (int k = 0; k < s->n_lights; k++) {
             double to[3], light[3], share;
-            const double facing = reference_light_at_hit(
+            const double facing = reference_compute_light_at_hit(
                 twin, &hit, &s->light[k], to, light, &share);
 
             for (int c = 0; c < CHANNELS && facing > 0; c++)
@@ -272,7 +272,7 @@ static void compute_incident_light_map(const struct twin *twin, int object)
 
 /* ------------------------------------------------------------------- spread */
 
-static double read_stream_code(const struct twin_map *m, int table, int x)
+static double read_texel_weight(const struct twin_map *m, int table, int x)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int side = 1 << h->side_log2;
@@ -304,9 +304,9 @@ static int find_neighbour_texel(const struct twin_map *m, int from, int across,
 
 /* Convolves FROM with the taps TAP along rows or columns, and adds SCALE times
  * the result to TO. */
-static void convolve_map(const struct twin_map *m, const double *from,
-                         const int16_t *tap, bool down, double scale,
-                         double *to)
+static void convolve_map_along_axis(const struct twin_map *m,
+                                    const double *from, const int16_t *tap,
+                                    bool down, double scale, double *to)
 {
     const int kernel = (int)m->stone.header->kernel, r = kernel / 2;
 
@@ -322,8 +322,8 @@ static void convolve_map(const struct twin_map *m, const double *from,
 
 /* Scatters the light in WORK[0] by term P (a "plane" of the baked fit) and adds
  * the result to channel C of OUT. */
-static void add_plane_contribution(struct twin_map *m, int c, int p,
-                                   double *out)
+static void add_light_of_scattering_term(struct twin_map *m, int c, int p,
+                                         double *out)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int n = m->width * m->height, side = 1 << h->side_log2;
@@ -337,9 +337,9 @@ static void add_plane_contribution(struct twin_map *m, int c, int p,
         const int16_t *tap = m->stone.tap + 2 * (size_t)i * h->kernel;
 
         memset(row, 0, (size_t)n * sizeof *row);
-        convolve_map(m, m->work, tap, false, ldexp(1, -(int)m->stone.shift[i]),
-                     row);
-        convolve_map(m, row, tap + h->kernel, true, 1, sum);
+        convolve_map_along_axis(m, m->work, tap, false,
+                                ldexp(1, -(int)m->stone.shift[i]), row);
+        convolve_map_along_axis(m, row, tap + h->kernel, true, 1, sum);
     }
     for (int x = 0; x < n; x++) {
         const int table = is_factored ? c * (int)h->n_planes + p : c;
@@ -347,11 +347,11 @@ static void add_plane_contribution(struct twin_map *m, int c, int p,
         if (m->stone.cluster && m->stone.cluster[x / m->width % side * side +
                                                  x % m->width % side] != p)
             continue;
-        out[CHANNELS * (ptrdiff_t)x] += read_stream_code(m, table, x) * sum[x];
+        out[CHANNELS * (ptrdiff_t)x] += read_texel_weight(m, table, x) * sum[x];
     }
 }
 
-static void scatter_light_by_planes(struct twin_map *m)
+static void scatter_light_by_baked_terms(struct twin_map *m)
 {
     const struct glint_translucent_header *h = m->stone.header;
     const int n = m->width * m->height;
@@ -360,11 +360,11 @@ static void scatter_light_by_planes(struct twin_map *m)
         for (int x = 0; x < n; x++) {
             m->work[x] = m->light[CHANNELS * (ptrdiff_t)x + c];
             if (m->stone.cluster)
-                m->work[x] *= read_stream_code(m, CHANNELS + c, x);
+                m->work[x] *= read_texel_weight(m, CHANNELS + c, x);
             m->light[CHANNELS * (ptrdiff_t)x + c] = 0;
         }
         for (uint32_t p = 0; p < h->n_planes; p++)
-            add_plane_contribution(m, c, (int)p, m->light + c);
+            add_light_of_scattering_term(m, c, (int)p, m->light + c);
         for (int x = 0; x < n; x++) {
             double *to = &m->light[CHANNELS * (ptrdiff_t)x + c];
 
@@ -373,8 +373,8 @@ static void scatter_light_by_planes(struct twin_map *m)
     }
 }
 
-static void scatter_light_by_rows(const struct glint_scatter_rows *rows,
-                                  struct twin_map *m)
+static void scatter_light_by_exact_rows(const struct glint_scatter_rows *rows,
+                                        struct twin_map *m)
 {
     const size_t n = CHANNELS * (size_t)m->width * (size_t)m->height;
 
@@ -391,9 +391,9 @@ void reference_compute_media_maps(const struct twin *twin)
             continue;
         compute_incident_light_map(twin, i);
         if (twin->rows && !m->is_ball)
-            scatter_light_by_rows(&twin->rows[m->of], m);
+            scatter_light_by_exact_rows(&twin->rows[m->of], m);
         else
-            scatter_light_by_planes(m);
+            scatter_light_by_baked_terms(m);
     }
 }
 

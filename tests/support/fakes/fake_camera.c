@@ -134,7 +134,7 @@ int fake_camera_count_allocations(void)
 
 /* ------------------------------------------------------------------- format */
 
-static int count_planes_in_memory(uint32_t fourcc)
+static int count_memory_blocks(uint32_t fourcc)
 {
     return fourcc == V4L2_PIX_FMT_NV12M || fourcc == V4L2_PIX_FMT_NV21M ? 2
            : fourcc == V4L2_PIX_FMT_YUV420M                             ? 3
@@ -142,7 +142,7 @@ static int count_planes_in_memory(uint32_t fourcc)
 }
 
 /* Returns the bytes per row in block BLOCK, 0 for compressed formats. */
-static uint32_t compute_block_stride(const struct fake_mode *m, int block)
+static uint32_t compute_row_bytes_of_block(const struct fake_mode *m, int block)
 {
     switch (m->fourcc) {
     case V4L2_PIX_FMT_YUYV:
@@ -164,7 +164,7 @@ static uint32_t compute_block_stride(const struct fake_mode *m, int block)
 
 static uint32_t compute_block_bytes(const struct fake_mode *m, int block)
 {
-    const uint32_t luma = compute_block_stride(m, block) * m->height;
+    const uint32_t luma = compute_row_bytes_of_block(m, block) * m->height;
 
     if (camera.sizeimage)
         return camera.sizeimage;
@@ -197,7 +197,7 @@ static int answer_get_format(struct v4l2_format *f)
             .height = m->height,
             .pixelformat = m->fourcc,
             .bytesperline =
-                camera.reports_no_stride ? 0 : compute_block_stride(m, 0),
+                camera.reports_no_stride ? 0 : compute_row_bytes_of_block(m, 0),
             .sizeimage = compute_block_bytes(m, 0),
             .colorspace = camera.colorspace,
             .quantization = camera.quantization,
@@ -209,16 +209,16 @@ static int answer_get_format(struct v4l2_format *f)
     mp->pixelformat = m->fourcc;
     mp->colorspace = camera.colorspace;
     mp->quantization = (uint8_t)camera.quantization;
-    mp->num_planes = (uint8_t)count_planes_in_memory(m->fourcc);
+    mp->num_planes = (uint8_t)count_memory_blocks(m->fourcc);
     for (int i = 0; i < mp->num_planes; i++) {
         mp->plane_fmt[i].bytesperline =
-            camera.reports_no_stride ? 0 : compute_block_stride(m, i);
+            camera.reports_no_stride ? 0 : compute_row_bytes_of_block(m, i);
         mp->plane_fmt[i].sizeimage = compute_block_bytes(m, i);
     }
     return 0;
 }
 
-static bool has_fourcc(uint32_t fourcc)
+static bool mode_has_fourcc(uint32_t fourcc)
 {
     for (int i = 0; i < FAKE_MODES && camera.mode[i].fourcc; i++)
         if (camera.mode[i].fourcc == fourcc)
@@ -236,7 +236,7 @@ static int answer_set_format(struct v4l2_format *f)
         return set_errno_and_fail(EBUSY);
     m->width = camera.multiplanar ? f->fmt.pix_mp.width : f->fmt.pix.width;
     m->height = camera.multiplanar ? f->fmt.pix_mp.height : f->fmt.pix.height;
-    m->fourcc = has_fourcc(fourcc) && !camera.ignores_fourcc
+    m->fourcc = mode_has_fourcc(fourcc) && !camera.ignores_fourcc
                     ? fourcc
                     : camera.mode[0].fourcc;
     if (camera.rounds) {
@@ -273,8 +273,8 @@ find_mode(uint32_t index,
     return NULL;
 }
 
-static bool accept_any_mode(const struct fake_mode *a,
-                            const struct fake_mode *b)
+static bool accepts_any_mode(const struct fake_mode *a,
+                             const struct fake_mode *b)
 {
     return a && b;
 }
@@ -303,7 +303,7 @@ static int answer_enum_format(struct v4l2_fmtdesc *f)
 {
     const struct fake_mode key = {.fourcc = 0};
     const struct fake_mode *m =
-        find_mode(f->index, modes_have_same_fourcc, &key, accept_any_mode);
+        find_mode(f->index, modes_have_same_fourcc, &key, accepts_any_mode);
 
     if (!m)
         return set_errno_and_fail(EINVAL);
@@ -450,7 +450,7 @@ static int answer_request_buffers(struct v4l2_requestbuffers *r)
         r->count = camera.max_buffers;
     camera.n_buffers = r->count;
     for (uint32_t i = 0; i < r->count; i++)
-        for (int k = 0; k < count_planes_in_memory(camera.now.fourcc); k++)
+        for (int k = 0; k < count_memory_blocks(camera.now.fourcc); k++)
             camera.buffer[i].bytes[k] =
                 compute_block_bytes(&camera.now, k) - camera.length_less;
     return 0;
@@ -467,7 +467,7 @@ static int answer_query_buffer(struct v4l2_buffer *b)
         b->m.offset = 16 * 4096 * b->index;
         return 0;
     }
-    b->length = (uint32_t)count_planes_in_memory(camera.now.fourcc);
+    b->length = (uint32_t)count_memory_blocks(camera.now.fourcc);
     for (uint32_t k = 0; k < b->length; k++) {
         b->m.planes[k].length = own->bytes[k];
         b->m.planes[k].m.mem_offset = 16 * 4096 * b->index + 4096 * k;
@@ -481,7 +481,7 @@ static int answer_queue_buffer(const struct v4l2_buffer *b)
 
     if (b->index >= camera.n_buffers || own->queued ||
         (camera.multiplanar &&
-         b->length < (uint32_t)count_planes_in_memory(camera.now.fourcc))) {
+         b->length < (uint32_t)count_memory_blocks(camera.now.fourcc))) {
         camera.breaches++;
         return set_errno_and_fail(EINVAL);
     }
@@ -489,8 +489,8 @@ static int answer_queue_buffer(const struct v4l2_buffer *b)
     if (b->memory == V4L2_MEMORY_USERPTR) {
         own->own[0] = b->m.userptr;
         own->bytes[0] = b->length;
-        for (int k = 0; camera.multiplanar &&
-                        k < count_planes_in_memory(camera.now.fourcc);
+        for (int k = 0;
+             camera.multiplanar && k < count_memory_blocks(camera.now.fourcc);
              k++) {
             own->own[k] = b->m.planes[k].m.userptr;
             own->bytes[k] = b->m.planes[k].length;
@@ -561,7 +561,7 @@ static int answer_dequeue_buffer(struct v4l2_buffer *b)
                                           : V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC);
     b->timestamp.tv_sec = f.time_us / 1000000;
     b->timestamp.tv_usec = f.time_us % 1000000;
-    for (int k = 0; k < count_planes_in_memory(camera.now.fourcc); k++) {
+    for (int k = 0; k < count_memory_blocks(camera.now.fourcc); k++) {
         fill_buffer_with_frame(&f, own, k);
         if (camera.multiplanar) {
             b->m.planes[k].bytesused = compute_bytes_used(&f, k);
@@ -572,7 +572,7 @@ static int answer_dequeue_buffer(struct v4l2_buffer *b)
     return 0;
 }
 
-static int answer_stream_on_off(bool on)
+static int answer_stream_on_or_off(bool on)
 {
     if (on && camera.n_buffers == 0)
         return set_errno_and_fail(EINVAL);
@@ -650,7 +650,7 @@ static int answer_camera_ioctl(unsigned long request, void *arg)
         return answer_dequeue_buffer(arg);
     case VIDIOC_STREAMON:
     case VIDIOC_STREAMOFF:
-        return answer_stream_on_off(request == VIDIOC_STREAMON);
+        return answer_stream_on_or_off(request == VIDIOC_STREAMON);
     case VIDIOC_EXPBUF:
         return answer_export_buffer(arg);
     }

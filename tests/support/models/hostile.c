@@ -94,8 +94,8 @@ static int find_unit_exponent(const struct polynomial *p)
 
 /* Writes the polynomials P[N] to M as the first N kinds of output. Returns
  * their offset in M. */
-static uint32_t append_outputs(struct model_image *m,
-                               const struct polynomial *p, int n)
+static uint32_t append_polynomials_as_outputs(struct model_image *m,
+                                              const struct polynomial *p, int n)
 {
     struct glint_model_output o[GLINT_OUT_KINDS];
 
@@ -186,7 +186,7 @@ static void append_ghost_per_pair(struct model_image *m,
             set_frame_filling_ghost(p, seed);
         if (family == HOSTILE_COLOURS)
             p[GLINT_OUT_SENSOR_X].w = 30;
-        output[k] = append_outputs(
+        output[k] = append_polynomials_as_outputs(
             m, p, folds ? GLINT_OUT_KINDS : GLINT_OUT_ENERGY + 1);
     }
     for (uint32_t j = 1; j < SURFACES; j++)
@@ -204,8 +204,8 @@ static void append_ghost_per_pair(struct model_image *m,
  * rays have negative energy; 1: stripes of rays have negative energy; 2: some
  * rays land far off-screen. From NUMBER 5 on, there are as many ghosts as a
  * lens can have. */
-static void append_ghosts_of_invalid_rays(struct model_image *m, int number,
-                                          uint32_t *seed)
+static void append_ghosts_with_invalid_rays(struct model_image *m, int number,
+                                            uint32_t *seed)
 {
     static struct glint_model_ghost ghost[PAIRS];
     static struct glint_model_system of[PAIRS];
@@ -222,7 +222,7 @@ static void append_ghosts_of_invalid_rays(struct model_image *m, int number,
         add_chebyshev_polynomial(p[GLINT_OUT_ENERGY].u, 9, 0.6);
     if (number % 3 == 2)
         add_chebyshev_polynomial(p[number % 2].v, 8 + number % 2, 0x1p30);
-    output = append_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    output = append_polynomials_as_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (uint32_t k = 0; k < n; k++) {
         ghost[k] = (struct glint_model_ghost){k % 63, 63, k, 1};
         of[k] = make_system_of_outputs(m, output, GLINT_OUT_ENERGY + 1, box);
@@ -233,8 +233,8 @@ static void append_ghosts_of_invalid_rays(struct model_image *m, int number,
 /* Writes one ghost, or two from NUMBER 5 on, with 10000 polynomial systems,
  * each for a narrow band of wavelengths and a small range of angles. All
  * systems refer to the same outputs and box, which keeps the file small. */
-static void append_ghost_of_many_systems(struct model_image *m, int number,
-                                         uint32_t *seed)
+static void append_ghost_with_many_systems(struct model_image *m, int number,
+                                           uint32_t *seed)
 {
     enum { ANGLES = 100, BANDS = 100, N = ANGLES * BANDS };
     static struct glint_model_system of[N];
@@ -250,7 +250,7 @@ static void append_ghost_of_many_systems(struct model_image *m, int number,
     uint32_t output;
 
     set_frame_filling_ghost(p, seed);
-    output = append_outputs(m, p, GLINT_OUT_ENERGY + 1);
+    output = append_polynomials_as_outputs(m, p, GLINT_OUT_ENERGY + 1);
     for (int k = 0; k < N; k++) {
         of[k] = make_system_of_outputs(m, output, GLINT_OUT_ENERGY + 1, box);
         of[k].sine_lo_q30 = turn * (k / BANDS);
@@ -290,7 +290,7 @@ append_largest_output(struct model_image *m, int kind, int exponent, int v)
 /* Writes a ghost whose outputs have the max number of coefficients; NUMBER
  * selects which of its outputs. The exponents of its barrels make 2^30 equal to
  * 1 after a shift by 31. */
-static void append_ghost_of_largest_outputs(struct model_image *m, int number)
+static void append_ghost_with_largest_outputs(struct model_image *m, int number)
 {
     static const struct glint_model_ghost ghost[] = {{0, 1, 0, 1}};
     const int32_t side[] = {0, 1 << 29, 1 << 29};
@@ -317,7 +317,7 @@ static void append_ghost_of_largest_outputs(struct model_image *m, int number)
 /* ------------------------------------------------------------------ editing */
 
 /* Returns the address of OFFSET in M, for editing a baked model in place. */
-static void *model_bytes_at(const struct model_image *m, uint32_t offset)
+static void *address_in_model(const struct model_image *m, uint32_t offset)
 {
     return m->data + offset;
 }
@@ -329,7 +329,7 @@ static void randomise_output_coefficients(const struct model_image *m,
                                           uint32_t *seed)
 {
     const int n_wide = o->n_terms - o->n_narrow;
-    int32_t *wide = model_bytes_at(m, o->coef_at);
+    int32_t *wide = address_in_model(m, o->coef_at);
     int16_t *narrow = (int16_t *)(void *)(wide + n_wide);
     int64_t left = (INT64_C(1) << 30) - 1;
 
@@ -349,7 +349,7 @@ static void randomise_output_coefficients(const struct model_image *m,
 static void randomise_coefficients(const struct model_image *m,
                                    struct glint_model_system *s, uint32_t *seed)
 {
-    struct glint_model_output *o = model_bytes_at(m, s->output_at);
+    struct glint_model_output *o = address_in_model(m, s->output_at);
 
     for (int k = 0; k < s->n_outputs; k++) {
         const int kind = o[k].kind;
@@ -375,7 +375,7 @@ static void randomise_pupil_box(const struct model_image *m,
                                 uint32_t *seed)
 {
     int n = 0;
-    int32_t *box = model_bytes_at(m, s->box_at);
+    int32_t *box = address_in_model(m, s->box_at);
 
     for (int bit = 0; bit < GLINT_BOX_TERMS; bit++)
         n += s->box_terms >> bit & 1;
@@ -395,10 +395,10 @@ static void randomise_pupil_box(const struct model_image *m,
 static void randomise_stop_positions(const struct model_image *m,
                                      struct glint_model_system *s, int number)
 {
-    struct glint_model_output *o = model_bytes_at(m, s->output_at);
+    struct glint_model_output *o = address_in_model(m, s->output_at);
 
     for (int k = GLINT_OUT_STOP_X; k <= GLINT_OUT_STOP_Y; k++) {
-        int32_t *wide = model_bytes_at(m, o[k].coef_at);
+        int32_t *wide = address_in_model(m, o[k].coef_at);
 
         if (number % 3 == 2) {
             o[k].exponent = (int16_t)(-20 + 2 * number);
@@ -469,7 +469,7 @@ static void edit_all_systems(struct model_image *m,
         abort();
     memcpy(m->data, baked->header, m->bytes);
     h = model_header_of(m);
-    s = model_bytes_at(m, h->system_at);
+    s = address_in_model(m, h->system_at);
     for (uint32_t k = 0; k < h->n_systems; k++)
         if (family == HOSTILE_NUMBERS)
             randomise_coefficients(m, &s[k], seed);
@@ -632,11 +632,11 @@ void hostile_make_scene(struct hostile_scene *scene, enum hostile_family family,
     model_begin_header(m, GLINT_BASIS_AUTO, "hostile");
     model_header_of(m)->n_surfaces = SURFACES;
     if (family == HOSTILE_LOST)
-        append_ghosts_of_invalid_rays(m, number, &seed);
+        append_ghosts_with_invalid_rays(m, number, &seed);
     else if (family == HOSTILE_SYSTEMS)
-        append_ghost_of_many_systems(m, number, &seed);
+        append_ghost_with_many_systems(m, number, &seed);
     else if (family == HOSTILE_SUMS)
-        append_ghost_of_largest_outputs(m, number);
+        append_ghost_with_largest_outputs(m, number);
     else
         append_ghost_per_pair(m, family, &seed);
 }

@@ -65,8 +65,8 @@ double ward_evaluate_lobe(const double frame[3][3], const double view[3],
            (4 * GLINT_PI * alpha[0] * alpha[1] * ho * hn * hn * hn);
 }
 
-void ward_sum_texels(const struct glint_sphere *s, const double alpha[2],
-                     ward_picture to)
+void ward_render_by_texel_sums(const struct glint_sphere *s,
+                               const double alpha[2], ward_picture to)
 {
     for (int i = 0; i < WARD_PIXELS; i++) {
         double frame[3][3];
@@ -86,10 +86,10 @@ void ward_sum_texels(const struct glint_sphere *s, const double alpha[2],
     }
 }
 
-void ward_lookup_picture(const struct glint_environment *e,
-                         const struct glint_ward_material *material,
-                         const struct glint_ward_options *options,
-                         ward_picture to)
+void ward_render_by_lookups(const struct glint_environment *e,
+                            const struct glint_ward_material *material,
+                            const struct glint_ward_options *options,
+                            ward_picture to)
 {
     struct glint_ward_lobe l;
 

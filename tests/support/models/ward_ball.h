@@ -27,14 +27,14 @@ double ward_evaluate_lobe(const double frame[3][3], const double view[3],
 
 /* Sets TO to the image of the ball in the environment S by sums over all
  * texels, with the bounded normalisation. */
-void ward_sum_texels(const struct glint_sphere *s, const double alpha[2],
-                     ward_picture to);
+void ward_render_by_texel_sums(const struct glint_sphere *s,
+                               const double alpha[2], ward_picture to);
 
 /* Sets TO to the image of the ball by lookups in the baked environment E. */
-void ward_lookup_picture(const struct glint_environment *e,
-                         const struct glint_ward_material *material,
-                         const struct glint_ward_options *options,
-                         ward_picture to);
+void ward_render_by_lookups(const struct glint_environment *e,
+                            const struct glint_ward_material *material,
+                            const struct glint_ward_options *options,
+                            ward_picture to);
 
 /* Return the PSNR of GOT against WANT, dB, in linear light or in sRGB codes.
  * Both are exposed so that the median of WANT is 1/4 of white, and clamped to

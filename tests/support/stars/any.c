@@ -15,7 +15,7 @@ static const int32_t step_q30[STAR_ANY_LINES][2] = {
     {967407956, 465879117}, {992008094, 410903207}, {1008987269, 367241333}};
 /* clang-format on */
 
-static int32_t clamp_weight_q30(int64_t x)
+static int32_t clamp_line_weight_q30(int64_t x)
 {
     const int64_t most = 1 << 28;
 
@@ -39,14 +39,14 @@ static int set_line_direction(struct glint_star_line *line, int32_t c_q30,
 
     line->cos_q30 = c_q30;
     line->sin_q30 = s_q30;
-    line->cot_q16 = clamp_weight_q30(c_q30 * INT64_C(65536) / sine);
-    line->across_q16 = clamp_weight_q30((INT64_C(1) << 46) / sine);
-    line->border_q16 = clamp_weight_q30((s < 0 ? -c : c) * 65536 /
-                                        (size > 1 << 10 ? size : 1 << 10));
+    line->cot_q16 = clamp_line_weight_q30(c_q30 * INT64_C(65536) / sine);
+    line->across_q16 = clamp_line_weight_q30((INT64_C(1) << 46) / sine);
+    line->border_q16 = clamp_line_weight_q30((s < 0 ? -c : c) * 65536 /
+                                             (size > 1 << 10 ? size : 1 << 10));
     return s <= 0;
 }
 
-static void set_random_lines(struct star_any *to, uint32_t *seed)
+static void set_random_star_lines(struct star_any *to, uint32_t *seed)
 {
     const int n = to->tables.n_lines;
     /* Cosine and sine of twice the angle whose tangent is t / 2^15. */
@@ -75,7 +75,7 @@ static void set_random_lines(struct star_any *to, uint32_t *seed)
     }
 }
 
-static void set_random_halo(struct glint_star_tables *t, uint32_t *seed)
+static void set_random_star_halo(struct glint_star_tables *t, uint32_t *seed)
 {
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
         for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++)
@@ -88,7 +88,7 @@ static void set_random_halo(struct glint_star_tables *t, uint32_t *seed)
             }
 }
 
-static void set_random_core(struct glint_star_tables *t, uint32_t *seed)
+static void set_random_star_core(struct glint_star_tables *t, uint32_t *seed)
 {
     for (int i = 0; i <= GLINT_STAR_CORE; i++)
         for (int k = 0; k <= 2 * GLINT_STAR_CORE; k++)
@@ -119,9 +119,9 @@ void star_make_random(struct star_any *to, uint32_t *seed)
     t->width_q8 = 256 << reach_log2;
     t->inner_q8 = 512 + rng_int_below(seed, 2048);
     t->halo_log2_q16 = -(32 + rng_int_below(seed, 4)) * 65536;
-    set_random_lines(to, seed);
-    set_random_halo(t, seed);
-    set_random_core(t, seed);
+    set_random_star_lines(to, seed);
+    set_random_star_halo(t, seed);
+    set_random_star_core(t, seed);
 }
 
 /* Returns a coordinate, Q8. Half of the time it is at a pixel corner or on

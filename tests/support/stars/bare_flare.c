@@ -6,7 +6,7 @@
 
 #include "support/test.h"
 
-void *bare_flare_carve(size_t bytes)
+void *bare_flare_allocate_filled(size_t bytes)
 {
     void *mem = NULL;
 
@@ -28,7 +28,7 @@ void bare_flare_open(struct bare_flare *bare, int width, int height,
     config.workers = &bare->shuffle.workers;
     config.max_bundles = config.max_primitives = config.max_refs = 1;
     bytes = glint_flare_bytes(&config);
-    bare->mem = bare_flare_carve(bytes);
+    bare->mem = bare_flare_allocate_filled(bytes);
     assert_ok(glint_flare_init(&bare->flare, &config, bare->mem, bytes));
 }
 

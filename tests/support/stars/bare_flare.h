@@ -25,6 +25,6 @@ void bare_flare_close(struct bare_flare *bare);
 
 /* Allocates BYTES, at least 1, aligned to a cache line and filled with 0xa5.
  * The caller frees them. */
-void *bare_flare_carve(size_t bytes);
+void *bare_flare_allocate_filled(size_t bytes);
 
 #endif

@@ -18,7 +18,7 @@ void star_canvas_open(struct star_canvas *c, int width, int height,
     c->width = width;
     c->height = height;
     bare_flare_open(&c->bare, width, height, tile_log2, n_workers, order);
-    c->mem = bare_flare_carve(bytes);
+    c->mem = bare_flare_allocate_filled(bytes);
     assert_int_equal(glint_star_init(&c->star, &star, c->mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_ok(glint_star_init(&c->star, &star, c->mem, bytes));

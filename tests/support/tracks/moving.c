@@ -141,7 +141,7 @@ void moving_bake_foods(double (*food)[3], int n, double angle_deg)
     recorded.angle_deg = angle_deg;
 }
 
-double moving_food_angle_deg(void)
+double moving_angle_to_food_deg(void)
 {
     return recorded.angle_deg;
 }

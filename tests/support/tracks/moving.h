@@ -34,7 +34,7 @@ struct moving {
  * ANGLE_DEG degrees of their axis. */
 void moving_bake_track(int motion, int n_frames, double angle_deg);
 void moving_bake_foods(double (*food)[3], int n, double angle_deg);
-double moving_food_angle_deg(void);
+double moving_angle_to_food_deg(void);
 
 /* These functions fail the test if TEXT cannot be drawn. */
 struct moving *moving_open_scene(const char *text, int tile_log2, int samples);

@@ -59,7 +59,7 @@ static double random_signed(struct track *t)
 }
 
 /* Moves the body one step ahead. At a wall, it turns back. */
-static void step_ahead_or_turn(struct track *t, double step)
+static void move_ahead_or_turn_at_wall(struct track *t, double step)
 {
     for (int k = 0; k < 3; k++) {
         t->at[k] += step * t->heading[k];
@@ -91,7 +91,7 @@ static void move_body_straight(struct track *t)
         set_rotation_quaternion(0, 0, 1, .5 * random_signed(t), q);
         multiply_quaternions(t->turn, q, t->turn);
     }
-    step_ahead_or_turn(t, .01);
+    move_ahead_or_turn_at_wall(t, .01);
 }
 
 static void move_body_along_spiral(struct track *t)
@@ -123,7 +123,7 @@ static void move_body_randomly(struct track *t)
     double q[4];
 
     choose_random_heading(t);
-    step_ahead_or_turn(t, .1 * rng_unit(&t->rng));
+    move_ahead_or_turn_at_wall(t, .1 * rng_unit(&t->rng));
     set_rotation_quaternion(t->heading[1], t->heading[2], t->heading[0],
                             .3 * random_signed(t), q);
     multiply_quaternions(t->turn, q, t->turn);
@@ -132,7 +132,7 @@ static void move_body_randomly(struct track *t)
 /* --------------------------------------------------------------------- foods
  */
 
-static void place_random_food(struct track *t, int slot)
+static void place_food_at_random(struct track *t, int slot)
 {
     for (int k = 0; k < 3; k++)
         t->food[slot][k] = SIDE * rng_unit(&t->rng);
@@ -148,7 +148,7 @@ static double round_to_digits(double x, int digits)
     return strtod(text, NULL);
 }
 
-static void observe_foods(struct track *t, struct track_frame *f)
+static void observe_food_positions(struct track *t, struct track_frame *f)
 {
     f->food_distance = 0;
     for (int i = 0; i < t->options.n_foods; i++) {
@@ -184,7 +184,7 @@ void track_begin_motion(struct track *track,
     for (int i = 0; i < 8; i++)
         rng_bits32(&t->rng);
     for (int i = 0; i < options->n_foods; i++)
-        place_random_food(t, i);
+        place_food_at_random(t, i);
     choose_random_heading(t);
     move[options->motion](t);
     memcpy(t->first_at, t->at, sizeof t->at);
@@ -192,7 +192,8 @@ void track_begin_motion(struct track *track,
 }
 
 /* Sets POSE to the true pose of the body, in the axes of frame 0. */
-static void set_true_pose(const struct track *t, struct glint_rigid *pose)
+static void compute_true_body_pose(const struct track *t,
+                                   struct glint_rigid *pose)
 {
     const double back[4] = {t->first_turn[0], -t->first_turn[1],
                             -t->first_turn[2], -t->first_turn[3]};
@@ -236,11 +237,11 @@ void track_next_frame(struct track *track, struct track_frame *frame)
     if (t->options.reset_every && t->frame > 0 &&
         t->frame % t->options.reset_every == 0) {
         frame->is_new[t->next_slot] = true;
-        place_random_food(t, t->next_slot);
+        place_food_at_random(t, t->next_slot);
         t->next_slot = (t->next_slot + 1) % t->options.n_foods;
     }
-    set_true_pose(t, &frame->pose);
-    observe_foods(t, frame);
+    compute_true_body_pose(t, &frame->pose);
+    observe_food_positions(t, frame);
     t->frame++;
 }
 

@@ -294,8 +294,8 @@ TEST(every_found_ghost_is_in_the_model)
 
 /* Sets UV to the coordinates of a ray in the box of pupil part T. Returns
  * whether the part contains the ray. */
-static bool is_ray_in_part(const struct glint_transfer *t, double x_mm,
-                           double y_mm, double uv[2])
+static bool is_ray_in_pupil_part(const struct glint_transfer *t, double x_mm,
+                                 double y_mm, double uv[2])
 {
     const double unit = ldexp(1, t->box_exponent);
 
@@ -308,9 +308,9 @@ static bool is_ray_in_part(const struct glint_transfer *t, double x_mm,
 /* Returns how many of the N pupil parts contain the ray from (X, Y). Sets *OFF
  * to the distance, mm, from the sensor position that the last of them gives to
  * that of RAY. */
-static int count_parts_of_ray(const struct glint_transfer *part, int n,
-                              double x_mm, double y_mm,
-                              const struct glint_ray *ray, double *off)
+static int count_pupil_parts_with_ray(const struct glint_transfer *part, int n,
+                                      double x_mm, double y_mm,
+                                      const struct glint_ray *ray, double *off)
 {
     int found = 0;
 
@@ -318,7 +318,7 @@ static int count_parts_of_ray(const struct glint_transfer *part, int n,
         struct glint_outputs out;
         double uv[2];
 
-        if (!is_ray_in_part(&part[k], x_mm, y_mm, uv))
+        if (!is_ray_in_pupil_part(&part[k], x_mm, y_mm, uv))
             continue;
         found++;
         glint_transfer_ray(&part[k], (int32_t)lrint(ldexp(uv[0], 30)),
@@ -382,7 +382,8 @@ TEST(each_ray_lies_in_one_pupil_part)
                 hypot(ray.sensor_x_mm, ray.sensor_y_mm) > 0.99 * 0.55 * 43.2666)
                 continue;
             n_rays++;
-            assert_int_equal(count_parts_of_ray(part, n, x, y, &ray, &off), 1);
+            assert_int_equal(
+                count_pupil_parts_with_ray(part, n, x, y, &ray, &off), 1);
             assert_true(off < 0.1 * 36 / 1920);
         }
     }
@@ -517,7 +518,7 @@ struct tally {
         energy[BUNDLES * PER_BUNDLE], most;
 };
 
-static bool ray_passes(const struct glint_ray *ray)
+static bool ray_passes_rims_stop_and_field(const struct glint_ray *ray)
 {
     return ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <=
@@ -538,7 +539,8 @@ static void add_ray_errors(struct tally *tally, const struct glint_transfer *t,
     struct glint_outputs out;
     struct glint_ray ray;
 
-    if (glint_trace(path, x, y, direction, &ray, NULL) || !ray_passes(&ray))
+    if (glint_trace(path, x, y, direction, &ray, NULL) ||
+        !ray_passes_rims_stop_and_field(&ray))
         return;
     glint_transfer_ray(t, u_q30, v_q30, &out);
     {
@@ -603,13 +605,13 @@ static long measure_system_errors(const struct glint_lens *lens, int ghost,
     return tally.n;
 }
 
-static const struct glint_model_output *system_outputs(const struct baked *b,
-                                                       int system)
+static const struct glint_model_output *
+address_of_system_outputs(const struct baked *b, int system)
 {
     return (const void *)(b->data + b->lens.system[system].output_at);
 }
 
-static double decode_stated_error(uint16_t stored)
+static double read_error_stated_in_model(uint16_t stored)
 {
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
@@ -621,13 +623,14 @@ TEST(stated_errors_match_measured_errors)
     for (int g = 0; g < setup.n_ghosts; g++)
         for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
             const int system = (int)(model.lens.ghost[g].first_system + k);
-            const struct glint_model_output *o = system_outputs(&model, system);
+            const struct glint_model_output *o =
+                address_of_system_outputs(&model, system);
             double rms[TRIED];
 
             assert_true(measure_system_errors(&model.lens, g, system, rms) >
                         300);
             for (int kind = 0; kind < TRIED; kind++) {
-                const double said = decode_stated_error(o[kind].rms);
+                const double said = read_error_stated_in_model(o[kind].rms);
 
                 if (fabs(rms[kind] - said) > 0.3 * said)
                     fail_msg("system %d: output %d is off by %g, the file says "
@@ -650,10 +653,11 @@ TEST(errors_stay_near_the_tolerances)
     assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
     assert_true(model.report.intruders < model.report.rays / 1000);
     for (uint32_t k = 0; k < model.lens.header->n_systems; k++) {
-        const struct glint_model_output *o = system_outputs(&model, (int)k);
+        const struct glint_model_output *o =
+            address_of_system_outputs(&model, (int)k);
 
         for (int kind = 0; kind < TRIED; kind++)
-            assert_true(decode_stated_error(o[kind].rms) <=
+            assert_true(read_error_stated_in_model(o[kind].rms) <=
                         1.6 * TOLERANCE * aim[kind]);
     }
 }
@@ -668,9 +672,9 @@ TEST(errors_near_the_axis_fall_with_squared_tolerance)
 
     parse_and_bake_lens(&b, &lens, FAST_SINGLET, tolerance, 4);
     assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
-    assert_true(
-        decode_stated_error(system_outputs(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
-        1.6 * tolerance * tolerance * aim_px);
+    assert_true(read_error_stated_in_model(
+                    address_of_system_outputs(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
+                1.6 * tolerance * tolerance * aim_px);
     free(b.data);
 }
 
@@ -684,9 +688,10 @@ TEST(fit_follows_a_zero_of_the_energy)
     parse_and_bake_lens(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1,
                         0.5);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
-        assert_true(decode_stated_error(
-                        system_outputs(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
-                    1e-3);
+        assert_true(
+            read_error_stated_in_model(
+                address_of_system_outputs(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
+            1e-3);
     }
     free(b.data);
 }
@@ -713,8 +718,8 @@ TEST(wrong_coefficient_is_detected)
     b.lens.system = (const void *)(b.data + b.lens.header->system_at);
     glint_visible_init(&visible, &setup, 0, field_mm, band_nm);
     glint_measure_system_errors(&visible, &b.lens, 0, &no_barrels, &before);
-    o = system_outputs(&b, 0);
-    assert_near(decode_stated_error(o->rms) / before.of[0].rms, 1, 1e-3);
+    o = address_of_system_outputs(&b, 0);
+    assert_near(read_error_stated_in_model(o->rms) / before.of[0].rms, 1, 1e-3);
     coef = (void *)(b.data + o->coef_at);
     for (uint32_t k = 1; k < o->n_terms; k++)
         largest = labs(coef[k]) > labs(coef[largest]) ? k : largest;
@@ -732,8 +737,8 @@ TEST(wrong_coefficient_is_detected)
 
 /* ----------------------------------------------------------- key, refusals */
 
-static void check_key_differs(const struct glint_prescription *lens,
-                              const struct glint_bake_options *o)
+static void check_model_key_differs(const struct glint_prescription *lens,
+                                    const struct glint_bake_options *o)
 {
     assert_true(glint_bake_key(lens, o) != glint_bake_key(&heliar, &options));
 }
@@ -751,7 +756,7 @@ TEST(key_depends_on_every_parameter)
     for (size_t k = 0; k < sizeof of_lens / sizeof *of_lens; k++) {
         lens = heliar;
         *of_lens[k] = nextafter(*of_lens[k], 1000);
-        check_key_differs(&lens, &o);
+        check_model_key_differs(&lens, &o);
     }
     for (int s = 0; s < heliar.n_surfaces; s++)
         for (int k = 0; k < 7; k++) {
@@ -762,19 +767,19 @@ TEST(key_depends_on_every_parameter)
             double *const x = k < 4 ? form[k] : rest[k - 4];
             lens = heliar;
             *x = nextafter(*x, 1000);
-            check_key_differs(&lens, &o);
+            check_model_key_differs(&lens, &o);
         }
     lens = heliar;
     lens.stop_after--;
-    check_key_differs(&lens, &o);
+    check_model_key_differs(&lens, &o);
     lens = heliar;
     lens.name[0]++;
-    check_key_differs(&lens, &o);
+    check_model_key_differs(&lens, &o);
     lens = heliar;
     for (size_t k = 0; k < sizeof of_options / sizeof *of_options; k++) {
         o = options;
         *of_options[k] = nextafter(*of_options[k], 1000);
-        check_key_differs(&lens, &o);
+        check_model_key_differs(&lens, &o);
     }
     /* fields that never change the model do not change its key */
     o = options;
@@ -842,7 +847,7 @@ TEST(loosest_tolerance_keeps_a_term)
     o.tolerance = 100;
     bake_and_open_model(&b, &lens, &o);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
-        assert_in_range(system_outputs(&b, (int)k)->n_terms, 1,
+        assert_in_range(address_of_system_outputs(&b, (int)k)->n_terms, 1,
                         GLINT_MAX_MODEL_TERMS);
     free(b.data);
 }

@@ -86,7 +86,7 @@ static void bake_valid_scene_text(struct baked *b, const char *text)
         fail_msg("%s", error.text);
 }
 
-static const void *baked_table_at(const struct baked *b, uint32_t at)
+static const void *address_of_baked_table(const struct baked *b, uint32_t at)
 {
     return b->data + at;
 }
@@ -207,8 +207,8 @@ TEST(both_handednesses_give_the_same_mesh)
         bake_valid_scene_text(&b, text);
         unit = ldexp(1, b.model.header->unit_log2);
         m = &b.model.mesh[0];
-        t = baked_table_at(&b, m->triangle_at);
-        v = baked_table_at(&b, m->vertex_at);
+        t = address_of_baked_table(&b, m->triangle_at);
+        v = address_of_baked_table(&b, m->vertex_at);
         assert_int_equal(m->n_vertices, 3);
         assert_true(m->uv_at == 0 && m->normal_at == 0);
         check_scaled_vector(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
@@ -239,7 +239,7 @@ TEST(textures_have_averaged_mipmaps)
     assert_int_equal(b.model.header->n_textures, 1);
     t = b.model.texture;
     assert_true(t->width_log2 == 3 && t->height_log2 == 1);
-    texel = baked_table_at(&b, t->texel_at);
+    texel = address_of_baked_table(&b, t->texel_at);
     assert_true(texel[0] == 0 && texel[23] == 255);
     texel += 3 * 16; /* mipmap level of 4 x 1 texels */
     assert_true(texel[0] == 0 && texel[5] == 0 && texel[6] == 255);
@@ -247,8 +247,8 @@ TEST(textures_have_averaged_mipmaps)
     assert_true(texel[0] == 0 && texel[5] == 255);
     texel += 3 * 2; /* code 188 is half of the light */
     assert_true(texel[0] == 188 && texel[2] == 188);
-    uv = baked_table_at(&b, b.model.mesh[0].uv_at);
-    tri = baked_table_at(&b, b.model.mesh[0].triangle_at);
+    uv = address_of_baked_table(&b, b.model.mesh[0].uv_at);
+    tri = address_of_baked_table(&b, b.model.mesh[0].triangle_at);
     assert_int_equal(uv[2 * tri->vertex[0]], 0);
     assert_int_equal(uv[2 * tri->vertex[0] + 1], 1 << 16);
     /* the bake swaps the second and third corner of each triangle */
@@ -280,10 +280,11 @@ static void write_bumpy_sheet(int n)
 static void check_triangle_lists_of_cells(const struct baked *b)
 {
     const struct glint_scene_mesh *m = b->model.mesh;
-    const uint32_t *start = baked_table_at(b, m->start_at),
-                   *ref = baked_table_at(b, m->ref_at);
-    const int32_t *v = baked_table_at(b, m->vertex_at);
-    const struct glint_scene_triangle *t = baked_table_at(b, m->triangle_at);
+    const uint32_t *start = address_of_baked_table(b, m->start_at),
+                   *ref = address_of_baked_table(b, m->ref_at);
+    const int32_t *v = address_of_baked_table(b, m->vertex_at);
+    const struct glint_scene_triangle *t =
+        address_of_baked_table(b, m->triangle_at);
 
     for (uint32_t cell = 0; cell < m->cells[0] * m->cells[1] * m->cells[2];
          cell++) {

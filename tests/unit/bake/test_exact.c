@@ -524,7 +524,7 @@ struct reports {
     bool rises;
 };
 
-static void record_report(void *ctx, double done)
+static void record_progress_report(void *ctx, double done)
 {
     struct reports *const r = ctx;
 
@@ -550,7 +550,7 @@ TEST(progress_rises_from_exposure_to_picture)
     load_triplet_with_shapes("", "", "");
     glint_frame_init(&frame, &setup, view, NULL);
     frame.trace = &glint_frame_traces;
-    frame.progress = record_report;
+    frame.progress = record_progress_report;
     frame.progress_ctx = &reports;
     assert_ok(glint_response_draw_and_measure(&frame, &lamp, 1, 5000, NULL,
                                               &light, NULL));

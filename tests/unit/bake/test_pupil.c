@@ -224,9 +224,9 @@ TEST(blocked_ghost_has_no_box)
 /* Checks that a pupil box, whose side K was moved inwards by a fifth of the
  * box, grows to contain all unblocked rays, and that no other side moves
  * inwards. */
-static void check_shrunk_box_grows(const struct glint_path *path,
-                                   const double direction[3],
-                                   const struct glint_pupil *whole, int k)
+static void check_shrunk_pupil_box_grows(const struct glint_path *path,
+                                         const double direction[3],
+                                         const struct glint_pupil *whole, int k)
 {
     const struct glint_openings openings = {
         .path = path,
@@ -266,5 +266,5 @@ TEST(shrunk_sides_grow_back)
     assert_true(
         glint_pupil_find(&whole, &path, 12.74, optics.stop_radius_mm, NULL));
     for (int k = 0; k < 4; k++)
-        check_shrunk_box_grows(&path, direction, &whole, k);
+        check_shrunk_pupil_box_grows(&path, direction, &whole, k);
 }

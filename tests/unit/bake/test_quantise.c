@@ -33,7 +33,7 @@ static int random_int(int lo, int hi)
 
 /* Returns a random number, -2^30 .. 2^30; a quarter of them are -2^30, 2^30, 0,
  * or a neighbour of these. */
-static int32_t random_q30(void)
+static int32_t random_number_q30(void)
 {
     static const int32_t corner[] = {-ONE_Q30, 1 - ONE_Q30, -1,     0,
                                      1,        ONE_Q30 - 1, ONE_Q30};
@@ -150,7 +150,7 @@ static void quantise_and_open_model(struct made *m)
         fail_msg("%s", reason);
 }
 
-static void free_made_model(struct made *m)
+static void free_quantised_model(struct made *m)
 {
     glint_quantised_free_system(&m->quantised);
     glint_fitted_free_ghost(&m->fitted);
@@ -261,7 +261,7 @@ static void compare_rays_with_polynomials(const struct made *m,
 
     assert_true(glint_transfer_init(&t, &m->lens, 0, sine_q30, wave_q24));
     for (int k = 0; k < rays; k++) {
-        const int32_t u_q30 = random_q30(), v_q30 = random_q30();
+        const int32_t u_q30 = random_number_q30(), v_q30 = random_number_q30();
         const struct glint_model_system *s = t.system;
         const double x[4] = {decode_q30(u_q30), decode_q30(v_q30),
                              decode_q30(map_range_to_q30(
@@ -289,8 +289,8 @@ static struct used check_proven_bounds(int systems)
         quantise_and_open_model(&m);
         s = m.lens.system;
         for (int i = 0; i < BUNDLES; i++) {
-            const double a = 0.5 + 0.5 * decode_q30(random_q30());
-            const double b = 0.5 + 0.5 * decode_q30(random_q30());
+            const double a = 0.5 + 0.5 * decode_q30(random_number_q30());
+            const double b = 0.5 + 0.5 * decode_q30(random_number_q30());
             const int32_t sine_q30 =
                 s->sine_lo_q30 +
                 (int32_t)(a * (s->sine_hi_q30 - s->sine_lo_q30));
@@ -300,7 +300,7 @@ static struct used check_proven_bounds(int systems)
 
             compare_rays_with_polynomials(&m, sine_q30, wave_q24, RAYS, &used);
         }
-        free_made_model(&m);
+        free_quantised_model(&m);
     }
     return used;
 }
@@ -344,7 +344,7 @@ TEST(wrong_coefficient_exceeds_the_proven_bound)
                   -m.quantised.output[GLINT_OUT_ENERGY].exponent);
     assert_true(fabs(out.at[GLINT_OUT_ENERGY] - truth) >
                 ldexp(m.quantised.output[GLINT_OUT_ENERGY].rounding_q8, -8));
-    free_made_model(&m);
+    free_quantised_model(&m);
 }
 
 /* ------------------------------------------------------------------ numbers */
@@ -420,7 +420,7 @@ TEST(exponents_use_half_of_the_range)
         for (int i = 0; i < GLINT_OUT_ENERGY; i += 2)
             assert_int_equal(m.quantised.output[i].exponent,
                              m.quantised.output[i + 1].exponent);
-        free_made_model(&m);
+        free_quantised_model(&m);
     }
 }
 
@@ -443,7 +443,7 @@ TEST(energy_limit_has_headroom)
         if (q->head > 0)
             assert_true(ldexp(1.2 * o->most, q->head - q->exponent) < 0x1p29);
         cut += q->head > 0;
-        free_made_model(&m);
+        free_quantised_model(&m);
     }
     assert_in_range(cut, 300, 900);
 }
@@ -462,7 +462,7 @@ TEST(tiny_coefficients_use_the_smallest_exponent)
     quantise_and_open_model(
         &m); /* its checks include that the run time opens the model */
     assert_int_equal(m.quantised.output[GLINT_OUT_ENERGY].exponent, -80);
-    free_made_model(&m);
+    free_quantised_model(&m);
 }
 
 /* ----------------------------------------------------------------- refusals */
@@ -471,7 +471,7 @@ static void check_system_is_rejected(struct made *m)
 {
     assert_int_equal(glint_quantise_system(m->fitted.system, &m->quantised),
                      GLINT_E_LENS);
-    free_made_model(m);
+    free_quantised_model(m);
 }
 
 TEST(rejects_numbers_that_are_not_finite)

@@ -44,12 +44,12 @@ static double fit_polynomial_on_grid(double (*value)(double u, double v),
     return left;
 }
 
-static double even_polynomial(double u, double v)
+static double evaluate_even_polynomial(double u, double v)
 {
     return 1 - 3 * u * u + 2 * u * u * u * u + v * v;
 }
 
-static double odd_polynomial(double u, double v)
+static double evaluate_odd_polynomial(double u, double v)
 {
     return 0.1 + u - 0.5 * u * u * u + 0.25 * u * v * v;
 }
@@ -67,17 +67,19 @@ TEST(symmetric_grid_separates_even_and_odd_terms)
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit_polynomial_on_grid(even_polynomial, -1, &poly) <= 1);
+    assert_true(fit_polynomial_on_grid(evaluate_even_polynomial, -1, &poly) <=
+                1);
     assert_int_equal(poly.n, 4);
-    assert_near(evaluate_polynomial(&poly, x), even_polynomial(x[0], x[1]),
-                1e-8);
-    assert_true(fit_polynomial_on_grid(odd_polynomial, -1, &poly) <= 1);
+    assert_near(evaluate_polynomial(&poly, x),
+                evaluate_even_polynomial(x[0], x[1]), 1e-8);
+    assert_true(fit_polynomial_on_grid(evaluate_odd_polynomial, -1, &poly) <=
+                1);
     assert_int_equal(poly.n, 4);
-    assert_near(evaluate_polynomial(&poly, x), odd_polynomial(x[0], x[1]),
-                1e-8);
+    assert_near(evaluate_polynomial(&poly, x),
+                evaluate_odd_polynomial(x[0], x[1]), 1e-8);
 }
 
-static double cubic_polynomial(double u, double v)
+static double evaluate_cubic_polynomial(double u, double v)
 {
     (void)v;
     return 1 - u + 2 * u * u - 3 * u * u * u;
@@ -91,7 +93,8 @@ TEST(fits_nearly_dependent_powers)
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit_polynomial_on_grid(cubic_polynomial, 0.95, &poly) <= 1);
-    assert_near(evaluate_polynomial(&poly, x), cubic_polynomial(x[0], x[1]),
-                1e-8);
+    assert_true(
+        fit_polynomial_on_grid(evaluate_cubic_polynomial, 0.95, &poly) <= 1);
+    assert_near(evaluate_polynomial(&poly, x),
+                evaluate_cubic_polynomial(x[0], x[1]), 1e-8);
 }

@@ -44,7 +44,7 @@ static void fit_rows_by_model(struct glint_scatter_rows *rows,
 
 /* Returns entry D of kernel J of the synthetic rows. The kernels are not
  * symmetric, so that a mirrored kernel would be noticed. */
-static double synthetic_kernel_entry(int j, int d)
+static double compute_synthetic_kernel_entry(int j, int d)
 {
     const int u = d % KERNEL - KERNEL / 2, v = d / KERNEL - KERNEL / 2;
 
@@ -67,8 +67,10 @@ static void make_synthetic_rows(struct glint_scatter_rows *rows,
                 if (to >= 0)
                     glint_scatter_get_row(rows, x, c)[d] =
                         (float)(in[x] * (c + 1) *
-                                (weight[to][0] * synthetic_kernel_entry(0, d) +
-                                 weight[to][1] * synthetic_kernel_entry(1, d)));
+                                (weight[to][0] *
+                                     compute_synthetic_kernel_entry(0, d) +
+                                 weight[to][1] *
+                                     compute_synthetic_kernel_entry(1, d)));
             }
 }
 

@@ -151,8 +151,8 @@ TEST(rejects_mistakes)
 
 /* Returns the mean difference of SHARE between adjacent columns or rows of the
  * medium; if EDGE is set, across its edges, where its opposite sides meet. */
-static double mean_neighbour_difference(const double *share, int side,
-                                        bool rows, bool edge)
+static double compute_mean_neighbour_difference(const double *share, int side,
+                                                bool rows, bool edge)
 {
     const int first = edge ? side - 1 : 0, end = edge ? side : side - 1;
     double sum = 0;
@@ -180,8 +180,9 @@ TEST(veins_continue_across_edges)
     for (; stone.seed < SEEDS; stone.seed++) {
         glint_stone_compute_fractions(&stone, share);
         for (int rows = 0; rows < 2; rows++) {
-            edge += mean_neighbour_difference(share, SIDE, rows, true);
-            within += mean_neighbour_difference(share, SIDE, rows, false);
+            edge += compute_mean_neighbour_difference(share, SIDE, rows, true);
+            within +=
+                compute_mean_neighbour_difference(share, SIDE, rows, false);
         }
     }
     if (edge > 1.5 * within)

@@ -43,7 +43,7 @@ static void parse_golden_file_name(struct bundle *bundle, const char *name)
 
 /* Returns the next comma-separated number and moves *AT behind it; NAN if the
  * column is empty. */
-static double parse_next_column(const char **at)
+static double parse_next_csv_column(const char **at)
 {
     char *end;
     double value = (double)NAN;
@@ -75,15 +75,17 @@ static void compare_ray_with_golden(const struct glint_ray *ray,
 {
     double energy;
 
-    compare_lengths_mm(ray->stop_x_mm, parse_next_column(&columns), where);
-    compare_lengths_mm(ray->stop_y_mm, parse_next_column(&columns), where);
-    compare_lengths_mm(ray->sensor_x_mm, parse_next_column(&columns), where);
-    compare_lengths_mm(ray->sensor_y_mm, parse_next_column(&columns), where);
-    energy = parse_next_column(&columns);
+    compare_lengths_mm(ray->stop_x_mm, parse_next_csv_column(&columns), where);
+    compare_lengths_mm(ray->stop_y_mm, parse_next_csv_column(&columns), where);
+    compare_lengths_mm(ray->sensor_x_mm, parse_next_csv_column(&columns),
+                       where);
+    compare_lengths_mm(ray->sensor_y_mm, parse_next_csv_column(&columns),
+                       where);
+    energy = parse_next_csv_column(&columns);
     if (!(fabs(ray->energy - energy) <= 1e-7 * energy))
         fail_msg("%s: energy %.12g, expected %.9g", where, ray->energy, energy);
     worst_energy = fmax(worst_energy, fabs(ray->energy / energy - 1.0));
-    compare_lengths_mm(ray->rel_radius, parse_next_column(&columns), where);
+    compare_lengths_mm(ray->rel_radius, parse_next_csv_column(&columns), where);
 }
 
 static int compare_bundle_with_golden(const struct bundle *bundle, FILE *file,
@@ -115,10 +117,10 @@ static int compare_bundle_with_golden(const struct bundle *bundle, FILE *file,
 
         assert_non_null(fgets(line, sizeof(line), file));
         snprintf(where, sizeof(where), GOLDEN "/%s:%d", name, i + 2);
-        compare_lengths_mm(px, parse_next_column(&at), where);
-        compare_lengths_mm(py, parse_next_column(&at), where);
+        compare_lengths_mm(px, parse_next_csv_column(&at), where);
+        compare_lengths_mm(py, parse_next_csv_column(&at), where);
         status = glint_trace(&path, px, py, direction, &ray, NULL);
-        if ((int)status != (int)parse_next_column(&at))
+        if ((int)status != (int)parse_next_csv_column(&at))
             fail_msg("%s: status %d", where, (int)status);
         if (status != GLINT_RAY_OK)
             continue;
@@ -181,9 +183,9 @@ make_lens_of_bare_surfaces(int n, const double *radius_mm, double thickness_mm)
     return lens;
 }
 
-static void expect_path_event(const struct glint_event *event,
-                              enum glint_event_kind kind, int surface,
-                              double advance_mm, double n_from, double n_to)
+static void expect_event_of_path(const struct glint_event *event,
+                                 enum glint_event_kind kind, int surface,
+                                 double advance_mm, double n_from, double n_to)
 {
     assert_int_equal(event->kind, kind);
     assert_int_equal(event->surface, surface);
@@ -205,11 +207,11 @@ TEST(ghost_path_has_five_events)
 
     glint_path_init(&path, &lens, &ghost, 550.0);
     assert_int_equal(path.n_events, 5);
-    expect_path_event(&path.event[0], GLINT_REFRACT, 0, 0.0, 1.0, 1.5);
-    expect_path_event(&path.event[1], GLINT_REFLECT, 1, 5.0, 1.5, 1.0);
-    expect_path_event(&path.event[2], GLINT_REFLECT, 0, -5.0, 1.5, 1.0);
-    expect_path_event(&path.event[3], GLINT_REFRACT, 1, 5.0, 1.5, 1.0);
-    expect_path_event(&path.event[4], GLINT_STOP, -1, 5.0, 1.0, 1.0);
+    expect_event_of_path(&path.event[0], GLINT_REFRACT, 0, 0.0, 1.0, 1.5);
+    expect_event_of_path(&path.event[1], GLINT_REFLECT, 1, 5.0, 1.5, 1.0);
+    expect_event_of_path(&path.event[2], GLINT_REFLECT, 0, -5.0, 1.5, 1.0);
+    expect_event_of_path(&path.event[3], GLINT_REFRACT, 1, 5.0, 1.5, 1.0);
+    expect_event_of_path(&path.event[4], GLINT_STOP, -1, 5.0, 1.0, 1.0);
     assert_true(path.to_sensor_mm == 50.0);
 }
 
@@ -228,8 +230,8 @@ TEST(direct_path_begins_at_a_front_stop)
     glint_path_init(&same, &lens, &none, 550.0);
     assert_int_equal(path.n_events, 3);
     assert_int_equal(same.n_events, 3);
-    expect_path_event(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
-    expect_path_event(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
+    expect_event_of_path(&path.event[0], GLINT_STOP, -1, -8.0, 1.0, 1.0);
+    expect_event_of_path(&path.event[1], GLINT_REFRACT, 0, 8.0, 1.0, 1.5);
     assert_true(path.to_sensor_mm == 5.0);
     /* The stop lies 8 mm in front of the vertex plane, so the library extends
      * the ray through (1, 2) backwards with its slope of 3/4. */

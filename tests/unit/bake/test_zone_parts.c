@@ -10,8 +10,8 @@
 #include "support/lens_check.h"
 #include "support/rng.h"
 
-static bool part_contains_position(const struct glint_zone_part *p, double u,
-                                   double v)
+static bool pupil_part_contains_position(const struct glint_zone_part *p,
+                                         double u, double v)
 {
     return u >= p->u0 && u < p->u1 && v < p->top &&
            v >= p->top * glint_zone_get_inner_rim(p->annulus);
@@ -44,7 +44,7 @@ TEST(parts_are_disjoint)
         int found = 0;
 
         for (int k = 0; k < PARTS; k++)
-            found += part_contains_position(&part[k], u, v);
+            found += pupil_part_contains_position(&part[k], u, v);
         assert_int_equal(found, 1);
     }
 }
@@ -62,7 +62,7 @@ struct attempted {
     enum glint_next next;
 };
 
-static enum glint_next decide_next_division(const struct attempted *c)
+static enum glint_next choose_next_division_of_zone(const struct attempted *c)
 {
     static struct glint_prescription lens = {.n_surfaces = 2};
     static struct glint_setup setup;
@@ -123,7 +123,8 @@ TEST(wide_zones_of_aspheres_are_halved)
     };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        if (decide_next_division(&all[i]) != all[i].next)
+        if (choose_next_division_of_zone(&all[i]) != all[i].next)
             fail_msg("attempt %d: %d, not %d", (int)i,
-                     (int)decide_next_division(&all[i]), (int)all[i].next);
+                     (int)choose_next_division_of_zone(&all[i]),
+                     (int)all[i].next);
 }

@@ -28,7 +28,7 @@ static struct machine {
     uint32_t noise;
 } machine;
 
-static double simulated_frame_ms(const struct machine *m)
+static double simulate_frame_time_ms(const struct machine *m)
 {
     const double pixels = glint_dials_half(&m->frame->dials) ? 0.4 : 1;
 
@@ -44,7 +44,7 @@ double __wrap_tool_clock_s(void)
         machine.noise ? 0.94 + 0.12 * rng_unit(&machine.noise) : 1;
 
     if (machine.frame)
-        machine.now_s += 1e-3 * simulated_frame_ms(&machine) / 3 * noise;
+        machine.now_s += 1e-3 * simulate_frame_time_ms(&machine) / 3 * noise;
     return machine.now_s;
 }
 
@@ -96,7 +96,7 @@ TEST(frame_time_stays_within_the_budget)
             make_test_frame(&frame);
             machine.frame = &frame;
             report = draw_frames_with_budget(&frame, budget_ms[i], SETTLED);
-            took = simulated_frame_ms(&machine);
+            took = simulate_frame_time_ms(&machine);
             machine.frame = NULL;
             assert_true(report.quality >= last - 0.05);
             assert_true(took < 1.1 * budget_ms[i]);

@@ -44,7 +44,8 @@ TEST_CLOSE
 /* Returns the power, in the brightest channel, of the star of a lamp of power
  * POWER at LEVEL (0 .. 1 while the lamp fades). SEEN_PX: RMS radius of the
  * lamp's clipped core in the image, pixels; 0: not clipped. */
-static double star_power_at_level(double power, double seen_px, double level)
+static double compute_star_power_at_fade_level(double power, double seen_px,
+                                               double level)
 {
     const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
 
@@ -67,7 +68,7 @@ static bool is_relatively_near(double a, double b)
  * to the edge of a core of RMS radius SEEN_PX. A star of power W is white
  * out to cbrt(W a) / pi pixels, where a is the wavelength times the
  * f-number, pixels. */
-static double half_of_white_radius_power(double seen_px)
+static double compute_half_power_of_white_star(double seen_px)
 {
     const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
 
@@ -77,27 +78,31 @@ static double half_of_white_radius_power(double seen_px)
 TEST(clipped_lamps_get_more_star_power)
 {
     /* the star of a lamp that is not clipped has the lamp's power */
-    assert_true(is_relatively_near(star_power_at_level(1000, 0, 1), 1000));
+    assert_true(
+        is_relatively_near(compute_star_power_at_fade_level(1000, 0, 1), 1000));
     /* The star of a clipped lamp gets more power: at most 32 times, and at most
      * so much that the star is white out to the edge of the visible core. */
-    assert_true(is_relatively_near(star_power_at_level(1000, 50, 1), 32000));
-    assert_true(is_relatively_near(star_power_at_level(1000, 2, 1),
-                                   half_of_white_radius_power(2)));
-    assert_true(is_relatively_near(star_power_at_level(1000, 0.5, 1), 1000));
+    assert_true(is_relatively_near(
+        compute_star_power_at_fade_level(1000, 50, 1), 32000));
+    assert_true(is_relatively_near(compute_star_power_at_fade_level(1000, 2, 1),
+                                   compute_half_power_of_white_star(2)));
+    assert_true(is_relatively_near(
+        compute_star_power_at_fade_level(1000, 0.5, 1), 1000));
     /* the star of a fading lamp fades with the lamp */
-    assert_true(is_relatively_near(star_power_at_level(500, 2, 0.5),
-                                   0.5 * half_of_white_radius_power(2)));
+    assert_true(
+        is_relatively_near(compute_star_power_at_fade_level(500, 2, 0.5),
+                           0.5 * compute_half_power_of_white_star(2)));
 }
 
-static double star_radius_px(double power, double seen_px)
+static double compute_star_radius_px(double power, double seen_px)
 {
-    star_power_at_level(power, seen_px, 1);
+    compute_star_power_at_fade_level(power, seen_px, 1);
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
 /* Returns the max radius, pixels, of a lamp that is hidden behind its own
  * clipped rim of SEEN_PX pixels, as computed for still images. */
-static double max_hidden_lamp_radius(double seen_px)
+static double compute_max_hidden_lamp_radius(double seen_px)
 {
     return floor(256 * seen_px / 6) * 2 / 256;
 }
@@ -107,13 +112,15 @@ static double max_hidden_lamp_radius(double seen_px)
  * that fills its core is drawn as a disc. */
 TEST(narrow_core_gets_the_radius_its_rim_can_hide)
 {
-    assert_true(star_radius_px(100, 0) == 0);
-    assert_true(star_radius_px(1e7, 2) == max_hidden_lamp_radius(2));
-    assert_true(star_radius_px(1e9, 6) < 0.6 * sqrt(2) * 6);
-    assert_true(star_radius_px(10, 6) > 0.8 * sqrt(2) * 6);
+    assert_true(compute_star_radius_px(100, 0) == 0);
+    assert_true(compute_star_radius_px(1e7, 2) ==
+                compute_max_hidden_lamp_radius(2));
+    assert_true(compute_star_radius_px(1e9, 6) < 0.6 * sqrt(2) * 6);
+    assert_true(compute_star_radius_px(10, 6) > 0.8 * sqrt(2) * 6);
     /* the core of a lamp without glare does not include what its own star makes
      * white */
-    assert_true(star_radius_px(GLINT_PI * 2 * 6 * 6, 6) < 0.95 * sqrt(2) * 6);
+    assert_true(compute_star_radius_px(GLINT_PI * 2 * 6 * 6, 6) <
+                0.95 * sqrt(2) * 6);
 }
 
 /* Checks that a spot widened by the glare of a lamp far above white has the
@@ -125,17 +132,18 @@ TEST(glare_of_a_small_lamp_does_not_widen_spikes)
     const double white = GLINT_PI * 2 * 50 * 50;
     double before = 1e9;
 
-    assert_true(star_radius_px(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
-    assert_true(star_radius_px(6 * white, 50) == max_hidden_lamp_radius(50));
+    assert_true(compute_star_radius_px(0.9 * white, 50) > 0.6 * sqrt(2) * 50);
+    assert_true(compute_star_radius_px(6 * white, 50) ==
+                compute_max_hidden_lamp_radius(50));
     for (double over = 0.5; over < 6; over += 0.1) {
-        const double radius = star_radius_px(over * white, 50);
+        const double radius = compute_star_radius_px(over * white, 50);
 
         assert_true(radius <= before);
         assert_true(over == 0.5 || before - radius < 4);
         before = radius;
     }
-    before = star_radius_px(3 * white, 50);
-    star_power_at_level(1.5 * white, 50, 0.5);
+    before = compute_star_radius_px(3 * white, 50);
+    compute_star_power_at_fade_level(1.5 * white, 50, 0.5);
     assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
@@ -169,7 +177,7 @@ TEST(reserved_memory_prevents_allocations)
     star = frame.star.star;
     tables = frame.star.tables;
     bytes = glint_frame_star_count_bytes(&frame);
-    star_power_at_level(1000, 0, 1);
+    compute_star_power_at_fade_level(1000, 0, 1);
     assert_ptr_equal(star, frame.star.star);
     assert_int_equal(bytes, glint_frame_star_count_bytes(&frame));
     /* the star tables, and the lamps twice: as given and as drawn */
@@ -185,17 +193,17 @@ TEST(stars_cost_at_most_a_quarter_of_the_budget)
     const struct glint_budget none = frame.budget;
     double pixels;
 
-    star_power_at_level(1e7, 0, 1);
+    compute_star_power_at_fade_level(1e7, 0, 1);
     pixels = frame.star.pixels;
     frame.budget.ms_per_minsn = 0.1;
     frame.budget.ms = 1;
-    star_power_at_level(1e7, 0, 1);
+    compute_star_power_at_fade_level(1e7, 0, 1);
     print_message("%.0f pixels, %.0f within 1 ms\n", pixels, frame.star.pixels);
     assert_true(frame.star.pixels > 1000);
     assert_true(frame.star.pixels < 0.5 * pixels);
     assert_true(frame.star.pixels * 0.32e-3 * 0.1 <= 0.25);
     frame.budget.ms = 1e-6;
-    star_power_at_level(1e7, 0, 1);
+    compute_star_power_at_fade_level(1e7, 0, 1);
     assert_true(frame.star.pixels == 0);
     frame.budget = none;
 }
@@ -226,9 +234,9 @@ TEST(camera_noise_does_not_make_stars_flicker)
             if (i < SETTLED)
                 continue;
             assert_int_equal(night.n_tracks, 1);
-            power =
-                star_power_at_level((double)t->power_q16 / 65536,
-                                    t->size_q8 / 256.0, t->level_q15 / 32768.0);
+            power = compute_star_power_at_fade_level(
+                (double)t->power_q16 / 65536, t->size_q8 / 256.0,
+                t->level_q15 / 32768.0);
             step = last > 0 ? fmax(step, fabs(log(power / last))) : step;
             least = fmin(least, power);
             most = fmax(most, power);
@@ -252,7 +260,7 @@ TEST(higher_cull_codes_cover_fewer_pixels)
 
     for (frame.dials.cull_codes = 1 / 32.; frame.dials.cull_codes < 16;
          frame.dials.cull_codes *= 8) {
-        star_power_at_level(1e4, 0, 1);
+        compute_star_power_at_fade_level(1e4, 0, 1);
         print_message("%g codes: %.0f pixels\n", frame.dials.cull_codes,
                       frame.star.pixels);
         assert_true(frame.star.pixels > 0 && frame.star.pixels < 0.9 * last);

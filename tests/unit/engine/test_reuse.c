@@ -85,7 +85,7 @@ static void set_stop_of_frames(double opening)
 /* Depending on TIME, changes the lamps or a setting of both frames and returns
  * true; or changes nothing and returns false: then the next frame must reuse
  * the edges. */
-static bool change_frames_or_lamps(int time, int *n)
+static bool change_setting_or_lamps_at_times(int time, int *n)
 {
     switch (time % 12) {
     case 1: /* one lamp moves by an invisible amount */
@@ -120,7 +120,7 @@ static void check_reuse_in_video(void)
     open_both_frames(0);
     draw_with_and_without_reuse(n);
     for (int time = 0; time < FRAMES; time++) {
-        const bool turned = change_frames_or_lamps(time, &n);
+        const bool turned = change_setting_or_lamps_at_times(time, &n);
         const bool reused = draw_with_and_without_reuse(n);
 
         n_reused += reused;
@@ -335,7 +335,7 @@ TEST(noise_of_lamps_traces_no_rays)
 
 /* Returns the distance, pixels, from LAMP to the nearest light whose rays are
  * reused. */
-static double distance_to_reused_light_px(const struct glint_lamp *lamp)
+static double compute_distance_to_reused_light_px(const struct glint_lamp *lamp)
 {
     const double degree = GLINT_PI / 180;
     const double pixels =
@@ -370,7 +370,7 @@ TEST(moving_lamp_is_traced_before_the_tolerance)
     for (int i = 0; i < 60; i++) {
         lamps[2].theta_deg += 0.005;
         n_reused += draw_stationary_lamps(LIGHTS - 1, 1);
-        assert_true(distance_to_reused_light_px(&lamps[2]) <= 0.5);
+        assert_true(compute_distance_to_reused_light_px(&lamps[2]) <= 0.5);
     }
     assert_true(n_reused > 48 && n_reused < 59);
     assert_false(draw_stationary_lamps(LIGHTS, 1));

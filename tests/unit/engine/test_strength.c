@@ -50,10 +50,10 @@ static struct glint_engine_lamp make_lamp_at_angle(double theta_deg,
 /* Returns the peak that the exposure gives to the flare of N lamps, US
  * microseconds after the previous frame. level[i], 0 .. 1, is the fading state
  * of lamp i. */
-static double exposed_flare_peak(struct glint_strength *s,
-                                 const struct glint_response *r,
-                                 struct glint_engine_lamp *lamps,
-                                 const double *level, int n, int us)
+static double compute_exposed_flare_peak(struct glint_strength *s,
+                                         const struct glint_response *r,
+                                         struct glint_engine_lamp *lamps,
+                                         const double *level, int n, int us)
 {
     const struct glint_strength_lamps all = {lamps, part, n, PIXELS};
 
@@ -71,7 +71,7 @@ static double flare_peak_of_still(double asked, const struct glint_response *r,
 
     glint_strength_set_defaults(&s);
     s.asked = asked;
-    return exposed_flare_peak(&s, r, &lamp, NULL, 1, 0);
+    return compute_exposed_flare_peak(&s, r, &lamp, NULL, 1, 0);
 }
 
 /* ------------------------------------------------------------------- stills */
@@ -153,7 +153,7 @@ TEST(many_equal_lamps_share_the_exposure)
     for (int i = 0; i < 16; i++)
         lamps[i] = make_lamp_at_angle(i, 1e4);
     one = flare_peak_of_still(0.5, &r, 1, 1e4);
-    each = exposed_flare_peak(&strength, &r, lamps, NULL, 16, 0) /
+    each = compute_exposed_flare_peak(&strength, &r, lamps, NULL, 16, 0) /
            2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
 }
@@ -196,8 +196,8 @@ TEST(lamps_without_light_give_a_finite_exposure)
 /* Returns the peak of the flare of a still image after the correction. Before
  * it, the flare is STOPS brighter than the response predicts, with a mean
  * MEAN_STOPS below the peak. */
-static double corrected_flare_peak(double asked, double stops,
-                                   double mean_stops)
+static double compute_corrected_flare_peak(double asked, double stops,
+                                           double mean_stops)
 {
     const struct glint_response r = make_lens_response(0, 7);
     struct glint_response_light drawn = {{0}, {0}};
@@ -206,7 +206,7 @@ static double corrected_flare_peak(double asked, double stops,
 
     glint_strength_set_defaults(&s);
     s.asked = asked;
-    exposed_flare_peak(&s, &r, &lamp, NULL, 1, 0);
+    compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, 0);
     assert_false(s.is_drawn);
     drawn.peak[1] = exp2(stops - 5);
     drawn.mean[1] = exp2(stops - 5 - mean_stops);
@@ -220,16 +220,16 @@ static double corrected_flare_peak(double asked, double stops,
 
 TEST(exposure_is_corrected_to_the_drawn_flare)
 {
-    assert_true(fabs(corrected_flare_peak(0.5, 0, 7) - 0.25) < 1e-4);
+    assert_true(fabs(compute_corrected_flare_peak(0.5, 0, 7) - 0.25) < 1e-4);
     for (double stops = -12; stops <= 12; stops++) {
-        const double peak = corrected_flare_peak(0.5, stops, 7);
+        const double peak = compute_corrected_flare_peak(0.5, stops, 7);
 
         assert_true(peak > 0.124 && peak < 0.501);
         /* the mean of a veil is limited */
-        assert_true(fabs(corrected_flare_peak(0.5, stops, 0.5) -
+        assert_true(fabs(compute_corrected_flare_peak(0.5, stops, 0.5) -
                          0.015 * exp2(0.5)) < 1e-6);
     }
-    assert_true(corrected_flare_peak(0, 3, 7) == 0);
+    assert_true(compute_corrected_flare_peak(0, 3, 7) == 0);
 }
 
 /* Checks that a physical exposure is not corrected, nor a flare without
@@ -242,7 +242,7 @@ TEST(physical_exposure_is_not_corrected)
     struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
     double scale;
 
-    exposed_flare_peak(&strength, &r, &lamp, NULL, 1, 0);
+    compute_exposed_flare_peak(&strength, &r, &lamp, NULL, 1, 0);
     scale = strength.scale;
     glint_strength_correct_exposure(&strength, &none, NULL);
     assert_true(strength.scale == scale && !strength.is_drawn);
@@ -265,7 +265,7 @@ TEST(crossing_lamp_changes_gradually)
         struct glint_engine_lamp lamp =
             make_lamp_at_angle(fabs(20 - i * 0.2), 1e5);
         const double peak =
-            exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
+            compute_exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.5);
         if (i > 0)
@@ -285,8 +285,8 @@ TEST(rising_sun_lowers_the_factor_gradually)
         struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e3),
                                              make_lamp_at_angle(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
-        const double peak = exposed_flare_peak(&strength, &r, lamps, level,
-                                               i < 50 ? 1 : 2, FRAME_US);
+        const double peak = compute_exposed_flare_peak(
+            &strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.8);
         if (i > 0)
@@ -311,13 +311,13 @@ TEST(leaving_sun_raises_the_factor_slowly)
         struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e3),
                                              make_lamp_at_angle(8, 1e6)};
 
-        exposed_flare_peak(&strength, &r, lamps, NULL, 2, 0);
+        compute_exposed_flare_peak(&strength, &r, lamps, NULL, 2, 0);
         first = scale = strength.scale;
     }
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, 1e3);
 
-        exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
+        compute_exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(strength.scale >= scale &&
                     strength.scale / scale < exp2(0.081));
         scale = strength.scale;
@@ -335,8 +335,8 @@ TEST(single_lamp_follows_its_level)
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, level * common);
-        const double peak =
-            exposed_flare_peak(&strength, &r, &lamp, &level, 1, FRAME_US);
+        const double peak = compute_exposed_flare_peak(&strength, &r, &lamp,
+                                                       &level, 1, FRAME_US);
 
         assert_true(fabs(peak - 0.25 * level) < 0.01);
         assert_true(peak > last);
@@ -352,16 +352,17 @@ TEST(exposure_adapts_at_once_after_a_cut)
     struct glint_engine_lamp faint = make_lamp_at_angle(5, 10),
                              bright = make_lamp_at_angle(5, common);
 
-    exposed_flare_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
-    assert_true(exposed_flare_peak(&strength, &r, &bright, NULL, 1, FRAME_US) >
-                0.3);
+    compute_exposed_flare_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
+    assert_true(compute_exposed_flare_peak(&strength, &r, &bright, NULL, 1,
+                                           FRAME_US) > 0.3);
     assert_true(part[0] < 1);
     bright = make_lamp_at_angle(5, common);
-    assert_true(fabs(exposed_flare_peak(&strength, &r, &bright, NULL, 1, 0) -
-                     0.25) < 1e-4);
-    exposed_flare_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
-    assert_true(exposed_flare_peak(&strength, &r, &faint, NULL, 1, FRAME_US) >
-                0.1);
+    assert_true(
+        fabs(compute_exposed_flare_peak(&strength, &r, &bright, NULL, 1, 0) -
+             0.25) < 1e-4);
+    compute_exposed_flare_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
+    assert_true(compute_exposed_flare_peak(&strength, &r, &faint, NULL, 1,
+                                           FRAME_US) > 0.1);
 }
 
 /* Checks that a strength set in a key frame applies in this frame, also after
@@ -377,22 +378,24 @@ TEST(strength_of_key_frames_applies_at_once)
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
 
         s.asked = asked[i];
-        assert_true(fabs(exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                         asked[i] * asked[i]) < 1e-3);
+        assert_true(
+            fabs(compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                 asked[i] * asked[i]) < 1e-3);
     }
     s.asked = 0;
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, 64 * common);
 
-        exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
+        compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(s.scale == 0);
     }
     {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, 64 * common);
 
         s.asked = 0.5;
-        assert_true(fabs(exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                         flare_peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
+        assert_true(
+            fabs(compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                 flare_peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
         assert_true(part[0] > 0.998);
     }
 }

@@ -20,7 +20,7 @@
 
 TEST(image_does_not_depend_on_tiles)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
 
     draw_scene(c, want);
     assert_true(sum_channel_light(want, 0) > 1);
@@ -31,7 +31,7 @@ TEST(image_does_not_depend_on_tiles)
 TEST(image_does_not_depend_on_threads)
 {
     for (int n = 1; n <= 8; n++) {
-        struct glint_flare_config c = octagonal_stop_config();
+        struct glint_flare_config c = make_octagonal_stop_config();
 
         draw_scene(c, want);
         assert_ok(glint_pool_create(&c.workers, n));
@@ -43,7 +43,7 @@ TEST(image_does_not_depend_on_threads)
 TEST(image_does_not_depend_on_job_order)
 {
     for (uint32_t seed = 1; seed <= 8; seed++) {
-        struct glint_flare_config c = octagonal_stop_config();
+        struct glint_flare_config c = make_octagonal_stop_config();
         struct shuffle shuffle;
 
         draw_scene(c, want);
@@ -104,7 +104,7 @@ static unsigned choose_instruction_sets(void)
  * below a code to far above the range of 32-bit sums. */
 TEST(more_light_never_darkens_a_pixel)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     int before = 0;
 
     for (int exponent = -12; exponent < 40; exponent++) {
@@ -133,7 +133,7 @@ TEST(random_scenes_are_bit_identical)
         const enum glint_pixel_format format =
             (enum glint_pixel_format)draw_random_number(GLINT_RGB565 + 1);
         const uint32_t seed = (uint32_t)draw_random_number(1 << 20) + 1;
-        struct glint_flare_config c = octagonal_stop_config();
+        struct glint_flare_config c = make_octagonal_stop_config();
         struct random_picture plain, other;
         struct shuffle shuffle;
         struct ghost list[6];
@@ -174,8 +174,8 @@ TEST(image_does_not_depend_on_bundle_order)
 
     for (int i = 0; i < N_GHOSTS; i++)
         turned[i] = ghosts[N_GHOSTS - 1 - i];
-    draw_scene(octagonal_stop_config(), want);
-    draw_ghost_list(octagonal_stop_config(), turned, N_GHOSTS, pixels);
+    draw_scene(make_octagonal_stop_config(), want);
+    draw_ghost_list(make_octagonal_stop_config(), turned, N_GHOSTS, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
 }
 
@@ -190,7 +190,7 @@ TEST(untouched_pixels_are_unchanged)
                                 .height = HEIGHT,
                                 .plane = {bytes},
                                 .stride_bytes = {STRIDE}};
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_flare_stats stats;
     int changed = 0;
     void *mem;
@@ -223,7 +223,7 @@ TEST(drawing_into_null_does_all_work)
     struct glint_image image =
         glint_image_over(bytes[0], GLINT_RGB24, WIDTH, HEIGHT);
 
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_flare_stats stats;
     void *mem;
     struct glint_flare *const f = allocate_flare(&c, &mem);
@@ -280,13 +280,13 @@ TEST(hashes_match_the_golden_file)
 {
     const bool update = getenv("GLINT_GOLDEN_UPDATE") != NULL;
     FILE *file = fopen("tests/golden/flare.txt", update ? "w" : "r");
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
 
     assert_non_null(file);
     check_golden_hash(file, update, "edges", c);
     c.irradiance_steps = 35;
     check_golden_hash(file, update, "edges-stepped", c);
-    c = octagonal_stop_config();
+    c = make_octagonal_stop_config();
     c.stop.n_blades = 0;
     check_golden_hash(file, update, "edges-circle", c);
     fclose(file);

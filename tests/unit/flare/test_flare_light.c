@@ -23,7 +23,7 @@ TEST(ghost_has_the_light_that_passes_the_stop)
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
     const double flux =
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
 
     /* The corners of the stop lie on the rim of the barrel, so that only the
      * stop clips. */
@@ -39,7 +39,7 @@ TEST(ghost_has_the_light_that_passes_the_stop)
  * positions, for straight and bent ghosts. */
 TEST(focused_ghost_keeps_its_light)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     const double flux =
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
 
@@ -65,7 +65,7 @@ TEST(flat_ghost_is_even_inside)
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
     const double cell = 2.5 * 40 / 16;
     const double irradiance = 1.5e9 / 2147483648.0 / (cell * cell);
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
 
     draw_ghost_list(c, &g, 1, pixels);
     for (int y = 65; y < 85; y++) {
@@ -87,7 +87,7 @@ TEST(flat_ghost_is_even_inside)
 TEST(outlines_close_without_streaks)
 {
     for (int k = 0; k < 400; k++) {
-        struct glint_flare_config c = octagonal_stop_config();
+        struct glint_flare_config c = make_octagonal_stop_config();
         const struct ghost g = make_random_ghost();
 
         c.stop.n_blades = k & 3 ? 8 : 0;
@@ -112,7 +112,7 @@ TEST(outline_closes_around_a_far_corner)
     const int32_t half = 759250125; /* sqrt(1/2) */
 
     for (size_t k = 0; k < sizeof far_q16 / sizeof *far_q16; k++) {
-        struct glint_flare_config c = octagonal_stop_config();
+        struct glint_flare_config c = make_octagonal_stop_config();
         const struct glint_bundle b = {.n_cells = 1,
                                        .flux_q31 = 1 << 30,
                                        .flux_exponent = 10,
@@ -152,7 +152,7 @@ TEST(outline_closes_around_a_far_corner)
 TEST(irradiance_steps_change_little_light)
 {
     static int32_t stepped[3 * WIDTH * HEIGHT];
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     const struct ghost g = {24, 100, 75, 55, 60, 1, 200, 4, {16384, 0, 0}};
 
     draw_ghost_list(c, &g, 1, pixels);
@@ -190,7 +190,7 @@ static bool ray_passes_stop(const struct glint_stop *stop,
 static void draw_ghost_by_rays(const struct ghost *g)
 {
     enum { RAYS = 4096 };
-    const struct glint_flare_config c = octagonal_stop_config();
+    const struct glint_flare_config c = make_octagonal_stop_config();
     const double flux_q20 = ldexp(1.5e9 / RAYS / 65536, g->flux_exponent - 11);
     static double sum[HEIGHT * WIDTH];
 
@@ -230,7 +230,7 @@ static void check_image_equals_rays(const struct ghost *g, double off)
 {
     double sum = 0, all;
 
-    draw_ghost_list(octagonal_stop_config(), g, 1, pixels);
+    draw_ghost_list(make_octagonal_stop_config(), g, 1, pixels);
     draw_ghost_by_rays(g);
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i += 3)
         sum += abs(pixels[i] - want[i]) / 1048576.0;
@@ -268,7 +268,7 @@ static struct glint_flare_stats draw_single_quad(const struct quad *q)
 {
     /* indices of the corners row by row */
     static const int corner[4] = {0, 1, 3, 2};
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     const struct glint_image image = make_linear_image(pixels);
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
@@ -392,7 +392,7 @@ TEST(thin_cells_keep_their_light)
 TEST(image_is_linear_in_flux)
 {
     struct ghost g = ghosts[1];
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
 
     draw_ghost_list(c, &g, 1, want);
     g.flux_exponent += 3;
@@ -405,7 +405,7 @@ TEST(image_is_linear_in_flux)
  * no error. */
 TEST(invalid_bundles_cause_no_error)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     const struct glint_image image = make_linear_image(pixels);
     struct glint_bundle b = {.n_cells = 4,
                              .flux_q31 = INT32_MAX,

@@ -19,7 +19,7 @@
  * and that memory one byte smaller is rejected. */
 TEST(requested_capacities_are_sufficient)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_flare_stats s = draw_scene(c, want);
     struct glint_flare *f;
     void *mem;
@@ -42,7 +42,7 @@ TEST(requested_capacities_are_sufficient)
  * counted, and all others are drawn correctly. */
 TEST(missing_capacity_drops_one_bundle)
 {
-    struct glint_flare_config full = octagonal_stop_config();
+    struct glint_flare_config full = make_octagonal_stop_config();
     struct glint_flare_stats s, less;
 
     s = draw_scene(full, pixels);
@@ -79,15 +79,15 @@ TEST(missing_capacity_drops_one_bundle)
 
 TEST(rejects_invalid_configurations)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
 
     assert_int_not_equal(glint_flare_bytes(&c), 0);
     c.tile_log2 = 7;
     assert_int_equal(glint_flare_bytes(&c), 0);
-    c = octagonal_stop_config();
+    c = make_octagonal_stop_config();
     c.width = GLINT_MAX_SIDE + 1;
     assert_int_equal(glint_flare_bytes(&c), 0);
-    c = octagonal_stop_config();
+    c = make_octagonal_stop_config();
     c.stop.n_blades = 2;
     assert_int_equal(glint_flare_bytes(&c), 0);
 }
@@ -112,7 +112,7 @@ void __wrap_glint_edges_bin(struct glint_flare *f)
 /* Checks that the counts of a frame saturate at INT_MAX instead of wrapping. */
 TEST(counts_saturate_at_int_max)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_flare_stats stats;
     struct glint_flare *f;
     void *mem;

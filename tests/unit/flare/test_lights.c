@@ -190,7 +190,8 @@ TEST(identical_lights_are_merged)
 
 /* Returns the chord (length of the difference) between the unit vectors with
  * sines (X, Y) and (P, Q). */
-static double chord_between_sines(double x, double y, double p, double q)
+static double compute_chord_between_directions(double x, double y, double p,
+                                               double q)
 {
     const double z = sqrt(1 - x * x - y * y) - sqrt(1 - p * p - q * q);
 
@@ -210,7 +211,7 @@ TEST(near_lights_merge_at_their_centroid)
                      y = random_unit_q30(&seed) - 0.5;
         const double dx = 2 * near * (random_unit_q30(&seed) - 0.5);
         const double dy = 2 * near * (random_unit_q30(&seed) - 0.5);
-        const double d = chord_between_sines(x, y, x + dx, y + dy);
+        const double d = compute_chord_between_directions(x, y, x + dx, y + dy);
         struct glint_light b[2] = {make_light(x, y, 1),
                                    make_light(x + dx, y + dy, 3)};
         const int left = glint_lights_merge(b, 2, NEAR_Q30, 2, &apart);

@@ -85,7 +85,7 @@ struct fixture {
 
 static void open_model_and_light(struct fixture *f)
 {
-    *f = (struct fixture){.m = model_make_auto()};
+    *f = (struct fixture){.m = model_make_three_ghosts()};
     f->lens = model_open_image(&f->m);
     set_frame_wavelengths(f->wave);
     f->light = make_axial_light();
@@ -588,7 +588,7 @@ static void draw_planned_flare(struct fixture *f, int32_t *px_q20)
 
 /* Checks that edges computed row by row, where each row of rays is discarded
  * after use, equal those of a stored grid. */
-static void check_rows_and_grids(int32_t opening_q30)
+static void check_row_edges_equal_grid_edges(int32_t opening_q30)
 {
     static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
     static struct glint_plan_scratch scratch;
@@ -635,8 +635,8 @@ static void check_rows_and_grids(int32_t opening_q30)
 
 TEST(rows_and_grids_give_the_same_edges)
 {
-    check_rows_and_grids(1 << 30);
-    check_rows_and_grids(1 << 28);
+    check_row_edges_equal_grid_edges(1 << 30);
+    check_row_edges_equal_grid_edges(1 << 28);
 }
 
 /* Checks that a hole of radius 0.4 in a stop as wide as the model's gives the

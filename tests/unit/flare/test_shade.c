@@ -40,7 +40,7 @@ draw_ghost_with_and_without_dirt(const struct ghost *g,
                                  const struct glint_iris *iris, int n_blades,
                                  int tile_log2, int32_t *out)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_flare_stats stats;
     struct glint_setup setup;
     struct glint_dirt *const dirt = make_dirt_in_stop(&setup, n_blades, iris);
@@ -247,7 +247,7 @@ TEST(image_does_not_depend_on_tiles)
 /* Checks that values out of range are rejected. */
 TEST(rejects_values_out_of_range)
 {
-    struct glint_flare_config c = octagonal_stop_config();
+    struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_shade shade = {.method = &glint_shade_method};
 
     c.stop.shade = &shade;

@@ -33,7 +33,7 @@ static struct fixture *open_model_with_tints(void)
     struct fixture *f = calloc(1, sizeof *f);
 
     assert_non_null(f);
-    f->m = model_make_auto();
+    f->m = model_make_three_ghosts();
     f->lens = model_open_image(&f->m);
     assert_true(f->lens.header->n_ghosts <= GHOSTS);
     set_frame_wavelengths(f->wave);

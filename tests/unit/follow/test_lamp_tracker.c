@@ -801,7 +801,7 @@ TEST(single_changes_are_not_cuts)
 /* Returns the quantity that determines the star of a clipped lamp
  * (engine/frame/frame_star.c): the smaller of 32 times its power and the cube
  * of the width of its white spot. */
-static double star_power_of_track(const struct glint_lamp_track *t)
+static double compute_star_power_of_track(const struct glint_lamp_track *t)
 {
     const double photo_airy = 0.55e-3 * 22 / 43.27 * hypot(160, 120);
 
@@ -837,8 +837,9 @@ TEST(power_of_a_clipped_lamp_is_steady_in_noise)
             most = fmax(most, last);
             star_step = fmax(
                 star_step,
-                star ? fabs(star_power_of_track(night.track) / star - 1) : 0);
-            star = star_power_of_track(night.track);
+                star ? fabs(compute_star_power_of_track(night.track) / star - 1)
+                     : 0);
+            star = compute_star_power_of_track(night.track);
         }
         print_message("%g px: steps of %.1f %%, %.0f %% in all, %.1f %% of "
                       "its star\n",

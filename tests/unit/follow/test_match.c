@@ -36,7 +36,8 @@ TEST_CLOSE
     free(mem);
 }
 
-static void place_seekers_and_spots(int n_seekers, int n_spots, int side_q8)
+static void place_seekers_and_spots_at_random(int n_seekers, int n_spots,
+                                              int side_q8)
 {
     match.n_seekers = n_seekers;
     for (int i = 0; i < n_seekers; i++)
@@ -113,7 +114,7 @@ TEST(pairs_match_the_slow_search)
         const int n_seekers = rng_int_below(&seed, is_near ? 9 : 40);
         const int n_spots = rng_int_below(&seed, 40);
 
-        place_seekers_and_spots(n_seekers, n_spots, 300 << 8);
+        place_seekers_and_spots_at_random(n_seekers, n_spots, 300 << 8);
         for (int i = 0; is_near && i < n_seekers; i++) {
             match.seeker[i].x_q8 = match.seeker[i].x_q8 / 8 + (130 << 8);
             match.seeker[i].y_q8 = match.seeker[i].y_q8 / 8 + (130 << 8);
@@ -147,7 +148,7 @@ TEST(crowded_seekers_get_distinct_spots)
     static uint8_t seen[MAX];
     int n = 0;
 
-    place_seekers_and_spots(MAX, MAX, 30 << 8);
+    place_seekers_and_spots_at_random(MAX, MAX, 30 << 8);
     for (int i = 0; i < MAX; i++)
         match.seeker[i].reach_q8 = 1 << 23;
     glint_match_assign_spots(&match, spot, MAX);
@@ -187,7 +188,7 @@ TEST(reach_includes_the_max_distance)
 
 /* Places N seekers and N spots at a few positions, so that most costs are
  * equal. Spots at the same position differ in one member. */
-static void place_with_equal_costs(int n)
+static void place_pairs_with_equal_costs(int n)
 {
     match.n_seekers = n;
     for (int i = 0; i < n; i++) {
@@ -237,7 +238,7 @@ TEST(ties_do_not_depend_on_order)
     for (int round = 0; round < 100; round++) {
         const int n = 1 + rng_int_below(&seed, 60);
 
-        place_with_equal_costs(n);
+        place_pairs_with_equal_costs(n);
         glint_match_assign_spots(&match, spot, n);
         memset(power, 0, sizeof power);
         memset(again, 0, sizeof again);

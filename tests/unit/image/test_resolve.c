@@ -63,21 +63,21 @@ static void make_guarded_image(enum glint_pixel_format format, int width,
     }
 }
 
-static uint8_t *sample_address(int plane, int x, int y)
+static uint8_t *address_of_sample(int plane, int x, int y)
 {
     return fixture.image.plane[plane] + y * fixture.image.stride_bytes[plane] +
            x;
 }
 
 /* Returns the number of bytes per row of plane PLANE, without padding. */
-static int row_bytes_of_plane(int plane)
+static int compute_row_bytes_of_plane(int plane)
 {
     const struct glint_image *image = &fixture.image;
 
     return (int)glint_image_row_bytes(image->format, plane, image->width);
 }
 
-static int row_count_of_plane(int plane)
+static int count_rows_of_plane(int plane)
 {
     const struct glint_image *image = &fixture.image;
 
@@ -86,9 +86,9 @@ static int row_count_of_plane(int plane)
 
 static void fill_with_random_codes(int plane, int low, int high)
 {
-    for (int y = 0; y < row_count_of_plane(plane); y++)
-        for (int x = 0; x < row_bytes_of_plane(plane); x++)
-            *sample_address(plane, x, y) =
+    for (int y = 0; y < count_rows_of_plane(plane); y++)
+        for (int x = 0; x < compute_row_bytes_of_plane(plane); x++)
+            *address_of_sample(plane, x, y) =
                 (uint8_t)(low + rng_int_below(&seed, high - low + 1));
 }
 
@@ -100,7 +100,7 @@ static uint16_t convert_light_to_q16(int32_t light_q20)
     return (uint16_t)(l < 0 ? 0 : l > 65535 ? 65535 : l);
 }
 
-static double light_of_pixel(int i, int at)
+static double read_light_of_pixel(int i, int at)
 {
     return convert_light_to_q16(fixture.light_q20[i][at]) / 65535.0;
 }
@@ -136,10 +136,10 @@ static void add_light_to_image(int dither)
     add_light_in_strips(&fixture.image, dither, 0);
 }
 
-static int sample_before_drawing(int plane, int x, int y)
+static int read_sample_before_drawing(int plane, int x, int y)
 {
     return fixture
-        .before[plane][sample_address(plane, x, y) - fixture.plane[plane]];
+        .before[plane][address_of_sample(plane, x, y) - fixture.plane[plane]];
 }
 
 static void assert_guard_bytes_unchanged(void)
@@ -149,9 +149,9 @@ static void assert_guard_bytes_unchanged(void)
 
         memset(inside, 0, sizeof inside);
         if (i < glint_image_planes(fixture.image.format))
-            for (int y = 0; y < row_count_of_plane(i); y++)
-                for (int x = 0; x < row_bytes_of_plane(i); x++)
-                    inside[sample_address(i, x, y) - fixture.plane[i]] = 1;
+            for (int y = 0; y < count_rows_of_plane(i); y++)
+                for (int x = 0; x < compute_row_bytes_of_plane(i); x++)
+                    inside[address_of_sample(i, x, y) - fixture.plane[i]] = 1;
         for (int k = 0; k < PLANE_BYTES; k++)
             assert_true(inside[k] || fixture.plane[i][k] == GUARD);
     }
@@ -161,7 +161,7 @@ static void assert_guard_bytes_unchanged(void)
 
 /* Returns how much the encoded value V (1 = white) changes when linear light
  * LIGHT is added. */
-static double expected_code_change(double v, double light)
+static double compute_expected_code_change(double v, double light)
 {
     const double held = fmax(0, fmin(v, 1));
     const enum glint_tone tone = fixture.image.transfer;
@@ -176,7 +176,7 @@ struct coding {
     double kr, kg, kb, black, y_steps, c_steps;
 };
 
-static struct coding coding_of_image(void)
+static struct coding make_coding_of_image(void)
 {
     const int bt601 = fixture.image.matrix == GLINT_MATRIX_BT601;
     const int full = fixture.image.range == GLINT_RANGE_FULL;
@@ -192,20 +192,23 @@ static struct coding coding_of_image(void)
 
 /* Sets RGB to the measured change of R'G'B' of pixel (X, Y) in a Y'CbCr
  * image. */
-static void measured_rgb_change(const struct coding *c, int x, int y, int cx,
-                                int cy, double rgb[3])
+static void measure_rgb_change(const struct coding *c, int x, int y, int cx,
+                               int cy, double rgb[3])
 {
     const double luma =
-        (sample_before_drawing(0, x, y) - c->black) / c->y_steps;
-    const double cb = (sample_before_drawing(1, cx, cy) - 128) / c->c_steps;
-    const double cr = (sample_before_drawing(2, cx, cy) - 128) / c->c_steps;
+        (read_sample_before_drawing(0, x, y) - c->black) / c->y_steps;
+    const double cb =
+        (read_sample_before_drawing(1, cx, cy) - 128) / c->c_steps;
+    const double cr =
+        (read_sample_before_drawing(2, cx, cy) - 128) / c->c_steps;
     const int at = y * fixture.image.width + x;
 
     rgb[0] = luma + 2 * (1 - c->kr) * cr;
     rgb[2] = luma + 2 * (1 - c->kb) * cb;
     rgb[1] = (luma - c->kr * rgb[0] - c->kb * rgb[2]) / c->kg;
     for (int i = 0; i < 3; i++)
-        rgb[i] = expected_code_change(rgb[i], light_of_pixel(i, at));
+        rgb[i] =
+            compute_expected_code_change(rgb[i], read_light_of_pixel(i, at));
 }
 
 static void assert_code_is_near(double want, int got, double within)
@@ -220,81 +223,82 @@ static void assert_code_is_near(double want, int got, double within)
 static void check_chroma_block(int cx, int cy, double within)
 {
     const enum glint_pixel_format format = fixture.image.format;
-    const struct coding c = coding_of_image();
+    const struct coding c = make_coding_of_image();
     const int nx = format == GLINT_I444 ? 1 : 2;
     const int ny = format == GLINT_I420 ? 2 : 1;
     double total[3] = {0, 0, 0};
     int n = 0;
 
-    for (int y = cy * ny; y < cy * ny + ny && y < row_count_of_plane(0); y++)
-        for (int x = cx * nx; x < cx * nx + nx && x < row_bytes_of_plane(0);
-             x++, n++) {
+    for (int y = cy * ny; y < cy * ny + ny && y < count_rows_of_plane(0); y++)
+        for (int x = cx * nx;
+             x < cx * nx + nx && x < compute_row_bytes_of_plane(0); x++, n++) {
             double rgb[3];
 
-            measured_rgb_change(&c, x, y, cx, cy, rgb);
+            measure_rgb_change(&c, x, y, cx, cy, rgb);
             for (int i = 0; i < 3; i++)
                 total[i] += rgb[i];
             assert_code_is_near(
-                sample_before_drawing(0, x, y) +
+                read_sample_before_drawing(0, x, y) +
                     c.y_steps * (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
-                *sample_address(0, x, y), within);
+                *address_of_sample(0, x, y), within);
         }
     for (int i = 0; i < 3; i++)
         total[i] /= n;
     {
         const double luma = c.kr * total[0] + c.kg * total[1] + c.kb * total[2];
 
-        assert_code_is_near(sample_before_drawing(1, cx, cy) +
+        assert_code_is_near(read_sample_before_drawing(1, cx, cy) +
                                 c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
-                            *sample_address(1, cx, cy), within);
-        assert_code_is_near(sample_before_drawing(2, cx, cy) +
+                            *address_of_sample(1, cx, cy), within);
+        assert_code_is_near(read_sample_before_drawing(2, cx, cy) +
                                 c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
-                            *sample_address(2, cx, cy), within);
+                            *address_of_sample(2, cx, cy), within);
     }
 }
 
 static void check_ycc_image(double within)
 {
-    for (int cy = 0; cy < row_count_of_plane(1); cy++)
-        for (int cx = 0; cx < row_bytes_of_plane(1); cx++)
+    for (int cy = 0; cy < count_rows_of_plane(1); cy++)
+        for (int cx = 0; cx < compute_row_bytes_of_plane(1); cx++)
             check_chroma_block(cx, cy, within);
 }
 
 static void check_rgb24_image(double within)
 {
-    for (int y = 0; y < row_count_of_plane(0); y++)
-        for (int x = 0; x < row_bytes_of_plane(0); x++) {
+    for (int y = 0; y < count_rows_of_plane(0); y++)
+        for (int x = 0; x < compute_row_bytes_of_plane(0); x++) {
             const double light =
-                light_of_pixel(x % 3, y * fixture.image.width + x / 3);
-            const int code = sample_before_drawing(0, x, y);
+                read_light_of_pixel(x % 3, y * fixture.image.width + x / 3);
+            const int code = read_sample_before_drawing(0, x, y);
 
             assert_code_is_near(
-                code + 255 * expected_code_change(code / 255.0, light),
-                *sample_address(0, x, y), within);
+                code + 255 * compute_expected_code_change(code / 255.0, light),
+                *address_of_sample(0, x, y), within);
         }
 }
 
 static void check_grey_image(double within)
 {
-    const struct coding c = coding_of_image();
+    const struct coding c = make_coding_of_image();
 
-    for (int y = 0; y < row_count_of_plane(0); y++)
-        for (int x = 0; x < row_bytes_of_plane(0); x++) {
+    for (int y = 0; y < count_rows_of_plane(0); y++)
+        for (int x = 0; x < compute_row_bytes_of_plane(0); x++) {
             const double weight[3] = {0.2126, 0.7152, 0.0722};
             const double v =
-                (sample_before_drawing(0, x, y) - c.black) / c.y_steps;
+                (read_sample_before_drawing(0, x, y) - c.black) / c.y_steps;
             double light = 0;
 
             for (int i = 0; i < 3; i++)
-                light +=
-                    weight[i] * light_of_pixel(i, y * fixture.image.width + x);
-            assert_code_is_near(sample_before_drawing(0, x, y) +
-                                    c.y_steps * expected_code_change(v, light),
-                                *sample_address(0, x, y), within);
+                light += weight[i] *
+                         read_light_of_pixel(i, y * fixture.image.width + x);
+            assert_code_is_near(read_sample_before_drawing(0, x, y) +
+                                    c.y_steps *
+                                        compute_expected_code_change(v, light),
+                                *address_of_sample(0, x, y), within);
         }
 }
 
-static void check_image_after_light(double within)
+static void check_image_with_added_light(double within)
 {
     if (fixture.image.format == GLINT_RGB24)
         check_rgb24_image(within);
@@ -338,7 +342,7 @@ static void set_coding_by_bits(int k)
 
 /* Checks random images whose chroma differs by up to CHROMA codes from
  * neutral. */
-static void check_random_images(int chroma, double within)
+static void check_light_on_random_images(int chroma, double within)
 {
     for (int f = 0; f < 5; f++)
         for (int s = 0; s < N_SIZES; s++)
@@ -354,14 +358,14 @@ static void check_random_images(int chroma, double within)
                 }
                 fill_with_random_light();
                 add_light_to_image(0);
-                check_image_after_light(within);
+                check_image_with_added_light(within);
             }
 }
 
 TEST(light_adds_up)
 {
     for (int round = 0; round < 4; round++)
-        check_random_images(40, 0.65);
+        check_light_on_random_images(40, 0.65);
 }
 
 /* Checks that light is added correctly to all codes, including those of colours
@@ -369,7 +373,7 @@ TEST(light_adds_up)
 TEST(codes_outside_the_rgb_cube_resolve)
 {
     for (int round = 0; round < 4; round++)
-        check_random_images(128, 0.65);
+        check_light_on_random_images(128, 0.65);
 }
 
 static void check_image_is_unchanged(int dither)
@@ -427,9 +431,9 @@ TEST(strong_light_saturates_at_white)
                     fixture.light_q20[i][j] = INT32_MAX >> (j / 4);
             add_light_to_image(0);
             for (int i = 0; i < glint_image_planes(formats[f]); i++)
-                for (int y = 0; y < row_count_of_plane(i); y++)
-                    for (int x = 0; x < row_bytes_of_plane(i); x++)
-                        assert_int_equal(*sample_address(i, x, y),
+                for (int y = 0; y < count_rows_of_plane(i); y++)
+                    for (int x = 0; x < compute_row_bytes_of_plane(i); x++)
+                        assert_int_equal(*address_of_sample(i, x, y),
                                          i > 0              ? 128
                                          : (k & 2) && f > 0 ? 235
                                                             : 255);
@@ -442,14 +446,14 @@ TEST(strong_light_saturates_at_white)
 TEST(codes_match_hand_computation)
 {
     make_guarded_image(GLINT_RGB24, 1, 1, 0);
-    memset(sample_address(0, 0, 0), 128, 3);
+    memset(address_of_sample(0, 0, 0), 128, 3);
     fixture.light_q20[0][0] = 3 * 226346 / 2;
     fixture.light_q20[1][0] = 3 * 226346;
     fixture.light_q20[2][0] = WHITE_Q20 / 4 - 226346;
     add_light_to_image(0);
-    assert_int_equal(*sample_address(0, 0, 0), 194);
-    assert_int_equal(*sample_address(0, 1, 0), 239);
-    assert_int_equal(*sample_address(0, 2, 0), 137);
+    assert_int_equal(*address_of_sample(0, 0, 0), 194);
+    assert_int_equal(*address_of_sample(0, 1, 0), 239);
+    assert_int_equal(*address_of_sample(0, 2, 0), 137);
 }
 
 /* Checks that one lit pixel of four changes their common chroma sample by a
@@ -463,14 +467,14 @@ TEST(chroma_is_the_mean_of_existing_pixels)
     fixture.light_q20[2][0] = WHITE_Q20;
     fixture.light_q20[2][8] = WHITE_Q20;
     add_light_to_image(0);
-    assert_int_equal(*sample_address(0, 0, 0), 29); /* 0.114 * 255 */
-    assert_int_equal(*sample_address(0, 1, 0), 0);
-    assert_int_equal(*sample_address(0, 2, 2), 29);
+    assert_int_equal(*address_of_sample(0, 0, 0), 29); /* 0.114 * 255 */
+    assert_int_equal(*address_of_sample(0, 1, 0), 0);
+    assert_int_equal(*address_of_sample(0, 2, 2), 29);
     /* luma of a quarter of white: 128 + 127.5 / 4 */
-    assert_int_equal(*sample_address(1, 0, 0), 160);
-    assert_int_equal(*sample_address(1, 1, 0), 128);
-    assert_int_equal(*sample_address(1, 1, 1), 255); /* 128 + 127.5 */
-    assert_int_equal(*sample_address(2, 1, 1),
+    assert_int_equal(*address_of_sample(1, 0, 0), 160);
+    assert_int_equal(*address_of_sample(1, 1, 0), 128);
+    assert_int_equal(*address_of_sample(1, 1, 1), 255); /* 128 + 127.5 */
+    assert_int_equal(*address_of_sample(2, 1, 1),
                      107); /* 128 - 0.114 * 127.5 / 0.701 */
 }
 
@@ -488,11 +492,12 @@ TEST(dither_keeps_the_mean)
             fixture.light_q20[0][k] = light;
         add_light_to_image(1);
         for (int k = 0; k < 64; k++) {
-            total += *sample_address(0, 3 * (k % 8), k / 8);
-            assert_int_equal(*sample_address(0, 3 * (k % 8) + 1, k / 8), 200);
+            total += *address_of_sample(0, 3 * (k % 8), k / 8);
+            assert_int_equal(*address_of_sample(0, 3 * (k % 8) + 1, k / 8),
+                             200);
         }
-        want =
-            200 + 255 * expected_code_change(200 / 255.0, light_of_pixel(0, 0));
+        want = 200 + 255 * compute_expected_code_change(
+                               200 / 255.0, read_light_of_pixel(0, 0));
         assert_true(fabs(total / 64.0 - want) <= 0.1);
     }
 }
@@ -528,7 +533,7 @@ TEST(dither_in_ycc_stays_within_a_code)
                 fill_with_random_codes(i, 100, 156);
             fill_with_random_light();
             add_light_to_image(1);
-            check_image_after_light(1.15);
+            check_image_with_added_light(1.15);
         }
 }
 
@@ -653,7 +658,7 @@ TEST(long_spans_equal_short_spans)
 
 /* Makes each 2 x 2 pixels of the image uniform: sharing light is exact for
  * these. */
-static void make_blocks_uniform(void)
+static void make_2x2_blocks_uniform(void)
 {
     const struct glint_image *image = &fixture.image;
     const struct glint_layout *l = glint_get_layout(image->format);
@@ -667,8 +672,8 @@ static void make_blocks_uniform(void)
                                                      y & ~1);
 }
 
-static void add_light_of_quads(const struct glint_image *image, int dither,
-                               unsigned sets)
+static void add_light_by_2x2_blocks(const struct glint_image *image, int dither,
+                                    unsigned sets)
 {
     static struct glint_quads_rows rows;
     static struct glint_light_rows light;
@@ -700,7 +705,7 @@ TEST(quads_of_uniform_blocks_are_exact)
             make_guarded_image(every[f], 1 + size, 1 + (size * 7) % 40, 0);
             for (int i = 0; i < glint_image_planes(every[f]); i++)
                 fill_with_random_codes(i, 0, 255);
-            make_blocks_uniform();
+            make_2x2_blocks_uniform();
             fill_with_random_light();
             for (int i = 0; i < 3; i++)
                 for (int y = 0; y < fixture.image.height; y++)
@@ -714,8 +719,8 @@ TEST(quads_of_uniform_blocks_are_exact)
             memcpy(want, fixture.plane, sizeof want);
             for (int k = 0; k < 2; k++) {
                 memcpy(fixture.plane, even, sizeof even);
-                add_light_of_quads(&fixture.image, 1,
-                                   k ? glint_system_sets() : 0u);
+                add_light_by_2x2_blocks(&fixture.image, 1,
+                                        k ? glint_system_sets() : 0u);
                 assert_memory_equal(fixture.plane, want, sizeof want);
             }
         }
@@ -733,26 +738,26 @@ TEST(quads_of_edges_stay_ordered)
         fixture.image.range = GLINT_RANGE_LIMITED;
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *sample_address(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
+                *address_of_sample(0, x, y) = x % 2 ? 128 : luma[y][x / 2 % 2];
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 1 << strength >> 4;
-        add_light_of_quads(&fixture.image, 0, 0);
+        add_light_by_2x2_blocks(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++) {
-                assert_in_range(*sample_address(0, x, y), luma[y][x / 2 % 2],
+                assert_in_range(*address_of_sample(0, x, y), luma[y][x / 2 % 2],
                                 235);
-                assert_int_equal(*sample_address(0, x + 1, y), 128);
+                assert_int_equal(*address_of_sample(0, x + 1, y), 128);
                 if (strength == 24)
-                    assert_int_equal(*sample_address(0, x, y), 235);
+                    assert_int_equal(*address_of_sample(0, x, y), 235);
             }
-        assert_true(*sample_address(0, 0, 0) <= *sample_address(0, 0, 1));
+        assert_true(*address_of_sample(0, 0, 0) <= *address_of_sample(0, 0, 1));
     }
 }
 
 /* Returns the RMS difference, codes, between light shared by 2 x 2 pixels and
  * light computed per pixel, over images whose pixels differ by up to DIFFER
  * codes within a block. */
-static double rms_of_quads_and_pixels(int differ)
+static double measure_rms_of_blocks_and_pixels(int differ)
 {
     static uint8_t want[PLANE_BYTES];
     double sum2 = 0;
@@ -763,8 +768,8 @@ static double rms_of_quads_and_pixels(int differ)
         fill_with_random_codes(0, 0, differ);
         for (int x = 0; x < 64; x++)
             for (int y = 0; y < 2; y++)
-                *sample_address(0, x, y) =
-                    (uint8_t)(*sample_address(0, x, y) +
+                *address_of_sample(0, x, y) =
+                    (uint8_t)(*address_of_sample(0, x, y) +
                               (x % 2 ? 120 : 20 + 3 * turn));
         for (int i = 0; i < 3 * 64; i++)
             fixture.light_q20[i / 64][i % 64] = 3000 << turn % 8;
@@ -772,12 +777,12 @@ static double rms_of_quads_and_pixels(int differ)
         add_light_in_strips(&fixture.image, 0, 0);
         memcpy(want, fixture.plane[0], sizeof want);
         memcpy(fixture.plane, fixture.before, sizeof fixture.before);
-        add_light_of_quads(&fixture.image, 0, 0);
+        add_light_by_2x2_blocks(&fixture.image, 0, 0);
         for (int x = 0; x < 64; x += 2)
             for (int y = 0; y < 2; y++, n++) {
                 const int off =
-                    *sample_address(0, x, y) -
-                    want[sample_address(0, x, y) - fixture.plane[0]];
+                    *address_of_sample(0, x, y) -
+                    want[address_of_sample(0, x, y) - fixture.plane[0]];
 
                 sum2 += off * off;
             }
@@ -787,9 +792,9 @@ static double rms_of_quads_and_pixels(int differ)
 
 TEST(quads_are_near_single_pixels)
 {
-    assert_true(rms_of_quads_and_pixels(0) < 1e-9);
-    assert_true(rms_of_quads_and_pixels(8) < 0.5);
-    assert_true(rms_of_quads_and_pixels(40) < 1.5);
+    assert_true(measure_rms_of_blocks_and_pixels(0) < 1e-9);
+    assert_true(measure_rms_of_blocks_and_pixels(8) < 0.5);
+    assert_true(measure_rms_of_blocks_and_pixels(40) < 1.5);
 }
 
 /* Checks that one span of 2 x 2 blocks equals several short spans, for any

@@ -42,7 +42,7 @@ static void *blocks[400];
 static int n_blocks;
 
 /* Returns an array of BYTES bytes that ends at an inaccessible page. */
-static void *allocate_fenced(size_t bytes)
+static void *allocate_at_page_end(size_t bytes)
 {
     void *mem;
 
@@ -53,7 +53,7 @@ static void *allocate_fenced(size_t bytes)
     return (uint8_t *)mem + PAGE - bytes;
 }
 
-static void free_fenced_blocks(void)
+static void free_blocks_at_page_end(void)
 {
     while (n_blocks > 0) {
         uint8_t *mem = blocks[--n_blocks];
@@ -129,12 +129,12 @@ struct rows {
 
 static void allocate_rows(struct rows *r)
 {
-    r->luma = allocate_fenced(N);
-    r->cb = allocate_fenced(N);
-    r->cr = allocate_fenced(N);
+    r->luma = allocate_at_page_end(N);
+    r->cb = allocate_at_page_end(N);
+    r->cr = allocate_at_page_end(N);
     for (int c = 0; c < 3; c++) {
-        r->light[c] = allocate_fenced(N * sizeof(uint16_t));
-        r->change[c] = allocate_fenced(N * sizeof(int16_t));
+        r->light[c] = allocate_at_page_end(N * sizeof(uint16_t));
+        r->change[c] = allocate_at_page_end(N * sizeof(int16_t));
     }
 }
 
@@ -200,11 +200,11 @@ struct pairs {
 
 static void allocate_pixel_pairs(struct pairs *p)
 {
-    p->luma = allocate_fenced(N);
-    p->chroma = allocate_fenced(N);
+    p->luma = allocate_at_page_end(N);
+    p->chroma = allocate_at_page_end(N);
     for (int c = 0; c < 3; c++) {
-        p->light[c] = allocate_fenced(N * sizeof(uint16_t));
-        p->mean[c] = allocate_fenced(N * sizeof(int16_t));
+        p->light[c] = allocate_at_page_end(N * sizeof(uint16_t));
+        p->mean[c] = allocate_at_page_end(N * sizeof(int16_t));
     }
 }
 
@@ -220,7 +220,8 @@ static void add_light_to_pairs(const struct glint_kernels *k,
                  round + 8);
 }
 
-static void check_pair_kernel(const struct glint_kernels *k, const char *name)
+static void check_pixel_pair_kernel(const struct glint_kernels *k,
+                                    const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
     struct glint_mix mix;
@@ -274,10 +275,11 @@ static void add_light_to_packed_pixels(const struct glint_kernels *k,
 static void check_packed_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
-    uint8_t *want = allocate_fenced(2 * N + 1),
-            *got = allocate_fenced(2 * N + 1);
-    uint16_t *light[3] = {allocate_fenced(2 * N), allocate_fenced(2 * N),
-                          allocate_fenced(2 * N)};
+    uint8_t *want = allocate_at_page_end(2 * N + 1),
+            *got = allocate_at_page_end(2 * N + 1);
+    uint16_t *light[3] = {allocate_at_page_end(2 * N),
+                          allocate_at_page_end(2 * N),
+                          allocate_at_page_end(2 * N)};
     struct glint_mix mix;
     int16_t round[16];
 
@@ -327,20 +329,20 @@ static void add_light_to_quads(const struct glint_quad_kernels *k,
 
 /* Checks blocks of 2 x 2 pixels, including spans without light. The two rows
  * may be the same row, or share their chroma. */
-static void check_quad_kernel(const struct glint_quad_kernels *k,
-                              const char *name)
+static void check_2x2_block_kernel(const struct glint_quad_kernels *k,
+                                   const char *name)
 {
     const struct glint_quad_kernels *plain = &quad_kernels_c;
     uint8_t *want[4], *got[4];
-    uint16_t *light[3] = {allocate_fenced(N), allocate_fenced(N),
-                          allocate_fenced(N)};
+    uint16_t *light[3] = {allocate_at_page_end(N), allocate_at_page_end(N),
+                          allocate_at_page_end(N)};
     struct quads a, b;
     struct glint_mix mix;
     int16_t round[4][8];
 
     for (int i = 0; i < 4; i++) {
-        want[i] = allocate_fenced(2 * N);
-        got[i] = allocate_fenced(2 * N);
+        want[i] = allocate_at_page_end(2 * N);
+        got[i] = allocate_at_page_end(2 * N);
     }
     for (int turn = 0; turn < ROUNDS; turn++) {
         const int n = 2 * GLINT_LANES *
@@ -377,12 +379,13 @@ static void check_quad_kernel(const struct glint_quad_kernels *k,
 }
 
 /* Checks all pairs of a code and a light. */
-static void check_code_kernel(const struct glint_kernels *k, const char *name)
+static void check_8bit_code_kernel(const struct glint_kernels *k,
+                                   const char *name)
 {
     const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
     const struct glint_kernels *plain = &kernels_c;
-    uint8_t *want = allocate_fenced(N), *got = allocate_fenced(N);
-    uint16_t *light = allocate_fenced(N * sizeof *light);
+    uint8_t *want = allocate_at_page_end(N), *got = allocate_at_page_end(N);
+    uint16_t *light = allocate_at_page_end(N * sizeof *light);
 
     for (int transfer = 0; transfer < 2; transfer++)
         for (int code = 0; code < 256; code++)
@@ -408,10 +411,10 @@ static void check_code_kernel(const struct glint_kernels *k, const char *name)
 static void check_sum_kernel(const struct glint_kernels *k, const char *name)
 {
     const struct glint_kernels *plain = &kernels_c;
-    uint32_t *want = allocate_fenced(N * sizeof *want),
-             *got = allocate_fenced(N * sizeof *got);
-    uint16_t *light[2] = {allocate_fenced(N * sizeof(uint16_t)),
-                          allocate_fenced(N * sizeof(uint16_t))};
+    uint32_t *want = allocate_at_page_end(N * sizeof *want),
+             *got = allocate_at_page_end(N * sizeof *got);
+    uint16_t *light[2] = {allocate_at_page_end(N * sizeof(uint16_t)),
+                          allocate_at_page_end(N * sizeof(uint16_t))};
     uint32_t carry[2];
 
     for (int turn = 0; turn < ROUNDS; turn++) {
@@ -444,10 +447,10 @@ static void check_sum_kernel(const struct glint_kernels *k, const char *name)
 static void check_horner_kernel(const struct glint_horner *k, const char *name)
 {
     const struct glint_horner *plain = glint_choose_horner_kernels(0);
-    int32_t *c = allocate_fenced(160 * sizeof *c),
-            *x = allocate_fenced(N * sizeof *x);
-    int32_t *want = allocate_fenced(N * sizeof *want),
-            *got = allocate_fenced(N * sizeof *got);
+    int32_t *c = allocate_at_page_end(160 * sizeof *c),
+            *x = allocate_at_page_end(N * sizeof *x);
+    int32_t *want = allocate_at_page_end(N * sizeof *want),
+            *got = allocate_at_page_end(N * sizeof *got);
 
     for (int turn = 0; turn < ROUNDS; turn++) {
         const int degree = (int)(random_bits() % 10);
@@ -486,11 +489,11 @@ static void check_turn_kernel(glint_turn_fn *turn, const char *name)
 {
     const int64_t most = INT64_C(1) << 30;
     const size_t bytes = GLINT_TURNED * sizeof(int32_t);
-    int32_t *x = allocate_fenced(bytes), *y = allocate_fenced(bytes);
-    int32_t(*out[2])[GLINT_TURNED] = {allocate_fenced(4 * bytes),
-                                      allocate_fenced(4 * bytes)};
-    int32_t(*lost[2])[GLINT_TURNED] = {allocate_fenced(2 * bytes),
-                                       allocate_fenced(2 * bytes)};
+    int32_t *x = allocate_at_page_end(bytes), *y = allocate_at_page_end(bytes);
+    int32_t(*out[2])[GLINT_TURNED] = {allocate_at_page_end(4 * bytes),
+                                      allocate_at_page_end(4 * bytes)};
+    int32_t(*lost[2])[GLINT_TURNED] = {allocate_at_page_end(2 * bytes),
+                                       allocate_at_page_end(2 * bytes)};
     struct glint_turn t = {0, 0, 1, 1};
     int n_lost = 0, n_kept = 0;
 
@@ -528,10 +531,10 @@ static void check_convolution_kernel(glint_convolve_fn *convolve,
                                      const char *name)
 {
     enum { TAPS = 32, VALUES = N + 2 * TAPS };
-    int32_t *value = allocate_fenced(VALUES * sizeof *value);
-    int32_t *tap = allocate_fenced(TAPS * sizeof *tap);
-    int32_t *got = allocate_fenced(N * sizeof *got),
-            *want = allocate_fenced(N * sizeof *want);
+    int32_t *value = allocate_at_page_end(VALUES * sizeof *value);
+    int32_t *tap = allocate_at_page_end(TAPS * sizeof *tap);
+    int32_t *got = allocate_at_page_end(N * sizeof *got),
+            *want = allocate_at_page_end(N * sizeof *want);
 
     for (int turn = 0; turn < ROUNDS; turn++) {
         const int n_taps = 1 + (int)(random_bits() % TAPS),
@@ -572,11 +575,11 @@ static void test_kernels_are_identical(void)
         check_convolution_kernel(glint_choose_convolve_kernel(variants[v].set),
                                  variants[v].name);
         check_luma_kernel(k, variants[v].name);
-        check_pair_kernel(k, variants[v].name);
+        check_pixel_pair_kernel(k, variants[v].name);
         check_packed_kernel(k, variants[v].name);
-        check_quad_kernel(glint_choose_quad_kernels(variants[v].set),
-                          variants[v].name);
-        check_code_kernel(k, variants[v].name);
+        check_2x2_block_kernel(glint_choose_quad_kernels(variants[v].set),
+                               variants[v].name);
+        check_8bit_code_kernel(k, variants[v].name);
         check_sum_kernel(k, variants[v].name);
     }
 }
@@ -612,6 +615,6 @@ int main(void)
 {
     test_code_kernel_in_c();
     test_kernels_are_identical();
-    free_fenced_blocks();
+    free_blocks_at_page_end();
     return 0;
 }

@@ -76,8 +76,8 @@ static void compute_ycc_brightness(const struct glint_image *image,
     *luma = (int)fmax(0, fmin(255, floor(y + 0.5)));
 }
 
-static const uint8_t *sample_address(const struct glint_image *image, int plane,
-                                     int x, int y)
+static const uint8_t *address_of_sample(const struct glint_image *image,
+                                        int plane, int x, int y)
 {
     return image->plane[plane] + y * image->stride_bytes[plane] + x;
 }
@@ -87,7 +87,7 @@ static void read_ycc_codes(const struct glint_image *image, int x, int y,
                            int code[3])
 {
     const int cx = x / 2, cy = y / 2;
-    const uint8_t *row = sample_address(image, 0, 0, y);
+    const uint8_t *row = address_of_sample(image, 0, 0, y);
 
     code[0] = row[x];
     code[1] = code[2] = 128;
@@ -99,15 +99,15 @@ static void read_ycc_codes(const struct glint_image *image, int x, int y,
         code[2] = row[4 * cx + 2];
     for (int i = 1; i < 3; i++) {
         if (image->format == GLINT_I420)
-            code[i] = *sample_address(image, i, cx, cy);
+            code[i] = *address_of_sample(image, i, cx, cy);
         if (image->format == GLINT_I422)
-            code[i] = *sample_address(image, i, cx, y);
+            code[i] = *address_of_sample(image, i, cx, y);
         if (image->format == GLINT_I444)
-            code[i] = *sample_address(image, i, x, y);
+            code[i] = *address_of_sample(image, i, x, y);
         if (image->format == GLINT_NV12)
-            code[i] = *sample_address(image, 1, 2 * cx + i - 1, cy);
+            code[i] = *address_of_sample(image, 1, 2 * cx + i - 1, cy);
         if (image->format == GLINT_NV21)
-            code[i] = *sample_address(image, 1, 2 * cx + 2 - i, cy);
+            code[i] = *address_of_sample(image, 1, 2 * cx + 2 - i, cy);
     }
 }
 
@@ -130,7 +130,7 @@ static int compute_rgb_brightness(int r, int g, int b)
 static void compute_brightness_range(const struct glint_image *image, int x,
                                      int y, int *least, int *most)
 {
-    const uint8_t *row = sample_address(image, 0, 0, y);
+    const uint8_t *row = address_of_sample(image, 0, 0, y);
     int code[3], bits, luma, rounded[2];
     double largest;
 

@@ -136,8 +136,9 @@ TEST(moments_match_hand_computation)
     assert_int_equal(finder_spot[0].area, 4);
     assert_int_equal(finder_spot[0].n_clipped, 1);
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 2.5087) < 1e-3);
-    assert_true(fabs(finder_spot_x(0) - 11.5) < 1.0 / 256);
-    assert_true(fabs(finder_spot_y(0) - (5.5 + 0.5029 / 2.5087)) < 1.0 / 256);
+    assert_true(fabs(finder_centroid_x_of_spot(0) - 11.5) < 1.0 / 256);
+    assert_true(fabs(finder_centroid_y_of_spot(0) - (5.5 + 0.5029 / 2.5087)) <
+                1.0 / 256);
     /* Variance along x: 2 * 0.5029 / 2.5087; along y: 0.2005 - 0.2005^2. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(0.4009 + 0.1603)) <
                 1.0 / 128);
@@ -156,8 +157,8 @@ TEST(finds_discs_within_a_sixteenth_pixel)
 
         canvas_draw_disc(&image, cx, cy, radius, 1);
         assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-        assert_true(fabs(finder_spot_x(0) - cx) < 1.0 / 16);
-        assert_true(fabs(finder_spot_y(0) - cy) < 1.0 / 16);
+        assert_true(fabs(finder_centroid_x_of_spot(0) - cx) < 1.0 / 16);
+        assert_true(fabs(finder_centroid_y_of_spot(0) - cy) < 1.0 / 16);
         assert_true(fabs(finder_spot[0].size_q8 / 256.0 - radius / sqrt(2)) <
                     0.1);
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 -
@@ -200,7 +201,8 @@ TEST(finds_discs_with_default_configuration)
 
         draw_lamp_with_glare(&image, cx, cy, radius, 1.5);
         assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-        assert_true(hypot(finder_spot_x(0) - cx, finder_spot_y(0) - cy) < 0.35);
+        assert_true(hypot(finder_centroid_x_of_spot(0) - cx,
+                          finder_centroid_y_of_spot(0) - cy) < 0.35);
         free(image.plane[0]);
     }
 }
@@ -228,8 +230,8 @@ TEST(noise_does_not_move_a_light)
                                       (int)fmax(0, fmin(255, code + 0.5)));
             }
         assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-        square +=
-            pow(finder_spot_x(0) - 47.3, 2) + pow(finder_spot_y(0) - 38.9, 2);
+        square += pow(finder_centroid_x_of_spot(0) - 47.3, 2) +
+                  pow(finder_centroid_y_of_spot(0) - 38.9, 2);
         free(image.plane[0]);
     }
     print_message("noise of 3 codes: %.3f px rms\n", sqrt(square / 100));
@@ -249,8 +251,8 @@ TEST(sparkle_does_not_move_a_light)
         canvas_fill_grey_box(&image, 20, 30, 28, 38, 200);
         canvas_set_grey_pixel(&image, 20 + k % 8, 30 + k / 8, 255);
         assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-        furthest =
-            fmax(furthest, hypot(finder_spot_x(0) - 24, finder_spot_y(0) - 34));
+        furthest = fmax(furthest, hypot(finder_centroid_x_of_spot(0) - 24,
+                                        finder_centroid_y_of_spot(0) - 34));
     }
     print_message("sparkle in 8 x 8: %.3f px at most\n", furthest);
     assert_true(furthest < 0.1);
@@ -268,7 +270,8 @@ TEST(hot_pixel_among_dim_ones)
     canvas_fill_grey_box(&image, 20, 30, 28, 38, 43); /* linear 0.0242 */
     canvas_set_grey_pixel(&image, 24, 34, 255);
     assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-    assert_true(hypot(finder_spot_x(0) - 24, finder_spot_y(0) - 34) < 1);
+    assert_true(hypot(finder_centroid_x_of_spot(0) - 24,
+                      finder_centroid_y_of_spot(0) - 34) < 1);
     free(image.plane[0]);
 }
 
@@ -283,11 +286,11 @@ TEST(repeated_search_gives_the_same_lamps)
     cfg.merge_q15 = 300;
     for (int i = 0; i < 3 * 300 * 200; i++)
         image.plane[0][i] = (uint8_t)rng_int_below(&finder_seed, 256);
-    n = finder_find_lamps_up_to(&cfg, &image, 100, &dropped);
+    n = finder_find_at_most_n_lamps(&cfg, &image, 100, &dropped);
     memcpy(first, finder_spot, sizeof first);
     for (int round = 0; round < 3; round++) {
-        assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 100, &dropped),
-                         n);
+        assert_int_equal(
+            finder_find_at_most_n_lamps(&cfg, &image, 100, &dropped), n);
         assert_memory_equal(finder_spot, first,
                             (size_t)n * sizeof *finder_spot);
     }
@@ -500,10 +503,10 @@ TEST(faint_regions_come_last)
                                  y + 1 + rng_int_below(&finder_seed, 4),
                                  100 + rng_int_below(&finder_seed, 156));
         }
-        n_lights = finder_find_lamps_up_to(&cfg, &image, max, &dropped);
+        n_lights = finder_find_at_most_n_lamps(&cfg, &image, max, &dropped);
         memcpy(light, finder_spot, sizeof light);
         cfg.keep_faint = 1;
-        n = finder_find_lamps_up_to(&cfg, &image, max, &dropped);
+        n = finder_find_at_most_n_lamps(&cfg, &image, max, &dropped);
         assert_in_range(n, n_lights, max);
         assert_memory_equal(light, finder_spot,
                             (size_t)n_lights * sizeof *finder_spot);
@@ -554,8 +557,8 @@ TEST(sums_of_a_large_region_match_doubles)
         assert_int_equal(finder_find_lamps(&cfg, &image), 1);
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 / flux - 1) <
                     1e-4);
-        assert_true(fabs(finder_spot_x(0) - x_sum / flux) < 0.01);
-        assert_true(fabs(finder_spot_y(0) - y_sum / flux) < 0.01);
+        assert_true(fabs(finder_centroid_x_of_spot(0) - x_sum / flux) < 0.01);
+        assert_true(fabs(finder_centroid_y_of_spot(0) - y_sum / flux) < 0.01);
         assert_true(fabs(finder_spot[0].size_q8 / 256.0 -
                          sqrt(r2 / flux - pow(x_sum / flux, 2) -
                               pow(y_sum / flux, 2))) < 0.02);
@@ -589,10 +592,10 @@ TEST(lamps_are_sorted_by_flux)
     canvas_draw_disc(&image, 20.5, 20.5, 4, 1);
     canvas_draw_disc(&image, 70.5, 40.5, 6, 1);
     assert_int_equal(finder_find_lamps(&cfg, &image), 2);
-    assert_true(hypot(finder_spot_x(0) - 70.5, finder_spot_y(0) - 40.5) <
-                1.0 / 16);
-    assert_true(hypot(finder_spot_x(1) - 20.5, finder_spot_y(1) - 20.5) <
-                1.0 / 16);
+    assert_true(hypot(finder_centroid_x_of_spot(0) - 70.5,
+                      finder_centroid_y_of_spot(0) - 40.5) < 1.0 / 16);
+    assert_true(hypot(finder_centroid_x_of_spot(1) - 20.5,
+                      finder_centroid_y_of_spot(1) - 20.5) < 1.0 / 16);
     assert_true(finder_spot[0].flux_q16 > finder_spot[1].flux_q16);
     free(image.plane[0]);
 }
@@ -607,8 +610,9 @@ TEST(ties_are_sorted_by_position)
     canvas_fill_grey_box(&image, 80, 10, 82, 12, 255);
     canvas_fill_grey_box(&image, 10, 20, 12, 22, 255);
     assert_int_equal(finder_find_lamps(&cfg, &image), 3);
-    assert_true(finder_spot_x(0) == 81 && finder_spot_x(1) == 11 &&
-                finder_spot_x(2) == 51);
+    assert_true(finder_centroid_x_of_spot(0) == 81 &&
+                finder_centroid_x_of_spot(1) == 11 &&
+                finder_centroid_x_of_spot(2) == 51);
     free(image.plane[0]);
 }
 
@@ -628,7 +632,8 @@ TEST(near_regions_are_merged)
     assert_int_equal(finder_find_lamps(&cfg, &image), 2);
     cfg.merge_q15 = 5 * 32768 / 128;
     assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-    assert_true(finder_spot_x(0) == 22.5 && finder_spot_y(0) == 21.5);
+    assert_true(finder_centroid_x_of_spot(0) == 22.5 &&
+                finder_centroid_y_of_spot(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
     assert_true(finder_spot[0].flux_q16 == 12 << 16);
     /* the squared RMS radius is (9 * (1^2 + 2 / 3) + 3 * 3^2) / 12 = 3.5 along
@@ -655,8 +660,10 @@ TEST(merged_regions_keep_the_merge_distance)
     for (int i = 0; i < n; i++) {
         area -= finder_spot[i].area;
         for (int j = 0; j < i; j++)
-            assert_true(hypot(finder_spot_x(i) - finder_spot_x(j),
-                              finder_spot_y(i) - finder_spot_y(j)) > 11.99);
+            assert_true(hypot(finder_centroid_x_of_spot(i) -
+                                  finder_centroid_x_of_spot(j),
+                              finder_centroid_y_of_spot(i) -
+                                  finder_centroid_y_of_spot(j)) > 11.99);
     }
     assert_int_equal(area, 0);
     free(image.plane[0]);
@@ -678,10 +685,10 @@ TEST(limit_keeps_the_brightest)
     /* a region of 12 pixels, 13 pixels from the others */
     canvas_fill_grey_box(&image, 35, 20, 37, 26, 255);
     canvas_fill_grey_box(&image, 200, 20, 202, 22, 255); /* 4 px */
-    assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 2, &dropped), 2);
+    assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 1);
     assert_int_equal(finder_spot[0].area, 48);
-    assert_true(finder_spot_x(0) == 23 + 13 * 12 / 48.0);
+    assert_true(finder_centroid_x_of_spot(0) == 23 + 13 * 12 / 48.0);
     assert_int_equal(finder_spot[1].area, 25);
     free(image.plane[0]);
 }
@@ -697,7 +704,7 @@ TEST(merging_can_change_the_order)
     canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
     canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
     canvas_fill_grey_box(&image, 110, 20, 114, 25, 255); /* 20 px */
-    assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 2, &dropped), 2);
+    assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 2, &dropped), 2);
     assert_int_equal(dropped, 0);
     assert_int_equal(finder_spot[0].area, 45);
     assert_int_equal(finder_spot[1].area, 36);
@@ -717,7 +724,7 @@ TEST(stores_the_brightest_of_4096_lights)
         for (int x = 0; x < 256; x += 4)
             canvas_set_grey_pixel(&image, x, y,
                                   150 + rng_int_below(&finder_seed, 106));
-    assert_int_equal(finder_find_lamps_up_to(&cfg, &image, 1024, &dropped),
+    assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 1024, &dropped),
                      1024);
     assert_int_equal(dropped, 4096 - 1024);
     for (int i = 1; i < 1024; i++)

@@ -301,6 +301,7 @@ TEST(finds_lamps_with_negative_stride)
     image.plane[0] += 29 * 40;
     image.stride_bytes[0] = -40;
     assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-    assert_true(finder_spot_x(0) == 6.5 && finder_spot_y(0) == 30 - 3.5);
+    assert_true(finder_centroid_x_of_spot(0) == 6.5 &&
+                finder_centroid_y_of_spot(0) == 30 - 3.5);
     free(image.plane[0] - 29 * 40);
 }

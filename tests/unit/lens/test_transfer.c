@@ -31,7 +31,7 @@ static struct glint_outputs evaluate_ray(const struct glint_transfer *t,
  * 0 .. 1/4. */
 TEST(rays_match_hand_computation)
 {
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&m);
     static struct glint_transfer t;
     struct glint_outputs out;
@@ -78,7 +78,7 @@ TEST(energies_are_decoded_from_roots)
 
     for (int roots = 0; roots <= 2; roots++)
         for (int sign = -1; sign <= 1; sign += 2) {
-            struct model_image m = model_make_auto();
+            struct model_image m = model_make_three_ghosts();
             const struct glint_model_system *s =
                 (const void *)(m.data + model_header_of(&m)->system_at);
             struct glint_model_output *o =
@@ -127,7 +127,8 @@ static void convert_coefficients_to_int16(struct model_image *m,
 /* Checks that 16-bit coefficients give the same rays as 32-bit ones. */
 TEST(int16_coefficients_give_the_same_rays)
 {
-    struct model_image wide = model_make_auto(), m = model_make_auto();
+    struct model_image wide = model_make_three_ghosts(),
+                       m = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&wide);
     struct glint_lens narrowed;
     static struct glint_transfer t[2];
@@ -164,7 +165,7 @@ TEST(int16_coefficients_give_the_same_rays)
  * and band of wavelengths. */
 TEST(uses_the_system_of_angle_and_wavelength)
 {
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&m);
     static struct glint_transfer t;
     const int32_t middle = (MODEL_WAVE_LO_Q24 + MODEL_WAVE_HI_Q24) / 2;
@@ -204,7 +205,7 @@ TEST(uses_the_system_of_angle_and_wavelength)
  * must be clamped to 0. */
 TEST(half_width_below_0_is_clamped)
 {
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     struct glint_model_system *s =
         (void *)(m.data + model_header_of(&m)->system_at);
     const int32_t box[3][3] = {
@@ -255,7 +256,7 @@ static void set_largest_coefficients(struct model_image *m, uint32_t *seed)
  * step is checked as well. */
 TEST(extreme_coefficients_stay_in_range)
 {
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     static struct glint_transfer t;
     uint32_t seed = 1;
 
@@ -284,7 +285,7 @@ TEST(extreme_coefficients_stay_in_range)
 
 /* Returns a sensor-to-image transform: 64 pixels per mm, origin at pixel (1000,
  * 500), no rotation. */
-static struct glint_place make_sensor_place(void)
+static struct glint_place make_sensor_to_image_transform(void)
 {
     const struct glint_place place = {.cos_q30 = ONE,
                                       .pixels_per_mm = {1 << 30, -24},
@@ -296,9 +297,9 @@ static struct glint_place make_sensor_place(void)
 
 TEST(grid_covers_the_pupil_box)
 {
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&m);
-    struct glint_place place = make_sensor_place();
+    struct glint_place place = make_sensor_to_image_transform();
     static struct glint_transfer t;
     struct glint_vertex v[9], turned[9];
 
@@ -344,9 +345,9 @@ TEST(grid_covers_the_pupil_box)
 TEST(annular_grid_rows_leave_the_hole_out)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&m);
-    const struct glint_place place = make_sensor_place();
+    const struct glint_place place = make_sensor_to_image_transform();
     static struct glint_transfer t;
     static struct glint_vertex whole[NODES][NODES], shell[SHELL + 1][SHELL + 1];
 
@@ -374,9 +375,9 @@ TEST(annular_grid_rows_leave_the_hole_out)
 
 TEST(positions_out_of_range_are_invalid)
 {
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&m);
-    struct glint_place place = make_sensor_place();
+    struct glint_place place = make_sensor_to_image_transform();
     static struct glint_transfer t;
     struct glint_vertex v[4];
 

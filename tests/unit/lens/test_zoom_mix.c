@@ -141,7 +141,7 @@ static double evaluate_output(int kind, double u, double v)
 }
 
 /* Checks that output KIND of the interpolated model is X at (U, V). */
-static void check_output_at(int kind, double u, double v, double x)
+static void check_interpolated_output(int kind, double u, double v, double x)
 {
     const double got = evaluate_output(kind, u, v);
 
@@ -152,9 +152,9 @@ static void check_output_at(int kind, double u, double v, double x)
 static void check_barrel_values(int kind, struct barrel b)
 {
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + kind) & 1);
-    check_output_at(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
-    check_output_at(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
-    check_output_at(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
+    check_interpolated_output(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
+    check_interpolated_output(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
+    check_interpolated_output(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
 }
 
 static const struct barrel right = {0.3, 0.5, 0.1}, left = {0.3, -0.5, 0.1};
@@ -168,9 +168,10 @@ TEST(outputs_are_interpolated)
         const double part = 0.25 * k;
 
         interpolate_barrels(NULL, 0, NULL, 0, part);
-        check_output_at(GLINT_OUT_SENSOR_X, 1, 0.5, 0.5 - 0.25 * part);
-        check_output_at(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
-        check_output_at(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
+        check_interpolated_output(GLINT_OUT_SENSOR_X, 1, 0.5,
+                                  0.5 - 0.25 * part);
+        check_interpolated_output(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
+        check_interpolated_output(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
     }
 }
 
@@ -313,10 +314,11 @@ TEST(energies_keep_the_smaller_head)
         head[0] = (uint8_t)(k % 3 ? 3 : 0);
         head[1] = (uint8_t)(k % 3 == 1 ? 1 : 2);
         interpolate_barrels(NULL, 0, NULL, 0, 0.5);
-        check_output_at(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
+        check_interpolated_output(GLINT_OUT_ENERGY, 0, 0,
+                                  roots ? value * value : value);
         glint_blend_scale_energy(&mixed, ONE / 4);
-        check_output_at(GLINT_OUT_ENERGY, 0, 0,
-                        (roots ? value * value : value) / 4);
+        check_interpolated_output(GLINT_OUT_ENERGY, 0, 0,
+                                  (roots ? value * value : value) / 4);
     }
     roots = head[0] = head[1] = 0;
 }
@@ -326,9 +328,9 @@ TEST(energies_keep_the_smaller_head)
 /* Writes a model to M and opens it. Its pupil box is centred at MIDDLE and has
  * the half sides HALF and RISE, mm. Its sensor x and y are the pupil
  * coordinates times SLOPE. Its barrel is a circle of 4 mm in the pupil. */
-static struct glint_lens open_model_of_box(struct model_image *m, double middle,
-                                           double half, double rise,
-                                           double slope)
+static struct glint_lens open_model_with_pupil_box(struct model_image *m,
+                                                   double middle, double half,
+                                                   double rise, double slope)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
     const int32_t box[3] = {(int32_t)ldexp(middle, 20),
@@ -369,18 +371,21 @@ static struct glint_lens open_model_of_box(struct model_image *m, double middle,
 TEST(outputs_are_interpolated_across_moving_boxes)
 {
     struct model_image at[2];
-    const struct glint_lens a = open_model_of_box(&at[0], 0, 4, 3, 0.125);
-    const struct glint_lens b = open_model_of_box(&at[1], 0.5, 4.5, 4, 0.0625);
+    const struct glint_lens a =
+        open_model_with_pupil_box(&at[0], 0, 4, 3, 0.125);
+    const struct glint_lens b =
+        open_model_with_pupil_box(&at[1], 0.5, 4.5, 4, 0.0625);
 
     for (int k = 1; k < 4; k++) {
         const double part = 0.25 * k, slope = 0.125 - 0.0625 * part;
 
         interpolate_models(&a, &b, part);
         for (int i = -2; i <= 2; i++) {
-            check_output_at(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
-                            slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
-            check_output_at(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
-                            slope * 0.5 * (3 + part));
+            check_interpolated_output(
+                GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
+                slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
+            check_interpolated_output(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
+                                      slope * 0.5 * (3 + part));
         }
     }
     free(at[0].data);
@@ -423,9 +428,9 @@ TEST(barrels_move_with_their_box)
 TEST(barrels_match_by_shape_in_the_pupil)
 {
     struct model_image at[3];
-    const struct glint_lens a = open_model_of_box(&at[0], 0, 4, 2, 0);
-    const struct glint_lens b = open_model_of_box(&at[1], 1, 6.5, 3, 0);
-    const struct glint_lens c = open_model_of_box(&at[2], 7, 0.5, 2, 0);
+    const struct glint_lens a = open_model_with_pupil_box(&at[0], 0, 4, 2, 0);
+    const struct glint_lens b = open_model_with_pupil_box(&at[1], 1, 6.5, 3, 0);
+    const struct glint_lens c = open_model_with_pupil_box(&at[2], 7, 0.5, 2, 0);
 
     for (int k = 0; k < 2; k++) { /* barrels in either order */
         interpolate_models(k ? &b : &a, k ? &a : &b, 0.5);
@@ -553,8 +558,8 @@ static void check_interpolated_ghosts(const struct sight *sight, size_t n)
                      is_ghost_dark(s->sensor) ? "not dark" : "dark");
         if (is_ghost_dark(s->sensor))
             continue;
-        check_output_at(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
-        check_output_at(GLINT_OUT_ENERGY, 0, 0, s->energy);
+        check_interpolated_output(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
+        check_interpolated_output(GLINT_OUT_ENERGY, 0, 0, s->energy);
     }
 }
 

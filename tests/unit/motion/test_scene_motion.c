@@ -119,7 +119,8 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
         dot += d * to[k];
         square += d * d;
     }
-    return moving_food_angle_deg() * GLINT_PI / 360 - acos(dot / sqrt(square));
+    return moving_angle_to_food_deg() * GLINT_PI / 360 -
+           acos(dot / sqrt(square));
 }
 
 /* D7: checks that detection by angle, and by angle and intensity, equals brute
@@ -263,7 +264,7 @@ TEST(failed_control_lines_change_nothing)
 
 /* Returns the mean column of the pixels with more red than blue; -1: there are
  * none. Sets *N to their number. */
-static double compute_mean_red_column(const struct moving *d, int *n)
+static double compute_mean_column_of_red_pixels(const struct moving *d, int *n)
 {
     double sum = 0;
 
@@ -298,8 +299,8 @@ TEST(row_d9_camera_in_a_sensor)
         assert_ok(glint_scene_enter(d->frame.scene, k));
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
         moving_draw_frame(d);
-        assert_true(fabs(compute_mean_red_column(d, &n) - (WIDTH - 1) / 2.) <
-                    .5);
+        assert_true(fabs(compute_mean_column_of_red_pixels(d, &n) -
+                         (WIDTH - 1) / 2.) < .5);
         /* radius .5 at a distance of 6 - .6, in an image whose width is 2 tan
          * 30 degrees */
         assert_true(fabs(sqrt(n / GLINT_PI) -
@@ -318,7 +319,8 @@ TEST(row_d9_camera_in_a_sensor)
         5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
     moving_draw_frame(d);
-    assert_true(fabs(compute_mean_red_column(d, &n) - (WIDTH - 1) / 2.) < .5);
+    assert_true(
+        fabs(compute_mean_column_of_red_pixels(d, &n) - (WIDTH - 1) / 2.) < .5);
     moving_close_scene(d);
 }
 

@@ -589,7 +589,7 @@ static bool draw_three_frames(void)
     return !status;
 }
 
-static void check_every_failing_call(bool pages)
+static void check_drawing_with_each_call_failing(bool pages)
 {
     const int fds = scratch_count_entries("/proc/self/fd");
     int n_failed = 0, n = 0, n_last;
@@ -616,8 +616,8 @@ static void check_every_failing_call(bool pages)
 
 TEST(every_failing_call_is_handled)
 {
-    check_every_failing_call(false);
-    check_every_failing_call(true);
+    check_drawing_with_each_call_failing(false);
+    check_drawing_with_each_call_failing(true);
 }
 
 TEST_OPEN

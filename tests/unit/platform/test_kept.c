@@ -19,12 +19,12 @@ static struct glint_error error;
 static void expect_file_bytes(const char *name, const char *data, size_t bytes)
 {
     char got[400];
-    FILE *const f = fopen(scratch_path_of(name), "rb");
+    FILE *const f = fopen(scratch_make_path(name), "rb");
     const size_t n = f ? fread(got, 1, sizeof got, f) : 0;
 
     assert_non_null(f);
     fclose(f);
-    unlink(scratch_path_of(name));
+    unlink(scratch_make_path(name));
     assert_int_equal(n, bytes);
     assert_memory_equal(got, data, bytes);
 }
@@ -39,13 +39,13 @@ static void add_light_to_file(const char *name, const char *to, float light)
 
     for (int i = 0; i < 36; i++)
         layer[i] = light;
-    assert_ok(glint_kept_open(&kept, scratch_path_of(name), &error));
+    assert_ok(glint_kept_open(&kept, scratch_make_path(name), &error));
     glint_samples_add_light(&kept.samples, layer);
-    if (glint_kept_save(&kept, scratch_path_of(to), NULL, &options, &error))
+    if (glint_kept_save(&kept, scratch_make_path(to), NULL, &options, &error))
         fail_msg("%s", error.text);
     glint_kept_close(&kept);
     glint_kept_close(&kept);
-    unlink(scratch_path_of(name));
+    unlink(scratch_make_path(name));
 }
 
 static void check_rewritten_file_is_identical(const char *name,
@@ -100,15 +100,15 @@ TEST(converts_to_other_file_types)
 
     scratch_write_file("x.pfm",
                        BYTES("PF 1 1 1 \x40\0\0\0\x3f\x80\0\0\0\0\0\0"));
-    assert_ok(glint_kept_open(&kept, scratch_path_of("x.pfm"), &error));
+    assert_ok(glint_kept_open(&kept, scratch_make_path("x.pfm"), &error));
     assert_true(kept.is_float);
     assert_false(glint_kept_is_same_type(&kept, "x.ppm"));
     assert_true(glint_kept_is_same_type(&kept, "y.pfm"));
-    assert_ok(glint_kept_save(&kept, scratch_path_of("y.ppm"), NULL, &options,
+    assert_ok(glint_kept_save(&kept, scratch_make_path("y.ppm"), NULL, &options,
                               &error));
     assert_non_null(strstr(options.said, "clipped"));
     glint_kept_close(&kept);
-    unlink(scratch_path_of("x.pfm"));
+    unlink(scratch_make_path("x.pfm"));
     expect_file_bytes("y.ppm", BYTES("P6\n1 1\n65535\n\xff\xff\xff\xff\0\0"));
     scratch_write_file("x.pgm", BYTES("P5 1 1 255\n\xbc"));
     add_light_to_file("x.pgm", "y.ppm", 0);
@@ -120,10 +120,10 @@ TEST(copies_files_unchanged)
     struct glint_kept kept;
 
     scratch_write_file("x.ppm", BYTES("P6 1 1 255\nabc and more"));
-    assert_ok(glint_kept_open(&kept, scratch_path_of("x.ppm"), &error));
-    assert_ok(glint_kept_copy_file(&kept, scratch_path_of("y.ppm"), &error));
+    assert_ok(glint_kept_open(&kept, scratch_make_path("x.ppm"), &error));
+    assert_ok(glint_kept_copy_file(&kept, scratch_make_path("y.ppm"), &error));
     glint_kept_close(&kept);
-    unlink(scratch_path_of("x.ppm"));
+    unlink(scratch_make_path("x.ppm"));
     expect_file_bytes("y.ppm", BYTES("P6 1 1 255\nabc and more"));
 }
 
@@ -133,11 +133,11 @@ static void check_file_is_rejected(enum glint_status status, const char *data,
     struct glint_kept kept;
 
     scratch_write_file("x", data, bytes);
-    assert_int_equal(glint_kept_open(&kept, scratch_path_of("x"), &error),
+    assert_int_equal(glint_kept_open(&kept, scratch_make_path("x"), &error),
                      status);
     if (!strstr(error.text, cause))
         fail_msg("%s", error.text);
-    unlink(scratch_path_of("x"));
+    unlink(scratch_make_path("x"));
 }
 
 TEST(rejects_invalid_files)

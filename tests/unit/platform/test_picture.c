@@ -23,14 +23,14 @@ static void expect_loaded_pixels(const char *name, const char *data,
     struct glint_image image;
 
     scratch_write_file(name, data, bytes);
-    assert_ok(glint_picture_load(scratch_path_of(name), &image, &error));
+    assert_ok(glint_picture_load(scratch_make_path(name), &image, &error));
     assert_int_equal(image.format, GLINT_RGB24);
     assert_int_equal(image.stride_bytes[0], 3 * image.width);
     assert_memory_equal(image.plane[0], rgb,
                         (size_t)(3 * image.width * image.height));
     glint_picture_free(&image);
     glint_picture_free(&image);
-    unlink(scratch_path_of(name));
+    unlink(scratch_make_path(name));
 }
 
 TEST(file_type_is_read_from_the_content)
@@ -50,12 +50,12 @@ static void expect_load_fails(enum glint_status status, const char *data,
     struct glint_image image;
 
     scratch_write_file("a.x", data, bytes);
-    assert_int_equal(glint_picture_load(scratch_path_of("a.x"), &image, &error),
-                     status);
+    assert_int_equal(
+        glint_picture_load(scratch_make_path("a.x"), &image, &error), status);
     assert_memory_equal(error.text, scratch_dir, strlen(scratch_dir));
     if (!strstr(error.text, cause))
         fail_msg("%s", error.text);
-    unlink(scratch_path_of("a.x"));
+    unlink(scratch_make_path("a.x"));
 }
 
 TEST(refuses_to_load)
@@ -77,16 +77,18 @@ TEST(loads_floats)
     struct glint_float_image floats;
 
     scratch_write_file("a", BYTES("Pf 1 1 -1 \0\0\x40\x40"));
-    assert_ok(glint_picture_load_float(scratch_path_of("a"), &floats, &error));
+    assert_ok(
+        glint_picture_load_float(scratch_make_path("a"), &floats, &error));
     assert_true(floats.rgb[2] > 2.999F && floats.rgb[2] < 3.001F);
     free(floats.rgb);
     scratch_write_file("a", BYTES("P5 3 1 255 \0\xbc\xff"));
-    assert_ok(glint_picture_load_float(scratch_path_of("a"), &floats, &error));
+    assert_ok(
+        glint_picture_load_float(scratch_make_path("a"), &floats, &error));
     assert_int_equal(floats.width, 3);
     assert_true(floats.rgb[0] <= 0 && floats.rgb[8] >= 1);
     assert_true(floats.rgb[4] > 0.502F && floats.rgb[4] < 0.504F);
     free(floats.rgb);
-    unlink(scratch_path_of("a"));
+    unlink(scratch_make_path("a"));
 }
 
 static void expect_save_fails(const char *path, enum glint_picture_kind kind,
@@ -128,13 +130,13 @@ static void check_8bit_round_trip(const char *name)
 {
     struct glint_image again;
 
-    assert_ok(glint_picture_save(scratch_path_of(name), &picture, &error));
-    assert_ok(glint_picture_load(scratch_path_of(name), &again, &error));
+    assert_ok(glint_picture_save(scratch_make_path(name), &picture, &error));
+    assert_ok(glint_picture_load(scratch_make_path(name), &again, &error));
     assert_int_equal(again.width, 3);
     assert_int_equal(again.height, 2);
     assert_memory_equal(again.plane[0], codes, 18);
     glint_picture_free(&again);
-    unlink(scratch_path_of(name));
+    unlink(scratch_make_path(name));
 }
 
 /* Checks that floats are read back within 1 %. EXR and PFM are lossless; the
@@ -145,15 +147,17 @@ static void check_float_round_trip(const char *name)
     const struct glint_float_image floats = {2, 1, values};
     struct glint_float_image again;
 
-    assert_ok(glint_picture_save_float(scratch_path_of(name), &floats, &error));
-    assert_ok(glint_picture_load_float(scratch_path_of(name), &again, &error));
+    assert_ok(
+        glint_picture_save_float(scratch_make_path(name), &floats, &error));
+    assert_ok(
+        glint_picture_load_float(scratch_make_path(name), &again, &error));
     assert_int_equal(again.width, 2);
     assert_int_equal(again.height, 1);
     for (int i = 0; i < 6; i++)
         assert_true(again.rgb[i] > values[i] * 0.99F - 1e-6F &&
                     again.rgb[i] < values[i] * 1.01F + 1e-6F);
     free(again.rgb);
-    unlink(scratch_path_of(name));
+    unlink(scratch_make_path(name));
 }
 
 TEST(native_round_trips)
@@ -165,11 +169,11 @@ TEST(native_round_trips)
 
 TEST(full_device_is_an_error)
 {
-    assert_int_equal(symlink("/dev/full", scratch_path_of("a.ppm")), 0);
+    assert_int_equal(symlink("/dev/full", scratch_make_path("a.ppm")), 0);
     assert_int_equal(
-        glint_picture_save(scratch_path_of("a.ppm"), &picture, &error),
+        glint_picture_save(scratch_make_path("a.ppm"), &picture, &error),
         GLINT_E_OUTPUT);
-    unlink(scratch_path_of("a.ppm"));
+    unlink(scratch_make_path("a.ppm"));
 }
 
 TEST(reports_a_missing_plugin)
@@ -204,11 +208,11 @@ TEST(plugin_formats_round_trip)
     check_float_round_trip("a.tif");
     expect_load_fails(GLINT_E_FORMAT, BYTES("\x89PNG\r\n\x1a\n"), ": ");
     expect_load_fails(GLINT_E_FORMAT, BYTES("hello"), ": ");
-    assert_int_equal(symlink("/dev/full", scratch_path_of("a.png")), 0);
+    assert_int_equal(symlink("/dev/full", scratch_make_path("a.png")), 0);
     assert_int_equal(
-        glint_picture_save(scratch_path_of("a.png"), &picture, &error),
+        glint_picture_save(scratch_make_path("a.png"), &picture, &error),
         GLINT_E_OUTPUT);
-    unlink(scratch_path_of("a.png"));
+    unlink(scratch_make_path("a.png"));
 }
 
 TEST_GROUP(scratch_create_dir, scratch_remove_dir);

@@ -263,7 +263,7 @@ static void expect_plane_offset_and_stride(int plane, const uint8_t *block,
     assert_int_equal(frame.image.stride_bytes[plane], stride);
 }
 
-static const uint8_t *mapped_block(int k)
+static const uint8_t *address_of_mapped_block(int k)
 {
     return camera.buffer[0].map[k];
 }
@@ -275,7 +275,8 @@ TEST(reads_padded_rows)
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane_offset_and_stride(0, mapped_block(0), 0, 2 * 64 + 24);
+    expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0,
+                                   2 * 64 + 24);
     done();
     must_close_camera();
     camera.stride_more = 0;
@@ -283,7 +284,7 @@ TEST(reads_padded_rows)
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane_offset_and_stride(0, mapped_block(0), 0, 2 * 64);
+    expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 2 * 64);
     done();
     must_close_camera();
 }
@@ -295,8 +296,8 @@ TEST(reads_planes_in_one_block)
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane_offset_and_stride(0, mapped_block(0), 0, 80);
-    expect_plane_offset_and_stride(1, mapped_block(0), 80 * 48, 80);
+    expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
+    expect_plane_offset_and_stride(1, address_of_mapped_block(0), 80 * 48, 80);
     done();
     must_close_camera();
     set_camera_format(V4L2_PIX_FMT_YUV420, true);
@@ -304,9 +305,10 @@ TEST(reads_planes_in_one_block)
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
-    expect_plane_offset_and_stride(0, mapped_block(0), 0, 80);
-    expect_plane_offset_and_stride(1, mapped_block(0), 80 * 48, 40);
-    expect_plane_offset_and_stride(2, mapped_block(0), 80 * 48 + 40 * 24, 40);
+    expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
+    expect_plane_offset_and_stride(1, address_of_mapped_block(0), 80 * 48, 40);
+    expect_plane_offset_and_stride(2, address_of_mapped_block(0),
+                                   80 * 48 + 40 * 24, 40);
     done();
     must_close_camera();
 }
@@ -322,8 +324,8 @@ TEST(reads_planes_in_several_blocks)
     fake_camera_add_frame(0, 9);
     assert_int_equal(next(), GLINT_OK);
     assert_int_equal(frame.image.format, GLINT_NV12);
-    expect_plane_offset_and_stride(0, mapped_block(0), 0, 80);
-    expect_plane_offset_and_stride(1, mapped_block(1), 0, 80);
+    expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
+    expect_plane_offset_and_stride(1, address_of_mapped_block(1), 0, 80);
     done();
     must_close_camera();
     set_camera_format(V4L2_PIX_FMT_YUV420M, true);
@@ -334,7 +336,7 @@ TEST(reads_planes_in_several_blocks)
     f->bytesused[1] = f->bytesused[2] = 32 * 24;
     assert_int_equal(next(), GLINT_OK);
     assert_non_null(frame.image.plane[0]);
-    expect_plane_offset_and_stride(2, mapped_block(2), 0, 32);
+    expect_plane_offset_and_stride(2, address_of_mapped_block(2), 0, 32);
     done();
     f = fake_camera_add_frame(1, 9);
     f->is_odd = true;
@@ -359,7 +361,7 @@ TEST(skips_data_before_the_image)
     f->data_offset[0] = 32;
     f->bytesused[0] = 2 * 64 * 48 + 32;
     assert_int_equal(next(), GLINT_OK);
-    expect_plane_offset_and_stride(0, mapped_block(0), 32, 2 * 64);
+    expect_plane_offset_and_stride(0, address_of_mapped_block(0), 32, 2 * 64);
     done();
     f = fake_camera_add_frame(1, 9);
     f->is_odd = true;

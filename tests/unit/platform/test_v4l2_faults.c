@@ -572,9 +572,10 @@ static enum glint_status run_capture_session(enum glint_v4l2_io io,
     return status;
 }
 
-static void check_every_failing_call(int number, bool forever,
-                                     enum glint_v4l2_io io, bool multiplanar,
-                                     uint32_t fourcc)
+static void check_session_with_each_call_failing(int number, bool forever,
+                                                 enum glint_v4l2_io io,
+                                                 bool multiplanar,
+                                                 uint32_t fourcc)
 {
     const int fds = scratch_count_entries("/proc/self/fd");
     int n_failed = 0, n_calls, n = 0;
@@ -612,15 +613,17 @@ TEST(every_failing_call_is_handled)
 
     for (int i = 0; i < 6; i++)
         for (int forever = 0; forever < 2; forever++) {
-            check_every_failing_call(number[i], forever, GLINT_V4L2_AUTO, false,
-                                     V4L2_PIX_FMT_YUYV);
-            check_every_failing_call(number[i], forever, GLINT_V4L2_AUTO, true,
-                                     V4L2_PIX_FMT_YUV420M);
-            check_every_failing_call(number[i], forever, GLINT_V4L2_USERPTR,
-                                     true, V4L2_PIX_FMT_NV12M);
-            check_every_failing_call(number[i], forever, GLINT_V4L2_READ, false,
-                                     V4L2_PIX_FMT_YUYV);
-            check_every_failing_call(number[i], forever, GLINT_V4L2_AUTO, false,
-                                     V4L2_PIX_FMT_MJPEG);
+            check_session_with_each_call_failing(
+                number[i], forever, GLINT_V4L2_AUTO, false, V4L2_PIX_FMT_YUYV);
+            check_session_with_each_call_failing(number[i], forever,
+                                                 GLINT_V4L2_AUTO, true,
+                                                 V4L2_PIX_FMT_YUV420M);
+            check_session_with_each_call_failing(number[i], forever,
+                                                 GLINT_V4L2_USERPTR, true,
+                                                 V4L2_PIX_FMT_NV12M);
+            check_session_with_each_call_failing(
+                number[i], forever, GLINT_V4L2_READ, false, V4L2_PIX_FMT_YUYV);
+            check_session_with_each_call_failing(
+                number[i], forever, GLINT_V4L2_AUTO, false, V4L2_PIX_FMT_MJPEG);
         }
 }

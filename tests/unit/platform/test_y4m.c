@@ -32,7 +32,8 @@ struct memory {
     bool fails;
 };
 
-static ptrdiff_t read_from_memory(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_stream_bytes_from_memory(void *ctx, void *dst,
+                                               size_t bytes)
 {
     struct memory *const m = ctx;
     size_t n = m->bytes - m->at;
@@ -232,8 +233,8 @@ TEST(reads_frames_in_pieces)
         struct glint_y4m_reader reader;
         const struct glint_image *frame;
 
-        assert_ok(glint_y4m_reader_start(&reader, read_from_memory, &memory,
-                                         "x.y4m", &error));
+        assert_ok(glint_y4m_reader_start(&reader, read_stream_bytes_from_memory,
+                                         &memory, "x.y4m", &error));
         assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
         assert_int_equal(frame->format, GLINT_I420);
         assert_int_equal(frame->transfer, GLINT_TONE_BT709);
@@ -262,8 +263,8 @@ static enum glint_status read_all_frames(const char *data, size_t bytes,
     struct memory memory = {data, bytes, 0, 7, fails};
     struct glint_y4m_reader reader;
     const struct glint_image *frame = NULL;
-    enum glint_status status = glint_y4m_reader_start(&reader, read_from_memory,
-                                                      &memory, "x.y4m", &error);
+    enum glint_status status = glint_y4m_reader_start(
+        &reader, read_stream_bytes_from_memory, &memory, "x.y4m", &error);
 
     while (!status &&
            !(status = glint_y4m_reader_next(&reader, &frame, &error)) && frame)
@@ -371,8 +372,8 @@ static void check_copied_stream_is_identical(const char *data, size_t bytes)
     struct glint_y4m_writer writer;
     const struct glint_image *frame;
 
-    assert_ok(glint_y4m_reader_start(&reader, read_from_memory, &memory,
-                                     "x.y4m", &error));
+    assert_ok(glint_y4m_reader_start(&reader, read_stream_bytes_from_memory,
+                                     &memory, "x.y4m", &error));
     assert_ok(
         glint_y4m_writer_open(&writer, scratch_file, &reader.header, &error));
     while (!glint_y4m_reader_next(&reader, &frame, &error) && frame)
@@ -411,8 +412,8 @@ static void check_8bit_planes(const char *data, size_t bytes, const char *seen,
     struct memory m = {data, bytes, 0, 7, false};
     struct glint_y4m_reader reader;
 
-    assert_ok(
-        glint_y4m_reader_start(&reader, read_from_memory, &m, "x.y4m", &error));
+    assert_ok(glint_y4m_reader_start(&reader, read_stream_bytes_from_memory, &m,
+                                     "x.y4m", &error));
     assert_ok(glint_y4m_reader_next(&reader, &frame, &error));
     assert_non_null(frame);
     assert_memory_equal(frame->plane[0], seen, n_seen);
@@ -674,8 +675,8 @@ TEST(pq_copy_is_graded_to_sdr)
         bytes[at + 2 * (size_t)i] = (char)code;
         bytes[at + 2 * (size_t)i + 1] = (char)(code >> 8);
     }
-    assert_ok(
-        glint_y4m_reader_start(&in, read_from_memory, &memory, "pq", &error));
+    assert_ok(glint_y4m_reader_start(&in, read_stream_bytes_from_memory,
+                                     &memory, "pq", &error));
     in.header.transfer = GLINT_TRANSFER_PQ;
     in.header.primaries = GLINT_PRIMARIES_BT2020;
     assert_ok(glint_y4m_reader_next(&in, &frame, &error));

@@ -100,7 +100,8 @@ static void add_outline_offsets_of_ghost(struct offsets *o)
             }
 }
 
-static void add_offsets_at_angle(double theta_deg, struct offsets *o)
+static void add_outline_offsets_at_light_angle(double theta_deg,
+                                               struct offsets *o)
 {
     const struct glint_lamp lamp = stage_make_lamp(theta_deg, 33, 1);
     struct glint_frame *f = &stage.frame;
@@ -138,8 +139,8 @@ static void check_outline_offsets(const char *lens)
     assert_true(stage_set_up_lens(&stage, 8) &&
                 stage_bake_or_load_model(&stage, 1, 60));
     stage_set_view(&stage, W, H, 0);
-    add_offsets_at_angle(5, o);
-    add_offsets_at_angle(12, o);
+    add_outline_offsets_at_light_angle(5, o);
+    add_outline_offsets_at_light_angle(12, o);
     for (int k = 0; k < ERRORS; k++) {
         char name[100];
 

@@ -33,8 +33,9 @@ static uint8_t codes[N], others[N];
 /* Returns the max relative difference between the drawn star of a light of
  * power 2^POWER_LOG2 at AT and the star's tables. Ignores differences below one
  * step of a linear image. */
-static double max_relative_difference(const struct glint_star_tables *t,
-                                      const double at[2], int power_log2)
+static double measure_max_relative_difference(const struct glint_star_tables *t,
+                                              const double at[2],
+                                              int power_log2)
 {
     double most = 0;
 
@@ -70,7 +71,7 @@ TEST(distant_star_light_matches_direct_sums)
 
             star_canvas_draw_light(&c, t, &light, 1, glint_real_of(0),
                                    GLINT_LINEAR_Q20, linear_q20);
-            most = fmax(most, max_relative_difference(t, at, ev));
+            most = fmax(most, measure_max_relative_difference(t, at, ev));
         }
         star_canvas_close(&c);
         glint_star_tables_free(t);

@@ -23,7 +23,7 @@ static int32_t light_q20[BYTES], drawn_q20[BYTES];
 
 /* Returns the value of the test image at (X, Y), each -1 .. 1. It is linear, so
  * that the cells of the environment interpolate it exactly. */
-static double linear_image_value(int channel, double x, double y)
+static double compute_test_image_value(int channel, double x, double y)
 {
     static const double across[3] = {.4, -.3, 0}, down[3] = {0, .2, -.4};
 
@@ -41,8 +41,8 @@ static void fill_linear_image(void)
         const int x = i / 3 % WIDTH, y = i / 3 / WIDTH; /* NOLINT: rows */
 
         light_q20[i] = (int32_t)lrint(
-            0x1p20 * linear_image_value(i % 3, 2 * (x + .5) / WIDTH - 1,
-                                        2 * (y + .5) / HEIGHT - 1));
+            0x1p20 * compute_test_image_value(i % 3, 2 * (x + .5) / WIDTH - 1,
+                                              2 * (y + .5) / HEIGHT - 1));
     }
 }
 
@@ -134,8 +134,9 @@ TEST(mirror_shows_the_image_around_the_scene)
         for (int c = 0; c < 3; c++)
             d[c] -= 2 * dot * normal[c];
         find_image_position(d, at);
-        worst = fmax(worst, fabs(drawn_q20[i] * 0x1p-20 -
-                                 linear_image_value(i % 3, at[0], at[1])));
+        worst =
+            fmax(worst, fabs(drawn_q20[i] * 0x1p-20 -
+                             compute_test_image_value(i % 3, at[0], at[1])));
         behind += d[2] < 0;
         n++;
     }

@@ -654,7 +654,7 @@ TEST(lights_for_the_lens_match_double_precision)
  * direction in the scene. */
 TEST(lens_and_scene_agree_on_directions)
 {
-    struct model_image image = model_make_auto();
+    struct model_image image = model_make_three_ghosts();
     const struct glint_lens lens = model_open_image(&image);
     const double f =
         glint_real_value(lens.header->focal_mm) *

@@ -208,7 +208,7 @@ static int is_inside_by_areas(const double v[9], const double p[3])
 /* Aims random rays at a box five times the area of a triangle of height SIZE.
  * Returns the fraction of rays that the area test classifies wrongly. Checks
  * that glint's test is right, except close to edges. */
-static double count_errors_of_area_test(double size)
+static double measure_error_rate_of_area_test(double size)
 {
     double v[9], from[3] = {0};
     int wrong = 0, n = 0, ours = 0;
@@ -255,9 +255,9 @@ TEST(a4_area_test_of_triangles)
                     1500 * 16, 0);
     assert_near_int(llround(compute_double_area(first + 3, first + 6, p) * 16),
                     3000 * 16, 0);
-    assert_true(count_errors_of_area_test(80) == 0);
+    assert_true(measure_error_rate_of_area_test(80) == 0);
     for (double size = .1; size > .005; size /= 10) {
-        const double share = count_errors_of_area_test(size);
+        const double share = measure_error_rate_of_area_test(size);
 
         print_message("areas are wrong for %.1f %% of rays at size %g\n",
                       100 * share, size);
@@ -424,7 +424,7 @@ TEST(a15_sphere_intersections)
 
 /* Returns the fraction of wrong results (hit or miss) among rays that pass a
  * ball of radius 1/2 at DISTANCE within a hundredth of its rim. */
-static double count_errors_at_ball_rim(double distance)
+static double measure_error_rate_at_ball_rim(double distance)
 {
     const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
     const int32_t radius = (int32_t)(unit / 2);
@@ -464,7 +464,7 @@ static double count_errors_at_ball_rim(double distance)
 TEST(a15_rays_at_the_rim)
 {
     for (double distance = 1; distance < 2e4; distance *= 10) {
-        const double share = count_errors_at_ball_rim(distance);
+        const double share = measure_error_rate_at_ball_rim(distance);
 
         print_message("ball of radius 0.5 at %5.0f: %.4f %% wrong\n", distance,
                       100 * share);

@@ -56,8 +56,8 @@ static int intersect_and_shade_ray(const struct glint_scene *s,
     return 1;
 }
 
-static int32_t shaded_red_light_q15(const struct glint_scene *s,
-                                    struct glint_scene_ray ray)
+static int32_t shade_ray_red_q15(const struct glint_scene *s,
+                                 struct glint_scene_ray ray)
 {
     struct glint_met_shade to;
 
@@ -234,7 +234,7 @@ TEST(a8_phong_matches_double_precision)
         if (cosine > 0)
             expected += .6 * .5 * cosine + .3 * pow(gloss, 32);
         assert_true(
-            fabs(shaded_red_light_q15(
+            fabs(shade_ray_red_q15(
                      s, make_ray_from_doubles(2 * n[0], 2 * n[1], 0, 0, 0, 1)) /
                      32768. -
                  expected) < 2e-3);
@@ -256,8 +256,8 @@ static int32_t measure_light_under_ball(double h, int hidden)
     scene_add_sphere(&file, "ball", 0, 0, (int32_t)(h * UNIT), 10 * UNIT, UNIT);
     file.object[1].hidden = (uint32_t)hidden;
     scene_add_lamp(&file, lamp, 4 * UNIT);
-    return shaded_red_light_q15(start_renderer(1),
-                                make_ray_from_doubles(2, .5, 10, -2, -.5, 0));
+    return shade_ray_red_q15(start_renderer(1),
+                             make_ray_from_doubles(2, .5, 10, -2, -.5, 0));
 }
 
 TEST(a10_ball_shadows_a_floor)
@@ -345,7 +345,7 @@ TEST(a10_penumbra_is_monotone)
     file.light[0].radius = ONE_Q30 / 10;
     s = start_renderer(16);
     for (int i = 0; i <= 40; i++) {
-        const int32_t light = shaded_red_light_q15(
+        const int32_t light = shade_ray_red_q15(
             s, make_ray_from_doubles(i * .05, .2, 10, 0, -1, 0));
 
         assert_true(light >= last);
@@ -355,8 +355,7 @@ TEST(a10_penumbra_is_monotone)
     assert_true(levels > 8);
     assert_in_range(last, 32767, 32768);
     assert_int_equal(
-        shaded_red_light_q15(s, make_ray_from_doubles(.1, .2, 10, 0, -1, 0)),
-        0);
+        shade_ray_red_q15(s, make_ray_from_doubles(.1, .2, 10, 0, -1, 0)), 0);
 }
 
 /* ---------------------------------------------------------------- A11, A12 */
@@ -566,7 +565,7 @@ TEST(a12_total_reflection_inside_a_ball)
         /* the angle of incidence of this ray has the sine x / 2 */
         const double x = 2 * i / 101.;
         const int32_t red =
-            shaded_red_light_q15(s, make_ray_from_doubles(x, 0, 0, 0, 0, 1));
+            shade_ray_red_q15(s, make_ray_from_doubles(x, 0, 0, 0, 0, 1));
 
         if (fabs(x / 2 - 1 / 1.5) > .001)
             assert_int_equal(red, x / 2 < 1 / 1.5 ? 8192 : 0);
@@ -658,10 +657,10 @@ TEST(a13_distant_texture_has_its_mean)
     s = start_renderer(1);
     for (int i = 0; i < 2000; i++) {
         const double x = rng_unit(&seed) - .5;
-        const int32_t near = shaded_red_light_q15(
+        const int32_t near = shade_ray_red_q15(
             s, make_ray_from_doubles(x / 9, -.99, 0, x, -1, .1));
         const int32_t far =
-            shaded_red_light_q15(s, make_ray_from_doubles(x, 0, 0, x, -.02, 1));
+            shade_ray_red_q15(s, make_ray_from_doubles(x, 0, 0, x, -.02, 1));
 
         assert_true(near >= 0 && near <= 32768);
         assert_in_range(far, 6900, 7200); /* the linear light of code 127.5 */
@@ -670,12 +669,12 @@ TEST(a13_distant_texture_has_its_mean)
      * two texels at height 1, and half a texel at height 1/4. */
     for (int i = 0; i < 500; i++) {
         const double x = rng_unit(&seed), z = rng_unit(&seed);
-        const int32_t close = shaded_red_light_q15(
-            s, make_ray_from_doubles(x, -.75, z, 0, -1, 0));
+        const int32_t close =
+            shade_ray_red_q15(s, make_ray_from_doubles(x, -.75, z, 0, -1, 0));
 
-        assert_in_range(shaded_red_light_q15(
-                            s, make_ray_from_doubles(x, .001, z, 0, -1, 0)),
-                        6900, 7200);
+        assert_in_range(
+            shade_ray_red_q15(s, make_ray_from_doubles(x, .001, z, 0, -1, 0)),
+            6900, 7200);
         lowest = close < lowest ? close : lowest;
         highest = close > highest ? close : highest;
     }

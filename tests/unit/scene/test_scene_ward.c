@@ -136,8 +136,8 @@ static double decode_texel(const struct glint_environment *e, int k, size_t i,
                  (int)(word >> 27) - 12 + e->header->unit_log2);
 }
 
-static double lookup_level_in_double(const struct glint_environment *e, int k,
-                                     const double toward[3], int c)
+static double look_up_level_in_double(const struct glint_environment *e, int k,
+                                      const double toward[3], int c)
 {
     const int side = 1 << e->level[k].side_log2;
     double u, v, x, y, sum = 0;
@@ -154,23 +154,24 @@ static double lookup_level_in_double(const struct glint_environment *e, int k,
     return sum;
 }
 
-static double lookup_between_levels(const struct glint_environment *e,
-                                    const double toward[3], double level, int c)
+static double look_up_between_levels(const struct glint_environment *e,
+                                     const double toward[3], double level,
+                                     int c)
 {
     const double last = e->header->n_levels - 1;
     const int k = (int)(level = fmin(fmax(level, 0), last));
 
-    return level <= k ? lookup_level_in_double(e, k, toward, c)
+    return level <= k ? look_up_level_in_double(e, k, toward, c)
                       : (4 - pow(4, level - k)) / 3 *
-                                lookup_level_in_double(e, k, toward, c) +
+                                look_up_level_in_double(e, k, toward, c) +
                             (pow(4, level - k) - 1) / 3 *
-                                lookup_level_in_double(e, k + 1, toward, c);
+                                look_up_level_in_double(e, k + 1, toward, c);
 }
 
 /* Computes N half-vector slopes that sample the lobe of alpha 1 with constant
  * footprints. Returns the footprint factor b. */
-static double draw_half_vector_slopes(int n, const double alpha[2],
-                                      double slope[GLINT_WARD_SAMPLES][2])
+static double compute_half_vector_slopes(int n, const double alpha[2],
+                                         double slope[GLINT_WARD_SAMPLES][2])
 {
     const double f = (n == 1 ? 1 : n == 4 ? 1.4 : n == 32 ? 3 : 2) / n;
     const double least = fmin(alpha[0], alpha[1]);
@@ -206,7 +207,7 @@ static void compute_pixel_by_samples(const struct glint_environment *e,
                                      const double frame[3][3], double rgb[3])
 {
     double slope[GLINT_WARD_SAMPLES][2];
-    const double blur = 2 * draw_half_vector_slopes(n, alpha, slope);
+    const double blur = 2 * compute_half_vector_slopes(n, alpha, slope);
     const double texel = sqrt(4 * GLINT_PI) / (1 << SIDE_LOG2);
 
     for (int k = 0; k < n; k++) {
@@ -226,7 +227,7 @@ static void compute_pixel_by_samples(const struct glint_environment *e,
             continue;
         for (int c = 0; c < 3; c++)
             rgb[c] += fmin(ni / (ho / length), 8) / n *
-                      lookup_between_levels(
+                      look_up_between_levels(
                           e, toward, log2(2 * sqrt(blur * ho) / texel), c);
     }
 }
@@ -255,7 +256,7 @@ TEST(samples_approximate_the_sum_over_texels)
                 compute_pixel_by_samples(&m.e, alpha, o.samples,
                                          (const double(*)[3])frame, want[i]);
         }
-        ward_lookup_picture(&m.e, &material, &o, got);
+        ward_render_by_lookups(&m.e, &material, &o, got);
         least = fmin(least, ward_compute_psnr(want, got));
     }
     free(m.data);
@@ -292,7 +293,7 @@ static void render_by_uniform_directions(const struct glint_environment *e,
                                    GLINT_WARD_BOUNDED, toward) *
                 2 * GLINT_PI / n;
             for (int c = 0; c < 3; c++)
-                to[i][c] += w * lookup_between_levels(e, toward, level, c);
+                to[i][c] += w * look_up_between_levels(e, toward, level, c);
         }
     }
 }
@@ -310,7 +311,7 @@ static void render_by_sum_of_texels(const double alpha[2], struct reference *r)
     glint_environment_defaults(&o);
     assert_true(glint_sphere_allocate(&r->sphere, 1 << SIDE_LOG2));
     assert_true(glint_sphere_project_panorama(&r->sphere, &image, &o, &report));
-    ward_sum_texels(&r->sphere, alpha, r->want);
+    ward_render_by_texel_sums(&r->sphere, alpha, r->want);
     glint_sphere_free(&r->sphere);
 }
 
@@ -340,7 +341,7 @@ TEST(b1_b4_sampled_lobe_beats_uniform_directions)
                                                  GLINT_WARD_PUBLISHED, 0, 0};
             double ward, whole;
 
-            ward_lookup_picture(&mip.e, &material, &o, got);
+            ward_render_by_lookups(&mip.e, &material, &o, got);
             ward = ward_compute_psnr(r.want, got);
             render_by_uniform_directions(&mip.e, alphas[a], samples[k], got);
             whole = ward_compute_psnr(r.want, got);
@@ -348,9 +349,9 @@ TEST(b1_b4_sampled_lobe_beats_uniform_directions)
                           alphas[a][0], alphas[a][1], samples[k], ward, whole);
             assert_true(ward > whole);
         }
-        ward_lookup_picture(&gauss.e, &material, &eight, got);
+        ward_render_by_lookups(&gauss.e, &material, &eight, got);
         by_gauss = ward_compute_psnr(r.want, got);
-        ward_lookup_picture(&mip.e, &material, &eight, got);
+        ward_render_by_lookups(&mip.e, &material, &eight, got);
         by_mip = ward_compute_psnr(r.want, got);
         print_message("B4, alpha %g, %g: %.1f dB, mips %.1f\n", alphas[a][0],
                       alphas[a][1], by_gauss, by_mip);
@@ -371,12 +372,12 @@ TEST(b2_materials_share_an_environment)
 
     paint_environment_image(0);
     bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_lookup_picture(&m.e, &material, &eight, white);
+    ward_render_by_lookups(&m.e, &material, &eight, white);
     material.specular_q15[0] = 1 << 14;
     material.specular_q15[1] = 0;
-    ward_lookup_picture(&m.e, &material, &eight, red);
+    ward_render_by_lookups(&m.e, &material, &eight, red);
     material = make_metal_material(.3, .1);
-    ward_lookup_picture(&m.e, &material, &eight, wide);
+    ward_render_by_lookups(&m.e, &material, &eight, wide);
     for (int i = 0; i < WARD_PIXELS; i++) {
         assert_true(fabs(red[i][0] - white[i][0] / 2) <= 0x1p-15);
         assert_true(red[i][1] == 0 && red[i][2] == white[i][2]);
@@ -403,7 +404,7 @@ TEST(b8_eight_samples_are_sufficient)
         double db;
 
         render_by_sum_of_texels(alphas[a], &r);
-        ward_lookup_picture(&m.e, &material, &eight, got);
+        ward_render_by_lookups(&m.e, &material, &eight, got);
         db = ward_compute_psnr_of_codes(r.want, got);
         print_message("B8, alpha %g, %g: %.1f dB\n", alphas[a][0], alphas[a][1],
                       db);
@@ -432,7 +433,7 @@ TEST(b6_more_samples_come_closer)
         double db;
 
         o.samples = samples[k];
-        ward_lookup_picture(&m.e, &material, &o, got);
+        ward_render_by_lookups(&m.e, &material, &o, got);
         db = ward_compute_psnr(r.want, got);
         print_message("B6, N %d: %.1f dB\n", samples[k], db);
         assert_true(db > last + 1);
@@ -451,20 +452,20 @@ TEST(extreme_environments_only_scale_the_image)
 
     memset(pixels, 0, sizeof pixels);
     bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_lookup_picture(&m.e, &material, &eight, got);
+    ward_render_by_lookups(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] == 0 && got[i][2] == 0);
     free(m.data);
     paint_environment_image(0);
     bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_lookup_picture(&m.e, &material, &eight, one);
+    ward_render_by_lookups(&m.e, &material, &eight, one);
     free(m.data);
     for (int power = -12; power <= 12; power += 6) {
         paint_environment_image(0);
         for (int i = 0; i < HEIGHT * WIDTH * 3; i++)
             ((float *)pixels)[i] *= ldexpf(1, power);
         bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
-        ward_lookup_picture(&m.e, &material, &eight, got);
+        ward_render_by_lookups(&m.e, &material, &eight, got);
         for (int i = 0; i < WARD_PIXELS; i++)
             assert_true(
                 fabs(got[i][0] - fmin(ldexp(one[i][0], power), 1 << 15)) <=
@@ -474,7 +475,7 @@ TEST(extreme_environments_only_scale_the_image)
     memset(pixels, 0, sizeof pixels);
     pixels[HEIGHT / 2][WIDTH / 2][1] = 1e9f;
     bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
-    ward_lookup_picture(&m.e, &material, &eight, got);
+    ward_render_by_lookups(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] >= 0 && got[i][1] <= 1 << 15);
     free(m.data);

@@ -59,7 +59,8 @@ static void free_stop(struct stop *s)
     glint_dirt_free(s->dirt);
 }
 
-static void draw_star(const struct stop *s, double power_log2, int32_t *to)
+static void draw_star_of_stop(const struct stop *s, double power_log2,
+                              int32_t *to)
 {
     struct star_canvas canvas;
     const struct glint_star_light light =
@@ -168,7 +169,7 @@ TEST(stars_match_direct_summation)
 
     open_stop_with_iris(&s, &iris, airy_px);
     set_stop_amplitudes(&s);
-    draw_star(&s, power_log2, linear);
+    draw_star_of_stop(&s, power_log2, linear);
     for (int k = 0; k < n; k++) {
         const double r = 6 * exp2(k * 2.5 / n), phi = 2.4 * k;
         const int x = (int)(150.3 + r * cos(phi));
@@ -206,7 +207,7 @@ TEST(total_light_does_not_depend_on_size)
         double sum = 0, beyond;
 
         open_stop_with_iris(&s, &iris, airy_px);
-        draw_star(&s, 10, linear);
+        draw_star_of_stop(&s, 10, linear);
         for (int i = 1; i < 3 * SIDE * SIDE; i += 3)
             sum += linear[i] * 0x1p-30;
         assert_ok(glint_psf_init(&psf, 8, 10, airy_px));
@@ -280,7 +281,7 @@ TEST(smaller_hole_gives_a_wider_ring)
         mask[i] = hypot(i % N - 63.5, i / N - 63.5) < N / 8.0 ? 255 : 0;
     open_stop_with_iris(&s, &iris, 3);
     assert_true(s.smear.clear < 1e-6);
-    draw_star(&s, 12, linear);
+    draw_star_of_stop(&s, 12, linear);
     for (int r = 4; r < 25; r++) {
         const double light =
             star_canvas_green(linear, SIDE, 150.3 + r, 150.6) * r * r;

@@ -60,7 +60,7 @@ static double sum_channel_of_pixels(const int32_t *q20, int c)
     return sum;
 }
 
-static double green_light_at(double x, double y)
+static double read_green_light_at(double x, double y)
 {
     return star_canvas_green(linear_q20, WIDTH, x, y);
 }
@@ -79,7 +79,7 @@ static int count_spikes_on_circle(double radius)
         const double a = 2 * GLINT_PI * (i + 0.5) / STEPS;
 
         ring[i] =
-            green_light_at(48.5 + radius * cos(a), 41.5 + radius * sin(a));
+            read_green_light_at(48.5 + radius * cos(a), 41.5 + radius * sin(a));
         mean += ring[i] / STEPS;
     }
     for (int i = 0; i < 2 * STEPS; i++) {
@@ -138,7 +138,8 @@ TEST(drawn_dark_ring_is_that_of_550_nm)
         for (int i = 0; i < 64; i++) {
             const double a = 2 * GLINT_PI * i / 64;
 
-            here += green_light_at(48.5 + r * cos(a), 41.5 + r * sin(a)) / 64;
+            here +=
+                read_green_light_at(48.5 + r * cos(a), 41.5 + r * sin(a)) / 64;
         }
         dark = here < least ? r : dark;
         least = fmin(least, here);
@@ -299,10 +300,10 @@ static double measure_spike_profile(double *width)
 
     *width = 0;
     for (int i = -140; i <= 140; i++) {
-        const double light = green_light_at(60.5, 41.5 + 0.1 * i);
+        const double light = read_green_light_at(60.5, 41.5 + 0.1 * i);
 
         sum += light * 0.1;
-        *width += light > 0.5 * green_light_at(60.5, 41.5) ? 0.1 : 0;
+        *width += light > 0.5 * read_green_light_at(60.5, 41.5) ? 0.1 : 0;
     }
     return sum;
 }
@@ -331,8 +332,8 @@ TEST(wide_lamp_widens_its_spikes)
 
 /* Returns the max relative difference between the drawn light of a lamp of
  * power 2^25 at PLACE and the star's tables. */
-static double max_relative_difference(const struct glint_star_tables *t,
-                                      const double place[2])
+static double measure_max_relative_difference(const struct glint_star_tables *t,
+                                              const double place[2])
 {
     double most = 0;
 
@@ -367,7 +368,7 @@ TEST(distant_pixels_match_the_tables)
                 star_canvas_make_light(place[i][0], place[i][1], 25);
 
             draw_lights_linear(t, &light, 1, linear_q20);
-            most = fmax(most, max_relative_difference(t, place[i]));
+            most = fmax(most, measure_max_relative_difference(t, place[i]));
         }
         glint_star_tables_free(t);
     }
@@ -459,7 +460,7 @@ static double find_spike_angle_deg(double angle_deg)
         double light = 0;
 
         for (double r = 20; r < 36; r += 0.25)
-            light += green_light_at(48.5 + r * cos(a), 41.5 - r * sin(a));
+            light += read_green_light_at(48.5 + r * cos(a), 41.5 - r * sin(a));
         sum += light;
         turn += d * light;
     }

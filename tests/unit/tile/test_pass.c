@@ -157,7 +157,7 @@ static void draw_triangle_pass(struct glint_frame *f, struct glint_flare *flare)
 }
 
 /* Returns byte I of the image before drawing. */
-static uint8_t background_byte(int i)
+static uint8_t compute_background_byte(int i)
 {
     return (uint8_t)(40 + i * 7 / 2 % 90);
 }
@@ -167,7 +167,7 @@ static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
     const struct glint_wave wave = {
         MODEL_WAVE_LO_Q24, {16384, 12000, 5000}, real_of(1, 0)};
     const struct glint_light light = make_light_of_triangle(&f.triangle);
-    struct model_image m = model_make_auto();
+    struct model_image m = model_make_three_ghosts();
     struct glint_lens lens;
     const struct glint_flare_frame planned = {.lens = &lens,
                                               .wave = &wave,
@@ -187,7 +187,7 @@ static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
     for (int i = 0; i < BYTES; i++)
         px[i] = f.image.format == GLINT_LINEAR_Q20 && i % 4 == 3
                     ? 0
-                    : background_byte(i);
+                    : compute_background_byte(i);
     glint_image_place(&f.image, px);
     init_shuffled_workers(&shuffle, f.n_workers, f.order);
     lens = model_open_image(&m);
@@ -281,8 +281,8 @@ TEST(covered_pixels_have_the_passs_colour)
             assert_true(one[i] == 255 && one[i + 1] == 169 &&
                         one[i + 2] == 104);
         else if (cover_q8 == 0)
-            assert_true(one[i] == background_byte(i) &&
-                        one[i + 1] == background_byte(i + 1));
+            assert_true(one[i] == compute_background_byte(i) &&
+                        one[i + 1] == compute_background_byte(i + 1));
         assert_true(other[i] >= one[i]);
     }
     assert_true(n_set > 1000 && n_kept > 1000 && n_lit > 100);

@@ -167,8 +167,8 @@ TEST(keys_become_commands)
     assert_int_equal(keyboard_open(&(struct keyboard){0}, -1), GLINT_E_IO);
 }
 
-static int play_control_line(struct playback *p, const char *text,
-                             double elapsed_s)
+static int execute_line_and_play_next_frame(struct playback *p,
+                                            const char *text, double elapsed_s)
 {
     assert_ok(control_parse_line(text, "f:1", &line, &error));
     assert_int_equal(playback_execute_line(p, &line), *text != 0);
@@ -184,25 +184,25 @@ TEST(playback_advances_frames)
      * it takes */
     for (int i = 0; i < 5; i++)
         assert_int_equal(playback_next_frame(&p, 7), i);
-    assert_int_equal(play_control_line(&p, "pause", 1), 4);
-    assert_int_equal(play_control_line(&p, "", 1), 4);
-    assert_int_equal(play_control_line(&p, "step", 1), 5);
-    assert_int_equal(play_control_line(&p, "step -2", 1), 3);
-    assert_int_equal(play_control_line(&p, "step -9", 1), 0);
-    assert_int_equal(play_control_line(&p, "jump 20", 1), 20);
-    assert_int_equal(play_control_line(&p, "", 1), 20);
-    assert_int_equal(play_control_line(&p, "play 10", .1), 21);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "pause", 1), 4);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "", 1), 4);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "step", 1), 5);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "step -2", 1), 3);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "step -9", 1), 0);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "jump 20", 1), 20);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "", 1), 20);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "play 10", .1), 21);
     /* at 40 pictures per second each frame is shown 4 times */
     for (int i = 1; i < 40; i++)
         assert_int_equal(playback_next_frame(&p, .025), 21 + i / 4);
-    assert_int_equal(play_control_line(&p, "play 0", 9), 30);
-    assert_int_equal(play_control_line(&p, "stop", 9), 0);
-    assert_int_equal(play_control_line(&p, "", 9), 0);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "play 0", 9), 30);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "stop", 9), 0);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "", 9), 0);
     p.last = 2;
-    assert_int_equal(play_control_line(&p, "play", 1), 1);
-    assert_int_equal(play_control_line(&p, "", 1), 2);
-    assert_int_equal(play_control_line(&p, "", 1), 2);
-    assert_int_equal(play_control_line(&p, "jump 9", 1), 2);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "play", 1), 1);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "", 1), 2);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "", 1), 2);
+    assert_int_equal(execute_line_and_play_next_frame(&p, "jump 9", 1), 2);
 }
 
 static void expect_next_command(int picture, enum control_verb verb)

@@ -104,7 +104,7 @@ static void mark_errors_to_measure(struct zoom_error error[GHOSTS])
             error[g].of[a] = g == 0 ? -1 : 2;
 }
 
-static double max_error_of_angles(const struct zoom_error *error)
+static double find_max_error_of_angles(const struct zoom_error *error)
 {
     double most = 0;
 
@@ -136,7 +136,7 @@ TEST(lights_of_adjacent_intervals_meet)
     mark_errors_to_measure(end);
     measure_ghost_errors(&at[2], 0.5, 0, begin);
     measure_ghost_errors(&at[2], 0.5, 1, end);
-    assert_true(max_error_of_angles(&begin[0]) > 3e-5);
+    assert_true(find_max_error_of_angles(&begin[0]) > 3e-5);
     for (int a = 0; a + EACH < ZOOM_ANGLES; a += EACH)
         assert_true(end[0].of[a] == begin[0].of[a + EACH]);
 }

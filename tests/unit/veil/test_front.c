@@ -131,15 +131,15 @@ struct scene {
     struct glint_veil_front front;
 };
 
-static void open_haze_scene(struct scene *s, int tile_log2, int n_workers,
-                            uint32_t order)
+static void open_haze_and_dirt_scene(struct scene *s, int tile_log2,
+                                     int n_workers, uint32_t order)
 {
     const struct glint_veil_config cfg = {n_workers, WIDTH, HEIGHT, 1};
     const size_t bytes = glint_veil_count_bytes(&cfg);
     uint32_t seed = 9;
 
     bare_flare_open(&s->bare, WIDTH, HEIGHT, tile_log2, n_workers, order);
-    s->mem = bare_flare_carve(bytes);
+    s->mem = bare_flare_allocate_filled(bytes);
     assert_ok(glint_veil_init(&s->veil, &cfg, s->mem, bytes));
     for (size_t i = 0; i < sizeof s->part_q16 / 2; i++)
         s->part_q16[i] = (uint16_t)rng_int_below(&seed, 65536);
@@ -193,7 +193,7 @@ TEST(linear_light_is_interpolated_between_nodes)
     static struct scene s;
     double worst = 0;
 
-    open_haze_scene(&s, 5, 1, 1);
+    open_haze_and_dirt_scene(&s, 5, 1, 1);
     draw_haze_of_lamp(&s, 0.25, GLINT_LINEAR_Q20, linear_q20);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
@@ -230,10 +230,10 @@ TEST(codes_are_bit_identical)
 
         memset(first, 0, sizeof first);
         memset(other, 0, sizeof other);
-        open_haze_scene(&s, 6, 1, 1);
+        open_haze_and_dirt_scene(&s, 6, 1, 1);
         draw_haze_of_lamp(&s, light, GLINT_RGB24, first);
         close_haze_scene(&s);
-        open_haze_scene(&s, 3 + k % 3, 1 + k % 3, 7 + (uint32_t)k);
+        open_haze_and_dirt_scene(&s, 3 + k % 3, 1 + k % 3, 7 + (uint32_t)k);
         draw_haze_of_lamp(&s, light, GLINT_RGB24, other);
         close_haze_scene(&s);
         assert_memory_equal(first, other, sizeof first);

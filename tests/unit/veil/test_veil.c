@@ -41,7 +41,7 @@ static void open_veil_canvas(struct canvas *c, int width, int height,
     c->height = height;
     glint_veil_count_cells(width, height, c->cells);
     bare_flare_open(&c->bare, width, height, tile_log2, n_workers, order);
-    c->mem = bare_flare_carve(bytes);
+    c->mem = bare_flare_allocate_filled(bytes);
     assert_int_equal(glint_veil_init(&c->veil, &veil, c->mem, bytes - 1),
                      GLINT_E_MEMORY);
     assert_ok(glint_veil_init(&c->veil, &veil, c->mem, bytes));
