@@ -237,7 +237,7 @@ TEST(threads_have_enough_stack)
 {
     run_with_small_stack(use_stack_in_pool_thread);
     run_with_small_stack(use_stack_in_large_thread);
-    /* if no thread can start, the calling thread runs the jobs */
+    /* if no thread can start, the calling thread runs use_stack() */
     threads_left = 0;
     assert_int_equal(
         glint_process_run_with_stack(SIZE_MAX / 4, use_stack, &(int){4}), 5);

@@ -136,7 +136,7 @@ static const struct scene_dials one_sample = {
     "material a translucent a.glint fresnel off colour 1 .8 .6\n"             \
     "material grey phong .05 .6 .35\n"
 
-/* Stage seen from the other side. */
+/* The scene with camera and sun on the other side, at negative z. */
 #define STAGE_LEFT                                \
     "camera fov 40 at 0 1.4 -4.5 toward 0 .4 0\n" \
     "light sun direction .5 .7 -.6 colour 4e4 3.6e4 3e4\n" LOOKS
