@@ -40,7 +40,7 @@ static const struct glint_assimp *load_assimp_plugin(struct glint_error *error)
     static const struct glint_plugin plugin = {
         "glint-assimp.so",    "GLINT_ASSIMP",
         "glint_assimp_face",  "the mesh plug-in",
-        GLINT_ASSIMP_VERSION, ", so that only OBJ meshes are read",
+        GLINT_ASSIMP_VERSION, "; without it glint reads only OBJ meshes",
         "libassimp-dev",      "assimp"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     /* interface of the loaded plug-in, or NULL; guarded by LOCK */

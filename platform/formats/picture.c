@@ -202,7 +202,7 @@ static enum glint_status read_picture_file(struct glint_input *in,
     *data = malloc(HEAD_BYTES);
     if (!*data)
         return glint_error_report(error, GLINT_E_MEMORY, name,
-                                  "no memory for a buffer");
+                                  "not enough memory to read the file");
     while (n > 0 && *bytes < HEAD_BYTES) {
         n = glint_input_read_available(in, *data + *bytes, HEAD_BYTES - *bytes);
         *bytes += n > 0 ? (size_t)n : 0;
@@ -731,7 +731,7 @@ static void set_colours_of_file(struct glint_kept *k,
         return;
     snprintf(text, sizeof text, "%.24s is unknown; treated as %s",
              facts->cicp[1] ? "the transfer of its cICP"
-             : facts->icc   ? "what its profile says"
+             : facts->icc   ? "its ICC profile's curve"
                             : facts->colour_space,
              k->is_float ? "linear" : "sRGB");
     append_to_notes(k->note, text);

@@ -58,9 +58,10 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     *decoder = NULL;
     if (max_width < 1 || max_width > GLINT_PANEL_SIDE || max_height < 1 ||
         max_height > GLINT_PANEL_SIDE)
-        return glint_error_report(error, GLINT_E_ARGUMENT, name,
-                                  "MJPEG of %d x %d pixels", max_width,
-                                  max_height);
+        return glint_error_report(
+            error, GLINT_E_ARGUMENT, name,
+            "MJPEG frames of up to %d x %d pixels are not supported", max_width,
+            max_height);
     d = calloc(1, sizeof *d);
     if (!d)
         return glint_error_report(error, GLINT_E_MEMORY, name,
@@ -135,11 +136,11 @@ static void on_libjpeg_message(j_common_ptr jpeg, int level)
     switch (jpeg->err->msg_code) {
     case JWRN_HIT_MARKER:
         if (d->ended)
-            leave_libjpeg(
-                d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
-                                      "MJPEG: frame ends in row %d of %d",
-                                      (int)d->jpeg.output_scanline,
-                                      (int)d->jpeg.output_height));
+            leave_libjpeg(d, glint_error_report(
+                                 d->error, GLINT_E_FORMAT, d->name,
+                                 "MJPEG: the frame is cut off in row %d of %d",
+                                 (int)d->jpeg.output_scanline,
+                                 (int)d->jpeg.output_height));
         leave_libjpeg_with_message(jpeg, GLINT_E_FORMAT);
         return;
     case JWRN_HUFF_BAD_CODE:
@@ -169,8 +170,9 @@ static boolean on_data_end(j_decompress_ptr jpeg)
     struct glint_mjpeg *const d = jpeg->client_data;
 
     if (!d->in_scan)
-        leave_libjpeg(d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
-                                            "MJPEG: frame ends in its header"));
+        leave_libjpeg(
+            d, glint_error_report(d->error, GLINT_E_FORMAT, d->name,
+                                  "MJPEG: the frame is cut off in its header"));
     d->ended = true;
     d->source.next_input_byte = end;
     d->source.bytes_in_buffer = sizeof end;
@@ -284,7 +286,7 @@ static void check_jpeg_header(struct glint_mjpeg *d)
                                   d->max_height));
     if (j->jpeg_color_space != JCS_YCbCr &&
         j->jpeg_color_space != JCS_GRAYSCALE)
-        reject_frame(d, "the components are neither Y, Cb, Cr nor grey");
+        reject_frame(d, "only YCbCr and greyscale frames are supported");
     if (j->arith_code)
         reject_frame(d, "arithmetic coding is not supported");
     if (jpeg_has_multiple_scans(&d->jpeg))

@@ -99,7 +99,8 @@ static bool acquire_console(int *fd, struct glint_error *note)
                                            ? "there is none"
                                            : strerror(errno));
     if (mode == KD_GRAPHICS)
-        return explain_console_refusal(fd, note, "another program draws on it");
+        return explain_console_refusal(fd, note,
+                                       "another program draws on this console");
     __atomic_store_n(&held_mode, mode, __ATOMIC_SEQ_CST);
     __atomic_store_n(&holder, getpid(), __ATOMIC_SEQ_CST);
     __atomic_store_n(&held_fd, *fd, __ATOMIC_SEQ_CST);
@@ -234,19 +235,22 @@ adopt_driver_layout(struct glint_fbdev *fb, const struct fb_fix_screeninfo *fix,
             v->bits_per_pixel, fix->type, fix->visual);
     if (v->xres < 1 || v->xres > GLINT_PANEL_SIDE || v->yres < 1 ||
         v->yres > GLINT_PANEL_SIDE)
-        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
-                                  "is %u x %u pixels large", v->xres, v->yres);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, fb->name,
+            "has %u x %u pixels, which glint does not support", v->xres,
+            v->yres);
     fb->width = (int)v->xres;
     fb->height = (int)v->yres;
     fb->stride_bytes = fix->line_length;
     fb->mem_bytes = wanted < fix->smem_len ? (size_t)wanted : fix->smem_len;
     if (fb->stride_bytes < (size_t)fb->width * (size_t)fb->layout.bytes ||
         fb->mem_bytes / fb->stride_bytes < v->yres)
-        return glint_error_report(error, GLINT_E_DEVICE, fb->name,
-                                  "memory of %u bytes in rows of %u is too "
-                                  "small for %u x %u pixels of %u bits",
-                                  fix->smem_len, fix->line_length, v->xres,
-                                  v->yres, v->bits_per_pixel);
+        return glint_error_report(
+            error, GLINT_E_DEVICE, fb->name,
+            "the driver reports %u bytes in rows of %u bytes, too few for %u x "
+            "%u pixels of %u bits",
+            fix->smem_len, fix->line_length, v->xres, v->yres,
+            v->bits_per_pixel);
     memcpy(fb->id, fix->id, 16);
     fb->skip_bytes = fix->smem_start & ((size_t)sysconf(_SC_PAGESIZE) - 1);
     return GLINT_OK;
@@ -414,7 +418,8 @@ static enum glint_status draw_to_visible_screen(struct glint_fbdev *fb,
         left + (size_t)fb->width * (size_t)fb->layout.bytes > fb->stride_bytes)
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
-            "the driver reports a picture outside its memory, at %u, %u",
+            "the driver reports that the visible picture begins at pixel %u, "
+            "%u, outside the framebuffer",
             fb->var.xoffset, first);
     if (fb->has_vsync && glint_ioctl(fb->fd, FBIO_WAITFORVSYNC, &screen) < 0)
         fb->has_vsync = false;

@@ -22,7 +22,7 @@ static const char *get_error_advice(int number)
     switch (number) {
     case EACCES:
     case EPERM:
-        return "; users of it are in the group 'video'";
+        return "; its users must be in the group 'video'";
     case EBUSY:
         return "; another program is using it";
     case ENODEV:

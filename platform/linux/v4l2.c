@@ -372,7 +372,7 @@ static const char *allocate_supported_buffers(struct glint_v4l2 *v)
     if (v->n_buffers || failed)
         return failed;
     errno = ENOTSUP;
-    return "streaming or reading, as --io allows";
+    return "streaming or reading (whichever --io allows)";
 }
 
 /* time limit for restarting a broken stream, us */
@@ -822,8 +822,9 @@ static void describe_source_format(const struct glint_source *source,
                   .transfer = f->transfer},
         .fps_num = f->fps_num,
         .fps_den = f->fps_den,
-        .detail =
-            v->exports_dmabuf ? "buffers could be exported as DMABUF" : NULL};
+        .detail = v->exports_dmabuf
+                      ? "the driver can export its buffers as DMABUF"
+                      : NULL};
     glint_v4l2_format_text(f, text);
     snprintf(format->text, sizeof format->text,
              "%s (%s): %s, %d %s buffers%s%s", v->device.path, v->device.card,

@@ -388,7 +388,7 @@ static enum glint_status open_device_by_name(struct glint_v4l2_device *d,
                  isdigit((unsigned char)*name) ? "/dev/video" : "",
                  name) >= GLINT_V4L2_PATH)
         return glint_error_report(error, GLINT_E_DEVICE, name,
-                                  "the name is too long");
+                                  "the name of the device is too long");
     status = open_device_node(d, error);
     if (status != GLINT_OK)
         return status;

@@ -156,7 +156,8 @@ bytes encode_webp(const unsigned char *pixels, int width, int height,
     if (!WebPConfigPreset(&config, WEBP_PRESET_PHOTO,
                           static_cast<float>(quality ? quality : 100)) ||
         !WebPPictureInit(&picture))
-        throw failure{GLINT_E_OUTPUT, "the installed libwebp has an incompatible version"};
+        throw failure{GLINT_E_OUTPUT,
+                      "the installed libwebp has an incompatible version"};
     if (width > WEBP_MAX_DIMENSION || height > WEBP_MAX_DIMENSION)
         throw failure{GLINT_E_OUTPUT, "WebP has at most 16383 pixels a side"};
     if (!quality)
@@ -429,8 +430,8 @@ void add_rgb_by_profile(struct glint_oiio_file &file)
     }
     file.lost += std::string(file.lost.empty() ? "" : "; ") +
                  (is_ink ? "its CMYK becomes sRGB"
-                         : "its profile has no table for writing: colours "
-                           "become sRGB");
+                         : "its ICC profile cannot convert colours back, so "
+                           "they become sRGB");
     part = std::move(rgb);
     file.meta.icc.clear();
     file.drops_icc = true;
@@ -627,10 +628,10 @@ void describe_file_in_facts(struct glint_oiio_facts &facts, struct glint_oiio_fi
             append_note(facts.note, more.c_str());
     }
     if (is_rgb_from_cmyk(file, spec) && !file.drops_icc) {
-        append_note(facts.note,
-                    file.type == "jpeg"
-                        ? "its CMYK becomes RGB"
-                        : "its CMYK is read as RGB: all inks change");
+        append_note(facts.note, file.type == "jpeg"
+                                    ? "its CMYK becomes RGB"
+                                    : "its CMYK is converted to RGB and back, "
+                                      "which changes all inks");
         file.drops_icc = true;
     }
     if (!file.lost.empty())
@@ -750,10 +751,8 @@ int glint::can_write(const char *path)
     struct glint_error error;
     bool can = false;
 
-    guarded(path, GLINT_E_OUTPUT, &error,
-            [&] {
-                const std::unique_ptr<ImageOutput> out =
-                    ImageOutput::create(path);
+    guarded(path, GLINT_E_OUTPUT, &error, [&] {
+        const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
                 can = out && (out->format_name() != std::string("heif") ||
                               is_heif_writable(has_avif_extension(path)));
@@ -820,28 +819,18 @@ class memory : public OIIO::Filesystem::IOProxy
  * content. */
 void remove_coding_attributes(ImageSpec &spec)
 {
-    for (const char *name : {"compression",
-                             "oiio:BitsPerSample",
-                             "tiff:Compression",
-                             "tiff:PhotometricInterpretation",
-                             "tiff:ColorSpace",
-                             "tiff:PlanarConfiguration",
-                             "planarconfig",
-                             "tiff:RowsPerStrip",
-                             "tiff:Predictor",
-                             "tiff:PageNumber",
-                             "openexr:lineOrder",
-                             "png:compressionLevel",
-                             "oiio:ColorSpace",
-                             "oiio:Gamma",
-                             "Exif:PixelXDimension",
-                             "Exif:PixelYDimension",
-                             "oiio:subimages",
-                             "thumbnail_width",
-                             "thumbnail_height",
-                             "thumbnail_nchannels",
-                             "thumbnail_image",
-                             "jpeg:subsampling"})
+    for (const char *name :
+         {"compression",          "oiio:BitsPerSample",
+          "tiff:Compression",     "tiff:PhotometricInterpretation",
+          "tiff:ColorSpace",      "tiff:PlanarConfiguration",
+          "planarconfig",         "tiff:RowsPerStrip",
+          "tiff:Predictor",       "tiff:PageNumber",
+          "openexr:lineOrder",    "png:compressionLevel",
+          "oiio:ColorSpace",      "oiio:Gamma",
+          "Exif:PixelXDimension", "Exif:PixelYDimension",
+          "oiio:subimages",       "thumbnail_width",
+          "thumbnail_height",     "thumbnail_nchannels",
+          "thumbnail_image",      "jpeg:subsampling"})
         spec.erase_attribute(name);
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;
 }
@@ -963,7 +952,7 @@ bool is_metadata_copied_from(const struct glint_oiio_file &file)
 /* Encodes an EXR of several parts through a temporary file: OpenImageIO 2.4
  * cannot write it to memory, although it reports that it can. */
 bytes encode_exr(ImageOutput &out, std::vector<ImageSpec> &specs,
-                     const std::vector<kept_part> &parts)
+                 const std::vector<kept_part> &parts)
 {
     const glint::memory_file file;
     const std::unique_ptr<ImageInput> check = ImageInput::create("exr");
@@ -972,7 +961,7 @@ bytes encode_exr(ImageOutput &out, std::vector<ImageSpec> &specs,
     write_parts(out, file.name().c_str(), specs, parts);
     if (!check || !check->open(file.name(), first) ||
         !check->seek_subimage(static_cast<int>(parts.size()) - 1, 0))
-        throw failure{GLINT_E_OUTPUT, "could not be written into memory"};
+        throw failure{GLINT_E_OUTPUT, "could not be encoded in memory"};
     return file.contents();
 }
 
@@ -1044,14 +1033,13 @@ bytes encode_heif(const char *path, const kept_part &part,
         for (size_t c = 0; c < size_t(p.channels); c++) {
             const size_t from = n >= 3 ? c : c < 3 ? 0 : 1;
 
-            p.pixels.insert(p.pixels.end(),
-                            part.pixels.begin() + long(at + from * sample),
-                            part.pixels.begin() +
-                                long(at + (from + 1) * sample));
+            p.pixels.insert(
+                p.pixels.end(), part.pixels.begin() + long(at + from * sample),
+                part.pixels.begin() + long(at + (from + 1) * sample));
         }
     if (glint::get_heif_bits(p) < p.bits)
-        std::snprintf(options.said, sizeof options.said,
-                      "%d bits remain", glint::get_heif_bits(p));
+        std::snprintf(options.said, sizeof options.said, "%d bits remain",
+                      glint::get_heif_bits(p));
     return glint::encode_heif_picture(p, quality);
 }
 

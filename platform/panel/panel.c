@@ -641,7 +641,7 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
         !is_side_in_range(cfg->image_width) ||
         !is_side_in_range(cfg->image_height))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "panel",
-                                  "sides must be 1 to %d pixels",
+                                  "width and height must be 1 to %d pixels",
                                   GLINT_PANEL_SIDE);
     if (!glint_pixel_layout_is_valid(&cfg->layout))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, "panel",

@@ -441,10 +441,11 @@ static enum glint_status init_neighbour_setups(struct bake_run *run,
         if (!glint_prescription_is_round(run->lens) ||
             beside->n_surfaces != run->lens->n_surfaces ||
             beside->stop_after != run->lens->stop_after)
-            snprintf(run->error->text, sizeof run->error->text,
-                     "%s is not rotationally symmetric, or the adjacent zoom "
-                     "position has another number of surfaces or another stop",
-                     run->lens->name);
+            snprintf(
+                run->error->text, sizeof run->error->text,
+                "%s: zoom positions need a rotationally symmetric lens with "
+                "the same surfaces and the same stop at all positions",
+                run->lens->name);
         else
             status = glint_setup_init(&run->beside[k], beside, 0, 0, rgb_nm, 3,
                                       run->error);

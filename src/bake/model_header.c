@@ -43,11 +43,11 @@ glint_bake_check_options(const struct glint_bake_options *options,
             ? "the band must be two ascending wavelengths, 1 nm or more apart, "
               "within 300 to 1100 nm"
         : !(o->max_deg > 0 && o->max_deg <= 89)
-            ? "the largest angle must be above 0 and at most 89 degrees"
+            ? "the max angle of lights must be above 0 and at most 89 degrees"
         : !(o->field_mm >= 0 && o->field_mm < 1e6)
             ? "the radius of the field must be a number of mm above 0"
         : !(o->tolerance >= 0.1 && o->tolerance <= 100)
-            ? "the tolerance must be 0.1 to 100"
+            ? "the scale of the tolerances must be 0.1 to 100"
         : !(o->n_beside >= 0 && o->n_beside <= GLINT_MAX_BESIDE) ||
                 (o->n_beside > 0 && !o->beside)
             ? "a zoom position has at most two adjacent positions"

@@ -74,18 +74,23 @@ uint32_t glint_model_crc32(const void *data, size_t bytes)
 /* ------------------------------------------------------------------ header */
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] = {
-    [GLINT_BLOB_UNALIGNED] = "the model is not aligned to 4 bytes",
+    [GLINT_BLOB_UNALIGNED] =
+        "the model's address in memory is not a multiple of 4 bytes",
     [GLINT_BLOB_FOREIGN] = "this is not a glint model",
     [GLINT_BLOB_NEWER] = "the model was made by a newer glint",
-    [GLINT_BLOB_NO_VERSION] = "the model's version is unknown",
+    [GLINT_BLOB_NO_VERSION] = "no glint has ever written a model of this "
+                              "version: not a glint model, or damaged",
     [GLINT_BLOB_OLDER] = "the model was made by an older glint: bake it again",
     [GLINT_BLOB_TRUNCATED] = "the model is truncated",
-    [GLINT_BLOB_LONGER] = "the model continues after its end",
+    [GLINT_BLOB_LONGER] = "the model file is longer than its header says",
     [GLINT_BLOB_DAMAGED] = "the checksum is wrong: the model is damaged",
-    [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",
-    [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte beyond ASCII",
-    [GLINT_BLOB_NAME_ENDLESS] = "the name does not end",
-    [GLINT_BLOB_NAME_EMPTY] = "the name is empty"};
+    [GLINT_BLOB_NAME_CONTROL] =
+        "damaged model: its name has a control character",
+    [GLINT_BLOB_NAME_FOREIGN] =
+        "damaged model: its name has a byte outside ASCII",
+    [GLINT_BLOB_NAME_ENDLESS] =
+        "damaged model: its name is not zero-terminated",
+    [GLINT_BLOB_NAME_EMPTY] = "damaged model: its name is empty"};
 
 static int is_real_normalised(const struct glint_real *x)
 {

@@ -60,7 +60,7 @@ static const char *list_all_ghosts(struct glint_zoom_lens *z)
     int end = n;
 
     if (n >= GLINT_MAX_ZOOM_GHOSTS)
-        return "a zoom has too many ghosts";
+        return "the zoom model has too many ghosts";
     for (int k = 0; k < z->n_models; k++)
         next[k] = (uint32_t)n;
     for (int g = 0; g < n; g++) {
@@ -83,7 +83,7 @@ static const char *list_all_ghosts(struct glint_zoom_lens *z)
         }
     }
     if (end >= GLINT_MAX_ZOOM_GHOSTS)
-        return "a zoom has too many parts of ghosts";
+        return "the zoom model has too many parts of ghosts";
     z->part_from[n] = (int16_t)end;
     for (int k = 0; k < z->n_models; k++)
         if (next[k] != z->model[k].header->n_ghosts)
@@ -215,16 +215,17 @@ static const char *check_zoom_positions(const struct glint_lens *a,
         return "a zoom's models must be of round lenses (basis auto)";
     if (h->n_surfaces != g->n_surfaces ||
         count_ghosts_without_parts(a) != count_ghosts_without_parts(b))
-        return "a zoom's models are of different lenses";
+        return "the models of a zoom must all be of one lens";
     if (!are_reals_equal(h->film_width_mm, g->film_width_mm) ||
         !are_reals_equal(h->film_height_mm, g->film_height_mm) ||
         !are_reals_equal(h->field_mm, g->field_mm) ||
         h->wave_lo_q24 != g->wave_lo_q24 || h->wave_hi_q24 != g->wave_hi_q24 ||
         h->sine_hi_q30 != g->sine_hi_q30)
-        return "a zoom's models differ in film, field, band or largest angle";
+        return "the models of a zoom must have equal film, field, wavelength "
+               "band and max angle";
     for (int k = 0; k < count_ghosts_without_parts(a); k++)
         if (a->ghost[k].i != b->ghost[k].i || a->ghost[k].j != b->ghost[k].j)
-            return "a zoom's models have different ghosts";
+            return "the models of a zoom must have the same ghosts";
     return NULL;
 }
 
@@ -412,13 +413,13 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
 
     if (n < 2 || n > GLINT_MAX_ZOOM_MODELS || along_q30[0] != 0 ||
         along_q30[n - 1] != TRANSFER_ONE_Q30)
-        wrong = "a zoom's positions must begin at 0 and end at 1";
+        wrong = "the positions of a zoom's models must begin at 0 and end at 1";
     for (int k = 0; k < n && !wrong; k++) {
         z->model[k] = model[k];
         z->along_q30[k] = along_q30[k];
         z->has[k] = NULL;
         if (k && along_q30[k] <= along_q30[k - 1])
-            wrong = "a zoom's positions must ascend";
+            wrong = "the positions of a zoom's models must ascend";
         else if (k)
             wrong = check_zoom_positions(&model[0], &model[k]);
     }
@@ -459,7 +460,7 @@ static enum glint_status record_missing_ghosts(struct glint_zoom_lens *zoom,
         zoom->has[k] =
             glint_blob_find_section(blob, m[k].has_at, words, sizeof(uint32_t));
         *reason =
-            end ? "a zoom's first or last position lacks ghosts"
+            end ? "damaged zoom model: its first or last position lacks ghosts"
                 : "damaged zoom model: a list of ghosts lies outside the file";
         if (end || !zoom->has[k])
             return GLINT_E_LENS;
@@ -487,7 +488,7 @@ enum glint_status glint_zoom_open(struct glint_zoom_lens *zoom,
     *reason = "damaged zoom model: a table lies outside the file";
     if (!m)
         return GLINT_E_LENS;
-    *reason = "a zoom has fewer than 2 models or too many";
+    *reason = "damaged zoom model: it has fewer than 2 models or too many";
     if (h->n_models < 2 || h->n_models > GLINT_MAX_ZOOM_MODELS)
         return GLINT_E_LENS;
     for (uint32_t k = 0; k < h->n_models; k++) {

@@ -24,7 +24,7 @@ struct check {
     struct glint_scene_model model;
 };
 
-#define OUTSIDE "a table lies outside the file"
+#define OUTSIDE "damaged scene: a table lies outside the file"
 
 enum { SPAN = GLINT_SCENE_SPAN, UV_LIMIT = 1 << 24 };
 
@@ -42,16 +42,19 @@ static const char *check_vertices(struct check *c,
     if (!glint_scene_is_vector_within(m->centre, 3, SPAN / 2) ||
         m->radius < 0 ||
         glint_scene_compute_vector_length(m->centre) + m->radius > SPAN / 2)
-        return "a mesh is too large, or outside the scene's range";
+        return "damaged scene: a mesh is too large, or outside the scene's "
+               "coordinate range";
     for (size_t i = 0; i < m->n_vertices; i++) {
         int32_t off[3];
 
         if (!glint_scene_is_vector_within(at + 3 * i, 3, SPAN))
-            return "a vertex is outside the scene's range";
+            return "damaged scene: a vertex is outside the scene's coordinate "
+                   "range";
         for (int k = 0; k < 3; k++)
             off[k] = at[3 * i + (size_t)k] - m->centre[k];
         if (glint_scene_compute_vector_length(off) > reach)
-            return "a vertex is outside the bounding sphere of its mesh";
+            return "damaged scene: a vertex is outside the bounding sphere of "
+                   "its mesh";
     }
     return NULL;
 }
@@ -72,9 +75,10 @@ static const char *check_attributes(struct check *c,
     for (size_t i = 0; i < m->n_vertices; i++) {
         if (uv_q16 &&
             !glint_scene_is_vector_within(uv_q16 + 2 * i, 2, UV_LIMIT))
-            return "a vertex's u or v is out of range";
+            return "damaged scene: a vertex's texture coordinate is out of "
+                   "range";
         if (normal_q30 && !glint_scene_is_unit_vector(normal_q30 + 3 * i, 3))
-            return "a vertex's normal is not a unit vector";
+            return "damaged scene: a vertex's normal is not a unit vector";
     }
     return NULL;
 }
@@ -90,10 +94,12 @@ static const char *check_triangles(struct check *c,
     for (uint32_t i = 0; i < m->n_triangles; i++) {
         for (int k = 0; k < 3; k++)
             if (t[i].vertex[k] >= m->n_vertices)
-                return "a triangle's vertex is out of range";
+                return "damaged scene: a triangle refers to a vertex that does "
+                       "not exist";
         if (t[i].material != GLINT_SCENE_NONE &&
             t[i].material >= c->model.header->n_materials)
-            return "a triangle's material is out of range";
+            return "damaged scene: a triangle refers to a material that does "
+                   "not exist";
     }
     return NULL;
 }
@@ -160,7 +166,8 @@ static const char *check_cell_lists(const struct check *check,
     for (; c[2] < m->cells[2]; start++) {
         for (uint32_t i = start[0]; i < start[1]; i++) {
             if (i > start[0] && ref[i] <= ref[i - 1])
-                return "a grid's list is not in rising order";
+                return "damaged scene: a grid cell lists its triangles out of "
+                       "order";
             missing -=
                 (uint64_t)triangle_overlaps_cell(m, vertex, &t[ref[i]], c);
         }
@@ -170,7 +177,9 @@ static const char *check_cell_lists(const struct check *check,
             c[k + 1]++;
         }
     }
-    return missing ? "a grid's list lacks a triangle" : NULL;
+    return missing ? "damaged scene: a grid cell does not list a triangle that "
+                     "overlaps it"
+                   : NULL;
 }
 
 static const char *check_mesh_grid(struct check *c,
@@ -181,11 +190,13 @@ static const char *check_mesh_grid(struct check *c,
 
     if (m->cell_log2 < 2 || m->cell_log2 > 28 ||
         !glint_scene_is_vector_within(m->origin, 3, SPAN))
-        return "a mesh's grid is out of range";
+        return "damaged scene: the grid of a mesh is outside the scene's "
+               "coordinate range";
     for (int k = 0; k < 3; k++) {
         if (m->cells[k] < 1 || m->cells[k] > GLINT_SCENE_MAX_CELLS ||
             m->origin[k] + ((int64_t)m->cells[k] << m->cell_log2) > SPAN)
-            return "a mesh's grid is out of range";
+            return "damaged scene: the grid of a mesh is outside the scene's "
+                   "coordinate range";
         cells *= m->cells[k];
     }
     start = glint_blob_find_section(&c->blob, m->start_at, cells + 1,
@@ -193,17 +204,19 @@ static const char *check_mesh_grid(struct check *c,
     if (!start)
         return OUTSIDE;
     if (start[0] != 0)
-        return "a grid's lists do not begin at entry 0";
+        return "damaged scene: the triangle lists of a grid do not begin at "
+               "entry 0";
     for (uint64_t i = 0; i < cells; i++)
         if (start[i] > start[i + 1])
-            return "a grid's lists are not in rising order";
+            return "damaged scene: the triangle lists of a grid overlap";
     ref =
         glint_blob_find_section(&c->blob, m->ref_at, start[cells], sizeof *ref);
     if (!ref)
         return OUTSIDE;
     for (uint32_t i = 0; i < start[cells]; i++)
         if (ref[i] >= m->n_triangles)
-            return "a grid's triangle is out of range";
+            return "damaged scene: a grid cell refers to a triangle that does "
+                   "not exist";
     return check_cell_lists(c, m, start, ref);
 }
 
@@ -230,22 +243,25 @@ static const char *check_object(const struct check *check,
     const int is_plane = o->kind == GLINT_OBJECT_PLANE;
 
     if (!glint_scene_is_valid_name(o->name))
-        return "an object's name is empty, unterminated or not printable";
+        return "damaged scene: an object's name is empty, unterminated or not "
+               "printable";
     if (o->kind > GLINT_OBJECT_MESH)
-        return "an object's kind is unknown";
+        return "damaged scene: an object is of an unknown type";
     if (o->material >= h->n_materials)
-        return "an object's material is out of range";
+        return "damaged scene: an object refers to a material that does not "
+               "exist";
     if (!is_sphere && !is_plane ? o->mesh >= h->n_meshes : o->mesh != 0)
-        return "an object's mesh is out of range";
+        return "damaged scene: an object refers to a mesh that does not exist";
     if (o->radius < is_sphere || o->radius > (is_sphere ? SPAN / 2 : 0))
-        return "a sphere's radius is out of range";
+        return "damaged scene: a sphere's radius is out of range";
     if (o->catcher_q15 < 0 || o->catcher_q15 > (is_plane ? 1 << 15 : 0))
-        return "a plane's fraction of shadow is out of range";
+        return "damaged scene: the shadow strength of a plane is not 0 .. 1";
     if (o->hidden > 1 || !glint_scene_is_unit_vector(o->turn_q30, 4))
-        return "an object's pose is out of range";
+        return "damaged scene: an object's rotation is not a unit quaternion";
     return glint_scene_is_object_in_range(&check->model, o, o->at)
                ? NULL
-               : "an object is outside the scene's range";
+               : "damaged scene: an object is outside the scene's coordinate "
+                 "range";
 }
 
 /* ------------------------------------------------------------------
@@ -257,11 +273,13 @@ static const char *check_translucent_medium(struct check *c,
     const struct glint_scene_material *m;
 
     if (s->material >= c->model.header->n_materials || s->fresnel > 1)
-        return "a translucent medium's material is out of range";
+        return "damaged scene: a translucent medium refers to a material that "
+               "does not exist";
     m = &c->model.material[s->material];
     if (m->ambient_q15 || m->diffuse_q15 || m->specular_q15 || m->reflect_q15 ||
         m->pass_q15 || m->texture != GLINT_SCENE_NONE)
-        return "a translucent material has Phong weights";
+        return "damaged scene: a translucent material also has Phong shading "
+               "or a texture";
     if (s->file_bytes < sizeof(struct glint_translucent_header) ||
         s->file_bytes % 4 ||
         !glint_blob_find_section(&c->blob, s->file_at, s->file_bytes / 4, 4))
@@ -296,7 +314,8 @@ static const char *check_ball_map(struct check *c,
         return OUTSIDE;
     for (uint32_t i = 0; i < 3 * side; i++)
         if (!glint_scene_is_unit_vector(turn_q30 + 2 * (size_t)i, 2))
-            return "a column or row of a ball's map is out of range";
+            return "damaged scene: the texel map of a translucent sphere has "
+                   "an invalid direction";
     return NULL;
 }
 
@@ -311,10 +330,11 @@ static const char *check_mesh_map(struct check *c,
     if (!texel)
         return OUTSIDE;
     if (!mesh->uv_at)
-        return "a translucent mesh has no u and v";
+        return "damaged scene: a translucent mesh has no texture coordinates";
     for (uint32_t i = 0; i < side * side; i++)
         if (texel[i] != GLINT_SCENE_NONE && texel[i] >= mesh->n_triangles)
-            return "a texel's triangle is out of range";
+            return "damaged scene: a texel refers to a triangle that does not "
+                   "exist";
     return NULL;
 }
 
@@ -327,16 +347,18 @@ static const char *check_translucency_map(struct check *c, uint32_t i)
 
     if (skin->object >= m->header->n_objects ||
         skin->stone >= m->header->n_stones || skin->closed > 1)
-        return "a map's object or translucent medium is out of range";
+        return "damaged scene: a texel map refers to an object or medium that "
+               "does not exist";
     for (uint32_t k = 0; k < i; k++)
         if (m->skin[k].object == skin->object)
-            return "an object has two maps";
+            return "damaged scene: an object has two texel maps";
     o = &m->object[skin->object];
     log2 = read_map_side_log2(m, skin);
     if (log2 == 0)
-        return "a translucent medium's side or kernel is out of range";
+        return "damaged scene: the texel count of a translucent medium is out "
+               "of range";
     if (o->kind == GLINT_OBJECT_PLANE)
-        return "a plane has a map";
+        return "damaged scene: a plane has a texel map of a translucent medium";
     return o->kind == GLINT_OBJECT_SPHERE
                ? check_ball_map(c, skin, UINT32_C(1) << log2)
                : check_mesh_map(c, skin, &m->mesh[o->mesh],
@@ -373,7 +395,7 @@ static const char *check_translucent_tables(struct check *c)
         wrong = check_translucency_map(c, i);
     for (uint32_t i = 0; !wrong && i < h->n_objects; i++)
         if (!has_map_if_translucent(&c->model, i))
-            wrong = "a translucent object has no map";
+            wrong = "damaged scene: a translucent object has no texel map";
     return wrong;
 }
 
@@ -407,20 +429,23 @@ static const char *check_light(const struct glint_scene_light *light)
     const int is_sun = light->kind == GLINT_LIGHT_SUN;
 
     if (!glint_scene_is_valid_name(light->name))
-        return "a light's name is empty, unterminated or not printable";
+        return "damaged scene: a light's name is empty, unterminated or not "
+               "printable";
     if (light->kind > GLINT_LIGHT_LAMP)
-        return "a light's kind is unknown";
+        return "damaged scene: a light is of an unknown type";
     if (!glint_scene_is_vector_within(light->at, 3,
                                       is_sun ? 0 : GLINT_SCENE_SPAN - 1) ||
         !glint_scene_is_number_in_range(light->radius, 0,
                                         is_sun ? 1 << 29 : GLINT_SCENE_SPAN))
-        return "a light is outside the scene's range, or too large";
+        return "damaged scene: a light is too large, or outside the scene's "
+               "coordinate range";
     if (is_sun ? !glint_scene_is_unit_vector(light->toward_q30, 3)
                : !glint_scene_is_vector_within(light->toward_q30, 3, 0))
-        return "a light's direction is not a unit vector";
+        return "damaged scene: a light's direction is not a unit vector";
     for (int k = 0; k < 3; k++)
         if (!glint_scene_is_valid_intensity(&light->rgb[k]))
-            return "a light is negative or not normalised";
+            return "damaged scene: a light's intensity is negative or not "
+                   "normalised";
     return NULL;
 }
 
@@ -431,7 +456,7 @@ static const char *check_texture(struct check *c,
     uint64_t texels = 1;
 
     if (w > GLINT_SCENE_TEXTURE_LOG2 || h > GLINT_SCENE_TEXTURE_LOG2)
-        return "a texture is too large";
+        return "damaged scene: a texture is too large";
     for (; w || h; w -= w > 0, h -= h > 0)
         texels += UINT64_C(1) << (w + h);
     return glint_blob_find_section(&c->blob, t->texel_at, (3 * texels + 3) / 4,
@@ -448,23 +473,27 @@ static const char *check_material(const struct check *c,
                               m->rgb_q15[1],  m->rgb_q15[2]};
 
     if (!glint_scene_is_valid_name(m->name))
-        return "a material's name is empty, unterminated or not printable";
+        return "damaged scene: a material's name is empty, unterminated or not "
+               "printable";
     for (size_t k = 0; k < sizeof weight / sizeof *weight; k++)
         if (!glint_scene_is_number_in_range(weight[k], 0, ONE_Q15))
-            return "a material's weight or colour is not 0 .. 1";
+            return "damaged scene: a material's weight or colour is not 0 .. 1";
     if (m->ambient_q15 + m->diffuse_q15 + m->specular_q15 > ONE_Q15 ||
         m->reflect_q15 + m->pass_q15 > ONE_Q15)
-        return "a material's weights sum to more than 1";
+        return "damaged scene: a material's weights sum to more than 1";
     if (!glint_scene_is_number_in_range(m->power_q8, 1 << 8, 1 << 20) ||
         !glint_scene_is_number_in_range(m->index_q16, 1 << 14, 1 << 18))
-        return "a material's power or index is out of range";
+        return "damaged scene: a material's Phong exponent or refractive index "
+               "is out of range";
     if (m->texture != GLINT_SCENE_NONE &&
         m->texture >= c->model.header->n_textures)
-        return "a material's texture is out of range";
+        return "damaged scene: a material refers to a texture that does not "
+               "exist";
     if (m->ward != GLINT_SCENE_NONE && m->ward >= c->model.header->n_wards)
-        return "a material's brushed metal is out of range";
+        return "damaged scene: a material refers to a brushed metal that does "
+               "not exist";
     if (m->ward != GLINT_SCENE_NONE && m->specular_q15)
-        return "a brushed metal has a Phong highlight";
+        return "damaged scene: a brushed metal also has a Phong highlight";
     return NULL;
 }
 
@@ -474,10 +503,12 @@ static const char *check_environment(struct check *c,
                                      const struct glint_scene_environment *e)
 {
     if (!glint_scene_is_valid_name(e->name))
-        return "an environment's name is empty, unterminated or not printable";
+        return "damaged scene: an environment's name is empty, unterminated or "
+               "not printable";
     if (!glint_scene_is_unit_vector(e->turn_q30, 2) || e->scale.mantissa == 0 ||
         !glint_scene_is_valid_intensity(&e->scale))
-        return "the environment's turn or scale is out of range";
+        return "damaged scene: the environment's rotation or intensity scale "
+               "is invalid";
     return e->file_bytes % 4 == 0 &&
                    glint_blob_find_section(&c->blob, e->file_at,
                                            e->file_bytes / 4, 4)
@@ -493,7 +524,8 @@ static const char *check_environment_suns(const struct glint_scene_model *m)
 
     for (uint32_t k = 1; k <= h->n_environment_lights; k++)
         if (m->light[h->n_lights - k].kind != GLINT_LIGHT_SUN)
-            return "a light of the environment is not a sun";
+            return "damaged scene: a light of the environment is not of the "
+                   "type sun";
     return NULL;
 }
 
@@ -507,33 +539,38 @@ static const char *check_motion(const struct glint_scene_header *h,
                                  m->box_material};
 
     if (!glint_scene_is_valid_name(m->name))
-        return "a motion's name is empty, unterminated or not printable";
+        return "damaged scene: the motion's name is empty, unterminated or not "
+               "printable";
     for (int k = 0; k < 4; k++)
         if (!glint_scene_is_number_in_range(length[k], 0, GLINT_SCENE_SPAN / 4))
-            return "a size of the motion is out of range";
+            return "damaged scene: a size of the motion's body or markers is "
+                   "out of range";
     for (int k = 0; k < 3; k++)
         if (material[k] >= h->n_materials)
-            return "a material of the motion is out of range";
+            return "damaged scene: the motion refers to a material that does "
+                   "not exist";
     if (m->detect > GLINT_DETECT_BOTH || m->least > 255 || m->bytes % 4 ||
         m->zero)
-        return "the motion's settings are out of range";
+        return "damaged scene: the motion's detection settings are out of "
+               "range";
     return NULL;
 }
 
 static const char *check_header(const struct glint_scene_header *h)
 {
     if (h->variant > GLINT_HAND_RIGHT)
-        return "the scene's variant is unknown";
+        return "the scene file is of a variant that this glint does not know";
     if (!glint_scene_is_number_in_range(h->unit_log2, -28, 60))
-        return "the scene's unit is out of range";
+        return "damaged scene: the unit of length is out of range";
     if (h->shadow > 1 || h->flare > 1 || h->highlights > MAX_HIGHLIGHTS ||
         h->background > GLINT_BACKGROUND_ENVIRONMENT)
-        return "the scene's settings are out of range";
+        return "damaged scene: the settings of shadow, flare or background are "
+               "out of range";
     for (int k = 0; k < 3; k++)
         if (!glint_scene_is_number_in_range(
                 h->background_q15[k], 0,
                 h->background == GLINT_BACKGROUND_COLOUR ? ONE_Q30 : 0))
-            return "the background's colour is out of range";
+            return "damaged scene: the background's colour is out of range";
     if (h->n_lights > GLINT_SCENE_MAX_LIGHTS ||
         h->n_textures > GLINT_SCENE_MAX_TEXTURES ||
         h->n_materials > GLINT_SCENE_MAX_MATERIALS ||
@@ -544,9 +581,11 @@ static const char *check_header(const struct glint_scene_header *h)
         h->n_skins > GLINT_SCENE_MAX_SKINS || h->n_motions > 1 ||
         h->n_environments > GLINT_SCENE_MAX_ENVIRONMENTS ||
         h->n_environment_lights > (h->n_environments ? h->n_lights : 0))
-        return "the scene has too many objects of one type";
+        return "damaged scene: it has too many objects, lights, materials or "
+               "meshes";
     if (h->background == GLINT_BACKGROUND_ENVIRONMENT && !h->n_environments)
-        return "the background needs an environment, but there is none";
+        return "damaged scene: the background needs an environment, but there "
+               "is none";
     return glint_scene_check_camera(&h->camera);
 }
 

@@ -93,13 +93,14 @@ const char *glint_scene_check_camera(const struct glint_scene_camera *c)
     const int has_y = c->kind == GLINT_CAMERA_CORNERS;
 
     if (c->kind > GLINT_CAMERA_LENS)
-        return "the camera's kind is unknown";
+        return "the scene's camera is of an unknown type";
     if (!glint_scene_is_vector_within(c->at, 3, GLINT_SCENE_SPAN - 1))
-        return "the camera is outside the scene's range";
+        return "the scene's camera is outside the scene's coordinate range";
     for (int k = 0; k < 3; k++)
         if (!glint_scene_is_unit_vector(c->axis_q30[k], 3) ||
             !are_axes_perpendicular(c->axis_q30[k], c->axis_q30[(k + 1) % 3]))
-            return "the camera's axes are not orthogonal unit vectors";
+            return "the axes of the scene's camera are not orthogonal unit "
+                   "vectors";
     if (!glint_scene_is_number_in_range(c->tan_x_q24, has_x << 12,
                                         has_x << 30) ||
         !glint_scene_is_number_in_range(c->tan_y_q24, has_y << 12, has_y << 30))
@@ -117,6 +118,6 @@ const char *glint_scene_check_metal(const struct glint_scene_ward *w)
         !glint_scene_is_number_in_range(w->alpha_q24[1], LEAST_ALPHA_Q24,
                                         1 << 24) ||
         w->norm > 1)
-        return "a brushed metal's roughness or norm is out of range";
+        return "the roughness or norm of a brushed metal is out of range";
     return NULL;
 }

@@ -85,7 +85,7 @@ static void parse_control_text(const char *text, struct playback *playback)
         return;
     }
     check_parsed_command(&line);
-    playback_execute_line(playback, &line);
+    playback_execute_command(playback, &line);
     frame = playback_next_frame(playback, .04);
     require(frame >= 0 && frame <= playback->last);
 }

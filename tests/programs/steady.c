@@ -85,8 +85,8 @@ static double compute_true_light_span(const struct steady *s)
 
 static void record_light_step(struct steady *s, double total, double own)
 {
-    const bool is_cut = drawing_has_restarted(&s->drawing);
-    /* a fainter flare is invisible: its appearance is not a step */
+    const bool is_cut = drawing_has_exposure_restarted(&s->drawing);
+    /* a fainter flare is invisible, so its appearance is not a step */
     const double least = 1e-6;
 
     s->cuts += is_cut && s->frames > 0;
@@ -128,7 +128,8 @@ static void draw_and_record_frame(struct steady *s,
         held += drawing->run.lamp[i].lamp.power;
     if (held < power) /* limits the power of lamps that are too bright */
         drawn = sum_flare_light(s);
-    record_light_step(s, drawn * drawing_exposure_factor(&drawing->run), own);
+    record_light_step(s, drawn * drawing_get_exposure_factor(&drawing->run),
+                      own);
     if (drawing->run.n_lamps > s->most_lights)
         s->most_lights = drawing->run.n_lamps;
     s->frames++;

@@ -25,18 +25,18 @@ int make_frame_from_settings(const struct tool *tool,
     const struct glint_options *const o = &settings->options;
 
     glint_frame_init(frame, &lens->setup,
-                     opened_lens_view(lens, settings, width, height),
+                     opened_lens_compute_view(lens, settings, width, height),
                      tool->workers);
     frame->cfg.sets = tool_enabled_instruction_sets(tool);
     frame->lens = lens->model.data ? &lens->model.lens : NULL;
     frame->trace = opened_table_ray_functions();
     frame->clock = tool_clock_s;
     frame->dials = settings->dials;
-    frame->only_ghost = settings_get_only_ghost(settings);
+    frame->only_ghost = settings_get_selected_ghost(settings);
     frame->tints = lens->tints;
     /* no work limit, which could make the grid coarser than requested */
     frame->limits.most_minsn =
-        settings_has_grid(settings) && !GLINT_OPTION_GIVEN(o, work)
+        settings_has_grid_option(settings) && !GLINT_OPTION_GIVEN(o, work)
             ? 0
             : 1000 * o->work;
     frame->apart_px = o->apart;

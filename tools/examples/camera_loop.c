@@ -45,7 +45,8 @@ int main(int argc, char **argv)
     static struct glint_image image;
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_error error = {"no model, no camera, or not of 640x480"};
+    struct glint_error error = {
+        "cannot open the model or the camera, or its frames are not 640x480"};
     struct glint_engine *engine = NULL;
     struct glint_lens lens;
     struct glint_engine_lamp lamps[16];

@@ -130,7 +130,7 @@ int main(int argc, char **argv)
         return print_error(5, reason);
     bytes = load_file(argv[2], picture, sizeof picture);
     if (!find_ppm_pixels(&image, bytes))
-        return print_error(3, "no binary PPM of 8 bits, or more than 12 MiB");
+        return print_error(3, "not a binary 8-bit PPM, or larger than 12 MiB");
     light = glint_light_from_pixel(&lens, image.width, image.height,
                                    parse_pixel_centre_q8(argv[3]),
                                    parse_pixel_centre_q8(argv[4]));

@@ -51,7 +51,8 @@ static int draw_scene(const char *path, const struct glint_scene_model *model,
         glint_scene_begin(scene, &stats);
         glint_scene_draw(scene, image);
     } else {
-        code = print_error(path, "the camera is of a lens, or too wide");
+        code = print_error(path, "the scene's camera needs a lens, or its "
+                                 "field of view is too wide");
     }
     free(mem);
     return code;

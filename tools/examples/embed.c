@@ -27,7 +27,7 @@ int main(int argc, char **argv)
     static struct glint_image image;
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_error error = {"no picture, or no memory"};
+    struct glint_error error = {"cannot read the picture, or out of memory"};
     struct glint_engine *engine = NULL;
     struct glint_lens lens;
     size_t lens_bytes, bytes;

@@ -50,7 +50,8 @@ int main(int argc, char **argv)
     static uint64_t baked[LIMIT / 8], objects[LIMIT / 8];
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_error error = {"no lens, no scene, or no memory"};
+    struct glint_error error = {
+        "cannot open the lens or the scene, or out of memory"};
     struct glint_engine *engine = NULL;
     struct glint_scene_model model;
     struct glint_scene_stats stats;

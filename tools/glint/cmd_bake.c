@@ -165,11 +165,11 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-/* Returns an exit code for a file that --strict does not write, as its pictures
- * have only PSNR_DB, less than LEAST_DB, at WHERE. */
-static int refuse_inaccurate(const struct tool *tool, double psnr_db,
-                             double least_db, const char *where,
-                             const char *remedy)
+/* Prints why --strict does not write the model: its pictures at WHERE have only
+ * PSNR_DB against exact rays, less than LEAST_DB. Returns an exit code. */
+static int reject_inaccurate_model(const struct tool *tool, double psnr_db,
+                                   double least_db, const char *where,
+                                   const char *remedy)
 {
     char text[200];
 
@@ -182,10 +182,11 @@ static int refuse_inaccurate(const struct tool *tool, double psnr_db,
 
 /* Compares pictures of MODEL with exact rays. Returns an exit code: not 0 if
  * they are less accurate than --strict accepts, or on failure. */
-static int check_strictly(const struct tool *tool, const struct bake *b,
-                          const struct glint_prescription *lens,
-                          const struct glint_lens *model,
-                          struct picture_check *check)
+static int check_accuracy_for_strict(const struct tool *tool,
+                                     const struct bake *b,
+                                     const struct glint_prescription *lens,
+                                     const struct glint_lens *model,
+                                     struct picture_check *check)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -198,16 +199,17 @@ static int check_strictly(const struct tool *tool, const struct bake *b,
         return EXIT_OK;
     snprintf(where, sizeof where, "with the light %.1f degrees off the axis",
              check->angle_deg);
-    return refuse_inaccurate(tool, check->psnr_db, PICTURE_CHECK_DB, where,
-                             "try a smaller --tolerance");
+    return reject_inaccurate_model(tool, check->psnr_db, PICTURE_CHECK_DB,
+                                   where, "try a smaller --tolerance");
 }
 
 /* Compares pictures of MODEL, which is written, with exact rays for the report.
  * Prints a warning on failure. */
-static void check_for_report(const struct tool *tool, const struct bake *b,
-                             const struct glint_prescription *lens,
-                             const struct glint_lens *model,
-                             struct picture_check *check)
+static void measure_accuracy_for_report(const struct tool *tool,
+                                        const struct bake *b,
+                                        const struct glint_prescription *lens,
+                                        const struct glint_lens *model,
+                                        struct picture_check *check)
 {
     struct glint_error error = {""};
     const enum glint_status status =
@@ -242,7 +244,7 @@ static int write_model(struct glint_output *out, const struct tool *tool,
     if (glint_lens_open(&opened, model, bytes, &reason) != GLINT_OK)
         code = tool_fail(tool, GLINT_E_LENS, reason);
     else if (b->is_strict)
-        code = check_strictly(tool, b, lens, &opened, &check);
+        code = check_accuracy_for_strict(tool, b, lens, &opened, &check);
     if (code != EXIT_OK) {
         glint_output_abort(out);
         return code;
@@ -251,7 +253,7 @@ static int write_model(struct glint_output *out, const struct tool *tool,
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (reports && !b->is_strict)
-        check_for_report(tool, b, lens, &opened, &check);
+        measure_accuracy_for_report(tool, b, lens, &opened, &check);
     if (reports)
         model_report_print_bake(tool, &opened, seconds, report, &check);
     return EXIT_OK;
@@ -344,10 +346,10 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
         baked.least_db < b->halfway_db) {
         glint_output_abort(out);
         free(baked.data);
-        snprintf(where, sizeof where, "at %.2f mm, between positions",
+        snprintf(where, sizeof where, "at %.2f mm, halfway between positions",
                  baked.least_mm);
-        return refuse_inaccurate(tool, baked.least_db, b->halfway_db, where,
-                                 "try more --positions");
+        return reject_inaccurate_model(tool, baked.least_db, b->halfway_db,
+                                       where, "try more --positions");
     }
     if (status == GLINT_OK)
         status =
@@ -375,9 +377,9 @@ static int bake_lens_by_name(struct tool *tool, struct bake *b,
 
     if (!lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    apart_add_input(&files, NULL, name);
-    apart_add_output(&files, "-o", b->output);
-    code = apart_check_outputs(tool, &files);
+    file_conflicts_add_input(&files, NULL, name);
+    file_conflicts_add_output(&files, "-o", b->output);
+    code = file_conflicts_check_outputs(tool, &files);
     if (code == EXIT_OK)
         code = tool_read_lens(tool, name, lens);
     if (code == EXIT_OK)

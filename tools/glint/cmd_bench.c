@@ -22,7 +22,7 @@ static int parse_option(struct bench *b, int c)
         return tool_parse_integer(optarg, 1, b->subject->max_rounds,
                                   &b->rounds);
     case 'F':
-        c = tool_find_word(optarg, bench_format);
+        c = tool_find_word_index(optarg, bench_format);
         b->word = c < 0 ? b->word : c;
         return c >= 0;
     default:

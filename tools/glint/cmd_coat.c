@@ -71,7 +71,7 @@ static struct reflected compute_reflectance(const struct coat *c, double nm,
 }
 
 /* Returns wavelength number K of the printed table, nm; K = 0 .. STEPS. */
-static double table_wavelength_nm(int k)
+static double get_table_wavelength_nm(int k)
 {
     return band_nm[0] + (band_nm[1] - band_nm[0]) * k / STEPS;
 }
@@ -85,10 +85,10 @@ static void print_reflectance_text(const struct coat *c)
         printf("  %5g deg", angle_deg[a]);
     printf("\n");
     for (int k = 0; k <= STEPS; k += 2) {
-        printf("%8.1f", table_wavelength_nm(k));
+        printf("%8.1f", get_table_wavelength_nm(k));
         for (int a = 0; a < ANGLES; a++)
             printf("  %7.3f %%",
-                   100 * compute_reflectance(c, table_wavelength_nm(k),
+                   100 * compute_reflectance(c, get_table_wavelength_nm(k),
                                              angle_deg[a])
                              .both);
         printf("\n");
@@ -107,11 +107,11 @@ static void print_reflectance_json(const struct coat *c)
     json_write(&json, "], reflected: [");
     for (int k = 0; k <= STEPS; k++)
         for (int a = 0; a < ANGLES; a++) {
-            const struct reflected r =
-                compute_reflectance(c, table_wavelength_nm(k), angle_deg[a]);
+            const struct reflected r = compute_reflectance(
+                c, get_table_wavelength_nm(k), angle_deg[a]);
 
             json_write(&json, "{nm: %g, deg: %g, s: %.9g, p: %.9g}",
-                       table_wavelength_nm(k), angle_deg[a], r.s, r.p);
+                       get_table_wavelength_nm(k), angle_deg[a], r.s, r.p);
         }
     json_write(&json, "]}\n");
 }
@@ -173,9 +173,9 @@ static void plot_over_wavelength(const struct coat *c, struct plot *plot)
     plot_draw_frame(plot);
     for (int a = 0; a < ANGLES; a++) {
         v.fixed = angle_deg[a];
-        draw_reflectance_curve(plot, &v, plot_colour_of_series(a));
+        draw_reflectance_curve(plot, &v, plot_get_colour_of_series(a));
         snprintf(words, sizeof words, "%g degrees", v.fixed);
-        plot_draw_legend_entry(plot, 's', plot_colour_of_series(a), words);
+        plot_draw_legend_entry(plot, 's', plot_get_colour_of_series(a), words);
     }
 }
 
@@ -186,7 +186,7 @@ static void plot_over_angle(const struct coat *c, struct plot *plot)
     char words[32];
 
     plot->x.words = "degrees";
-    plot->y.words = "% reflected, s thick, p thin";
+    plot->y.words = "% reflected; thick lines: s, thin lines: p";
     for (int k = 0; k < 6; k++)
         fit_axes_to_curve(plot,
                           &(struct curve){c, nm[k / 2], 1 + k % 2, 0, 75});
@@ -267,9 +267,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     if (o->output && !glint_has_extension(o->output, ".svg"))
         return tool_usage(tool, "the plot must be a .svg, not '%s'", o->output);
     if (o->output && o->surface >= 0)
-        apart_add_input(&files, NULL, argv[optind]);
-    apart_add_output(&files, "-o", o->output);
-    code = apart_check_outputs(tool, &files);
+        file_conflicts_add_input(&files, NULL, argv[optind]);
+    file_conflicts_add_output(&files, "-o", o->output);
+    code = file_conflicts_check_outputs(tool, &files);
     if (code == EXIT_OK && o->output)
         code = tool_check_output(tool, o->output);
     return code == EXIT_OK ? -1 : code;
@@ -287,8 +287,9 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     code = tool_read_lens(tool, name, lens);
     if (code == EXIT_OK && c->surface >= lens->n_surfaces)
-        code = tool_usage(tool, "%s has surfaces 0 to %d", name,
-                          lens->n_surfaces - 1);
+        code = tool_usage(tool,
+                          "--surface is out of range: %s has surfaces 0 to %d",
+                          name, lens->n_surfaces - 1);
     if (code == EXIT_OK) {
         const struct glint_surface *s;
 
@@ -301,8 +302,9 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)
-            code = tool_usage(tool, "surface %d of %s is cemented", c->surface,
-                              name);
+            code = tool_usage(
+                tool, "surface %d of %s is cemented, so it has no coating",
+                c->surface, name);
         c->glass[0] = s->nd;
         c->glass[1] = s->vd;
     }

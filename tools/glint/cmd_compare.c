@@ -117,7 +117,7 @@ static int measure_image_difference(const struct tool *tool,
     return EXIT_OK;
 }
 
-static int compare_files(const struct tool *tool, const struct asked *a)
+static int compare_image_files(const struct tool *tool, const struct asked *a)
 {
     struct glint_float_image image[2] = {{0, 0, NULL}, {0, 0, NULL}};
     struct glint_error error = {""};
@@ -180,5 +180,5 @@ int cmd_compare(int argc, char **argv)
         return code;
     a.name[0] = argv[optind];
     a.name[1] = argv[optind + 1];
-    return compare_files(&tool, &a);
+    return compare_image_files(&tool, &a);
 }

@@ -102,9 +102,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         return tool_usage(tool, "needs -o, a .svg");
     if (o->drawing.angle_deg >= 0 && o->drawing.ghost < 0)
         return tool_usage(tool, "--angle needs --ghost");
-    apart_add_input(&files, NULL, argv[optind]);
-    apart_add_output(&files, "-o", o->output);
-    code = apart_check_outputs(tool, &files);
+    file_conflicts_add_input(&files, NULL, argv[optind]);
+    file_conflicts_add_output(&files, "-o", o->output);
+    code = file_conflicts_check_outputs(tool, &files);
     if (code == EXIT_OK)
         code = tool_check_ending(tool, o->output, ".svg", "a figure");
     if (code == EXIT_OK)
@@ -158,7 +158,7 @@ int cmd_draw(int argc, char **argv)
     struct draw o = {.output = NULL};
     int code;
 
-    lens_drawing_defaults(&o.drawing, &o.lens);
+    lens_drawing_set_defaults(&o.drawing, &o.lens);
     code = parse_options(&tool, argc, argv, &o);
     if (code >= 0)
         return code;

@@ -68,8 +68,8 @@ struct explain_command {
     const char *input, *output, *ghosts, *sheet;
     int width, height; /* --size, pixels; 0: size of the input */
     int top;
-    struct glint_image
-        image; /* 8-bit copy of the input on which the flare is drawn */
+    /* 8-bit copy of the input on which the flare is drawn */
+    struct glint_image image;
 };
 
 static const struct option own[] = {
@@ -198,7 +198,7 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
     if (light.rgb && plain)
         status = glint_engine_render(
             drawing->run.engine, plain, drawing->run.n_lamps,
-            settings_brightness_scale(&drawing->line.settings),
+            settings_compute_brightness_scale(&drawing->line.settings),
             GLINT_ENGINE_ALL, light.rgb, &drawing->run.report);
     free(plain);
     if (status == GLINT_OK) {
@@ -304,7 +304,8 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     struct glint_explain e;
     const enum glint_status status = glint_explain_open(
         &e, drawing->run.engine,
-        linear ? settings_brightness_scale(&drawing->line.settings) : 0);
+        linear ? settings_compute_brightness_scale(&drawing->line.settings)
+               : 0);
     int code = EXIT_OK;
 
     if (status == GLINT_OK && drawing->files.scene.is_open)
@@ -320,7 +321,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     if (status == GLINT_OK && drawing->run.n_lamps == 0 && !tool->quiet) {
         fflush(
             stdout); /* writes the report before messages on standard error */
-        overlay_print_no_light(drawing, false, stderr);
+        overlay_print_no_lamp_found(drawing, false, stderr);
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
         code = save_picture(tool, c, &e, &title, NULL);
@@ -350,12 +351,12 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
 {
     struct apart files = {.n_read = 0};
 
-    apart_add_input(&files, NULL, c->input);
-    apart_add_output(&files, "-o", c->output);
-    apart_add_output(&files, "--save-ghosts", c->ghosts);
-    apart_add_output(&files, "--ghost-sheet", c->sheet);
-    apart_add_drawing_files(&files, &c->drawing.line);
-    return apart_check_outputs(tool, &files);
+    file_conflicts_add_input(&files, NULL, c->input);
+    file_conflicts_add_output(&files, "-o", c->output);
+    file_conflicts_add_output(&files, "--save-ghosts", c->ghosts);
+    file_conflicts_add_output(&files, "--ghost-sheet", c->sheet);
+    file_conflicts_add_drawing_files(&files, &c->drawing.line);
+    return file_conflicts_check_outputs(tool, &files);
 }
 
 static int explain_frame(struct tool *tool, struct explain_command *c)

@@ -128,9 +128,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         return tool_usage(tool,
                           "%s: the format is ambiguous; choose --format %s",
                           argv[optind], values_describe("import", "format"));
-    apart_add_input(&files, NULL, argv[optind]);
-    apart_add_output(&files, "-o", o->output);
-    code = apart_check_outputs(tool, &files);
+    file_conflicts_add_input(&files, NULL, argv[optind]);
+    file_conflicts_add_output(&files, "-o", o->output);
+    code = file_conflicts_check_outputs(tool, &files);
     if (code == EXIT_OK)
         code = tool_check_output(tool, o->output);
     return code == EXIT_OK ? -1 : code;

@@ -192,7 +192,7 @@ static int print_scene_info(const struct tool *tool, const char *path)
 
     if (code != EXIT_OK)
         return code;
-    baked_scene_print(tool, &scene);
+    baked_scene_print_contents(tool, &scene);
     baked_scene_close(&scene);
     return EXIT_OK;
 }
@@ -204,7 +204,7 @@ static int print_environment_info(const struct tool *tool, const char *path)
 
     if (code != EXIT_OK)
         return code;
-    environment_file_print(tool, &file);
+    environment_file_print_contents(tool, &file);
     environment_file_close(&file);
     return EXIT_OK;
 }
@@ -220,7 +220,7 @@ static int print_motion_info(const struct tool *tool, const char *path,
     if (poses)
         code = motion_file_write_poses(tool, &file, poses);
     if (code == EXIT_OK && !(poses && strcmp(poses, "-") == 0))
-        motion_file_print(tool, &file);
+        motion_file_print_contents(tool, &file);
     motion_file_close(&file);
     return code;
 }
@@ -280,7 +280,7 @@ static int print_medium_info(const struct tool *tool, const char *path)
 
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    stone_file_print(tool, &file);
+    stone_file_print_contents(tool, &file);
     stone_file_close(&file);
     return EXIT_OK;
 }
@@ -319,8 +319,8 @@ static int print_file_that_is_not_lens(const struct tool *tool,
                        : -1;
 }
 
-static int print_table_info(const struct tool *tool, const char *path,
-                            const struct asked *asked, struct info *info)
+static int print_lens_table_info(const struct tool *tool, const char *path,
+                                 const struct asked *asked, struct info *info)
 {
     struct glint_error error = {""};
     enum glint_status status = GLINT_OK;
@@ -362,7 +362,7 @@ int cmd_info(int argc, char **argv)
     if (code >= 0)
         return code;
     if (tool_is_model(argv[optind]) &&
-        coating_reject_for_model(&tool, &asked.coating, argv[optind]) !=
+        coating_reject_option_for_model(&tool, &asked.coating, argv[optind]) !=
             EXIT_OK)
         return EXIT_USAGE;
     if (tool_is_model(argv[optind]))
@@ -373,7 +373,7 @@ int cmd_info(int argc, char **argv)
     info = calloc(1, sizeof *info);
     if (!info)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
-    code = print_table_info(&tool, argv[optind], &asked, info);
+    code = print_lens_table_info(&tool, argv[optind], &asked, info);
     free(info);
     return code;
 }

@@ -77,8 +77,8 @@ struct lenses {
 
 struct entry {
     struct glint_prescription table;
-    struct settings
-        settings; /* default settings of a command without options */
+    /* settings of a command line without options */
+    struct settings settings;
     struct glint_optics optics;
     struct glint_ghost ghost[GLINT_MAX_GHOSTS];
     int n_ghosts;
@@ -121,7 +121,7 @@ static int load_lens_entry(const struct tool *tool, const char *name,
 /* max angle of a light that can be drawn, degrees */
 #define WIDEST_DEG 89.9
 
-static double corner_field_angle_deg(const struct entry *e)
+static double compute_corner_field_angle_deg(const struct entry *e)
 {
     const struct glint_prescription *l = &e->table;
     const double rho =
@@ -148,14 +148,14 @@ static void print_entry_json(struct lenses *l, const char *name,
                "film_mm: [%g, %g], corner_deg: %.2f, ghosts: %d, baked: %c}",
                name, e->table.source, e->table.character, e->optics.focal_mm,
                e->optics.squeeze, e->table.f_number, e->table.film_width_mm,
-               e->table.film_height_mm, corner_field_angle_deg(e), e->n_ghosts,
-               e->is_baked);
+               e->table.film_height_mm, compute_corner_field_angle_deg(e),
+               e->n_ghosts, e->is_baked);
 }
 
 static void print_entry_text(struct lenses *l, const char *name,
                              const struct entry *e)
 {
-    const double corner = corner_field_angle_deg(e);
+    const double corner = compute_corner_field_angle_deg(e);
     char film[32];
 
     if (l->n++ == 0)
@@ -202,7 +202,7 @@ static void write_flare_thumbnails(struct lenses *l, const char *name,
     else {
         set_thumbnail_settings(settings, e);
         fputs("<p>", l->page);
-        if (thumbnails_write(l->tool, settings, name, l->page, &bytes) !=
+        if (page_write_thumbnails(l->tool, settings, name, l->page, &bytes) !=
             EXIT_OK)
             l->code = EXIT_RUNTIME;
         else if (e->is_baked)
@@ -221,7 +221,7 @@ static void print_measured_times(struct lenses *l, const char *name)
     FILE *const page = l->page;
     struct measured m;
 
-    if (measured_read_row(name, &m) != GLINT_OK)
+    if (page_read_measured_times(name, &m) != GLINT_OK)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     else if (!*m.f_number)
         fputs("<p class=\"less\">bake and frame not measured yet</p>", page);
@@ -232,7 +232,7 @@ static void print_measured_times(struct lenses *l, const char *name)
         fprintf(page,
                 "<p class=\"less\">measured for f/%s: bake %s s, model %s "
                 "KB%s%s%s</p>",
-                m.f_number, m.seconds, m.kb, *m.ms ? ", a frame of 1080p " : "",
+                m.f_number, m.seconds, m.kb, *m.ms ? ", 1080p frame " : "",
                 m.ms, *m.ms ? " ms" : "");
 }
 
@@ -243,7 +243,8 @@ static void print_lens_card(struct lenses *l, const char *name,
                                    .lens = &e->table,
                                    .focal_mm = e->optics.focal_mm,
                                    .squeeze = e->optics.squeeze,
-                                   .corner_deg = corner_field_angle_deg(e),
+                                   .corner_deg =
+                                       compute_corner_field_angle_deg(e),
                                    .n_ghosts = e->n_ghosts};
 
     if (l->n++ == 0)
@@ -397,7 +398,7 @@ static int write_lens_page(struct lenses *l)
 
 static int print_lens_list(struct lenses *l)
 {
-    const int code = lens_check_names(l->only, l->n_only);
+    const int code = lens_check_requested_names(l->only, l->n_only);
 
     if (code != EXIT_OK)
         return code;
@@ -436,10 +437,10 @@ static int parse_options(struct lenses *l, int argc, char **argv)
             l->folder = optarg;
         else if (c == 'H')
             l->html = optarg;
-        else if (c == 'r' && tool_find_word(optarg, rays) < 0)
+        else if (c == 'r' && tool_find_word_index(optarg, rays) < 0)
             return tool_report_bad_value(l->tool, "rays", optarg);
         else if (c == 'r')
-            l->exact = tool_find_word(optarg, rays) == 1;
+            l->exact = tool_find_word_index(optarg, rays) == 1;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')

@@ -18,8 +18,8 @@ struct mend {
     int line, column; /* position of the number in the file */
     enum slip slip;
     char from[24], to[24];
-    double focal_mm,
-        back_mm; /* focal length and back focus with the corrected number */
+    /* focal length and back focal length with the corrected number, mm */
+    double focal_mm, back_mm;
     /* whether the corrected glass is in the catalogue or used by another
      * surface */
     bool listed;
@@ -174,7 +174,7 @@ static bool is_table_valid(const char *text, size_t bytes, const char *file,
     return k < 0;
 }
 
-static double relative_deviation(double got, double stated)
+static double compute_relative_deviation(double got, double stated)
 {
     return stated > 0 ? fabs(got / stated - 1) : 0;
 }
@@ -229,9 +229,9 @@ static void try_replacement_number(struct search *s, const char *number,
     found.listed = s->glass >= 0 && is_glass_in_catalogue(&lens, s->glass);
     found.focal_mm = optics.focal_mm;
     found.back_mm = optics.back_focal_mm;
-    found.off =
-        fmax(relative_deviation(optics.focal_mm, lens.check_focal_mm),
-             relative_deviation(optics.back_focal_mm, lens.check_back_mm));
+    found.off = fmax(
+        compute_relative_deviation(optics.focal_mm, lens.check_focal_mm),
+        compute_relative_deviation(optics.back_focal_mm, lens.check_back_mm));
     insert_correction(s, &found);
 }
 
@@ -282,7 +282,7 @@ static void try_decimal_point_shifts(struct search *s, const char number[24])
 }
 
 /* Tries all misprints of the number at S->at. */
-static void try_number_misprints(struct search *s)
+static void try_misprints_of_number(struct search *s)
 {
     char number[24] = "", flipped[24];
 
@@ -300,7 +300,7 @@ static void try_number_misprints(struct search *s)
 }
 
 /* Tries all misprints of the numbers in the line START .. END. */
-static void try_line_misprints(struct search *s, size_t start, size_t end)
+static void try_misprints_of_line(struct search *s, size_t start, size_t end)
 {
     size_t at = start;
 
@@ -318,7 +318,7 @@ static void try_line_misprints(struct search *s, size_t start, size_t end)
         if (word > (s->glass < 0 ? 0 : 3) &&
             (is_digit(s->text[s->at]) || s->text[s->at] == '-' ||
              s->text[s->at] == '.'))
-            try_number_misprints(s);
+            try_misprints_of_number(s);
     }
 }
 
@@ -355,11 +355,11 @@ static int find_corrections(const char *text, size_t bytes,
                              memcmp(text + at, "stop", 4) == 0)) {
             s.surface = text[at + 1] == 'u' ? surface++ : -1;
             if (s.glass < 0 || s.surface == s.glass)
-                try_line_misprints(&s, at, end);
+                try_misprints_of_line(&s, at, end);
         }
         at = end + 1;
     }
-    s.mend = NULL; /* belongs to the caller */
+    s.mend = NULL; /* the list of corrections belongs to the caller */
     return s.n;
 }
 
@@ -382,7 +382,7 @@ static const char help[] =
 
 static const char help_end[] = COMMON_HELP;
 
-static const char *misprint_name(enum slip slip)
+static const char *get_misprint_name(enum slip slip)
 {
     return slip == SLIP_SIGN    ? "sign"
            : slip == SLIP_SWAP  ? "digits swapped"
@@ -404,7 +404,8 @@ static void print_lint_text(const char *file, const char *wrong,
         printf("%s:%d:%d: %s for %s? (%s; then f = %.3f mm, back focus %.3f "
                "mm)\n",
                file, mend[k].line, mend[k].column, mend[k].to, mend[k].from,
-               misprint_name(mend[k].slip), mend[k].focal_mm, mend[k].back_mm);
+               get_misprint_name(mend[k].slip), mend[k].focal_mm,
+               mend[k].back_mm);
     if (n > MENDS)
         printf("and %d more\n", n - MENDS);
 }
@@ -419,7 +420,7 @@ static void print_lint_json(const char *wrong, const struct mend *mend, int n)
                    "{line: %d, column: %d, from: %s, to: %s, slip: %s, "
                    "focal_length_mm: %.6f, back_focal_length_mm: %.6f}",
                    mend[k].line, mend[k].column, mend[k].from, mend[k].to,
-                   misprint_name(mend[k].slip), mend[k].focal_mm,
+                   get_misprint_name(mend[k].slip), mend[k].focal_mm,
                    mend[k].back_mm);
     json_write(&json, "]}\n");
 }

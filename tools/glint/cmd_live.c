@@ -192,13 +192,14 @@ static int parse_camera_option(struct live_wish *wish, int option,
                                   &wish->n_buffers);
         break;
     case OPT_IO:
-        wish->io = (enum glint_v4l2_io)(word = tool_find_word(value, ios));
+        wish->io =
+            (enum glint_v4l2_io)(word = tool_find_word_index(value, ios));
         break;
     case OPT_RANGE:
-        c->range = (word = tool_find_word(value, ranges)) - 1;
+        c->range = (word = tool_find_word_index(value, ranges)) - 1;
         break;
     case OPT_MATRIX:
-        c->matrix = (word = tool_find_word(value, matrices)) - 1;
+        c->matrix = (word = tool_find_word_index(value, matrices)) - 1;
         break;
     default:
         return -2;
@@ -230,13 +231,16 @@ static int parse_live_option(struct live_options *o, int option,
     case OPT_RECONNECT:
         o->reconnect = true;
         break;
-    case OPT_CONFIG: /* read before the other options */
+    case OPT_CONFIG: /* the configuration file was read before all other options
+                      * */
         break;
     case OPT_STATS:
-        o->report = (enum live_report)(word = tool_find_word(value, stats));
+        o->report =
+            (enum live_report)(word = tool_find_word_index(value, stats));
         break;
     case OPT_FIT:
-        o->fit = (enum glint_panel_fit)(word = tool_find_word(value, fits));
+        o->fit =
+            (enum glint_panel_fit)(word = tool_find_word_index(value, fits));
         break;
     case OPT_COUNT:
         good = tool_parse_integer(value, 1, 1 << 30, &o->count);
@@ -311,13 +315,13 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
     struct live_output output = {.path = NULL};
     int code;
 
-    apart_add_input(&files, "--device", o->input.camera.device);
-    apart_add_input(&files, "--config", config);
+    file_conflicts_add_input(&files, "--device", o->input.camera.device);
+    file_conflicts_add_input(&files, "--config", config);
     if (live_output_parse(&output, o->output) && output.kind == LIVE_OUTPUT_Y4M)
-        apart_add_output(&files, "-o", output.path);
-    apart_add_output(&files, "--snapshot", o->snapshot);
-    apart_add_drawing_files(&files, &o->drawing.line);
-    code = apart_check_outputs(tool, &files);
+        file_conflicts_add_output(&files, "-o", output.path);
+    file_conflicts_add_output(&files, "--snapshot", o->snapshot);
+    file_conflicts_add_drawing_files(&files, &o->drawing.line);
+    code = file_conflicts_check_outputs(tool, &files);
     return code == EXIT_OK ? -1 : code;
 }
 
@@ -355,7 +359,7 @@ static int reread_options(void *ctx, struct tool *tool,
     struct line *line = ctx;
 
     (void)tool;
-    /* No open drawing refers to strings of AGAIN. */
+    /* Every drawing that used strings of AGAIN is closed by now. */
     config_free(&line->again);
     return parse_options(line, &line->again, into);
 }

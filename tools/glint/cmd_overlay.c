@@ -71,10 +71,10 @@ static const char help[] =
 
 /* ------------------------------------------------------------------ options */
 
-static bool parse_option_word(const char *text, const char *const *words,
-                              int *value)
+static bool parse_keyword(const char *text, const char *const *words,
+                          int *value)
 {
-    *value = tool_find_word(text, words);
+    *value = tool_find_word_index(text, words);
     return *value >= 0;
 }
 
@@ -116,14 +116,14 @@ static bool parse_option(struct overlay *o, int option, const char *value)
 
     switch (option) {
     case 'r':
-        return parse_option_word(value, ranges, &o->range);
+        return parse_keyword(value, ranges, &o->range);
     case 'x':
-        return parse_option_word(value, matrices, &o->matrix);
+        return parse_keyword(value, matrices, &o->matrix);
     case '4':
-        o->transfer = tool_find_word(value, glint_transfer_words);
+        o->transfer = tool_find_word_index(value, glint_transfer_words);
         return o->transfer >= 0 || strcmp(value, "auto") == 0;
     case '1':
-        o->raw.format = tool_find_word(value, formats);
+        o->raw.format = tool_find_word_index(value, formats);
         o->has_raw = true;
         return o->raw.format >= 0;
     case '2':
@@ -136,7 +136,7 @@ static bool parse_option(struct overlay *o, int option, const char *value)
         o->layers.path = value;
         return *value != '\0';
     case 'T':
-        word = tool_find_word(value, types);
+        word = tool_find_word_index(value, types);
         o->layers.is_float = word == 1;
         o->has_layers_type = true;
         return word >= 0;
@@ -169,7 +169,8 @@ static const struct option own[] = {
     {"layers-type", required_argument, NULL, 'T'},
     {NULL, 0, NULL, 0}};
 
-static int check_raw_options(const struct tool *tool, const struct overlay *o)
+static int check_raw_video_options(const struct tool *tool,
+                                   const struct overlay *o)
 {
     if (o->has_raw != (o->raw.width > 0) || (o->raw.stride && !o->has_raw))
         return tool_usage(tool, "frames without headers need --format F and "
@@ -219,14 +220,14 @@ static int check_input_options(const struct tool *tool, int argc, char **argv,
                                 "writes no file: leave out -o and --frames");
     if (o->lists_shots)
         o->output = "-";
-    if ((code = check_raw_options(tool, o)) != EXIT_OK)
+    if ((code = check_raw_video_options(tool, o)) != EXIT_OK)
         return code;
     if (o->has_layers_type && !o->layers.path)
         return tool_usage(tool, "--layers-type needs --layers OUT");
     if (o->layers.path &&
         strcmp(o->drawing.line.settings.options.lens, "none") == 0)
-        return tool_usage(
-            tool, "--layers needs the flare of a lens; --lens none has none");
+        return tool_usage(tool,
+                          "--layers needs a lens: --lens none draws no flare");
     o->input = argv[optind];
     if (o->drawing.line.reserve_bytes &&
         o->drawing.line.settings.options.rays == GLINT_RAYS_EXACT)
@@ -273,7 +274,7 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
         return tool_check_inputs(
             tool, argc, argv, 1,
             "needs an input: a picture, a sequence or a video");
-    if (!output && o->output && folder_is_folder(o->output)) {
+    if (!output && o->output && folder_is_path_a_folder(o->output)) {
         *folder = o->output;
         code = check_folder_options(tool, o, argc - optind);
         return code == EXIT_OK ? -1 : code;
@@ -326,7 +327,7 @@ static void print_overlay_result(const struct tool *tool, struct overlay *o)
 
     if (!tool->quiet && !tool->verbose && isatty(STDERR_FILENO))
         fputs("\r\033[K", stderr);
-    settings_warn_lights(tool, &o->figures.worst);
+    settings_print_light_warnings(tool, &o->figures.worst);
     if (tool->quiet && !json)
         return;
     light = overlay_measure_light(o);
@@ -384,9 +385,8 @@ static int check_output_file(struct tool *tool, struct overlay *o)
         return code;
     if (!frames && !o->lists_shots &&
         o->is_video != overlay_is_video(o->output))
-        return tool_usage(tool,
-                          "the output of a video must be a video (.y4m, - or a "
-                          "type of ffmpeg), that of a picture a picture");
+        return tool_usage(tool, "write a video to a video (.y4m, - or a type "
+                                "of ffmpeg), and a picture to a picture");
     if (!o->is_video && (o->last < INT_MAX || o->lists_shots))
         return tool_usage(tool,
                           "--%s applies to videos only; %s is not a video",
@@ -399,8 +399,9 @@ static int check_output_file(struct tool *tool, struct overlay *o)
                                 "for a video use --layers NAME.%%04d.exr");
     if (o->last < INT_MAX && (o->drawing.line.settings.options.budget > 0 ||
                               o->drawing.line.settings.dials.still_px > 0))
-        return tool_usage(tool, "--frames excludes --budget and --still, with "
-                                "which a frame depends on those drawn before");
+        return tool_usage(tool,
+                          "--frames excludes --budget and --still, since with "
+                          "these a frame depends on the frames before");
     if (tool_check_output(tool, o->output) != EXIT_OK)
         return EXIT_OUTPUT;
     if (o->is_video || glint_kept_check(o->output, &error) == GLINT_OK)
@@ -426,21 +427,23 @@ static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
 /* Returns how to draw with a lens that has no model: a single picture by exact
  * rays; several pictures, or options that need a model, by a model that is
  * baked when a lamp is detected. */
-static enum settings_unbaked choose_unbaked_rendering(const struct overlay *o)
+static enum settings_unbaked
+choose_rendering_without_model(const struct overlay *o)
 {
     const struct settings *const s = &o->drawing.line.settings;
     const struct glint_options *const of = &s->options;
 
     if (o->is_video || overlay_is_sequence(o))
         return SETTINGS_BAKE;
-    if (!o->is_one_of_many && settings_choose_unbaked(s) == SETTINGS_TRACE)
+    if (!o->is_one_of_many &&
+        settings_choose_method_without_model(s) == SETTINGS_TRACE)
         return SETTINGS_TRACE;
     return of->keys || of->control || of->scene || of->budget > 0
                ? SETTINGS_BAKE
                : SETTINGS_SEARCH;
 }
 
-static int overlay_single_input(struct tool *tool, struct overlay *o)
+static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
 {
     int code = check_output_file(tool, o);
 
@@ -451,14 +454,14 @@ static int overlay_single_input(struct tool *tool, struct overlay *o)
     if (code == EXIT_OK)
         code = check_input_file(tool, o);
     if (code == EXIT_OK)
-        code = layers_check_names(tool, &o->layers,
-                                  o->is_video || overlay_is_sequence(o));
+        code = layers_check_file_names(tool, &o->layers,
+                                       o->is_video || overlay_is_sequence(o));
     if (code == EXIT_OK)
         code = overlay_check_outputs(tool, o, o->input, o->output);
     if (code == EXIT_OK)
         code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
                               &o->drawing.line);
-    o->drawing.line.settings.unbaked = choose_unbaked_rendering(o);
+    o->drawing.line.settings.unbaked = choose_rendering_without_model(o);
     if (code == EXIT_OK)
         code = drawing_open(tool, &o->drawing);
     if (code != EXIT_OK)
@@ -480,17 +483,17 @@ static int overlay_single_input(struct tool *tool, struct overlay *o)
 /* ------------------------------------------------------------------ folders */
 
 /* Parses a command line and adds the flare to its input.
- * overlay_inputs_to_folder() calls it for each of N inputs. OUTPUT: see
+ * add_flare_to_inputs_of_folder() calls it for each of N inputs. OUTPUT: see
  * parse_options_and_inputs(). */
-static int overlay_command_line(int argc, char **argv, const char *output,
-                                int n);
+static int run_overlay_command_line(int argc, char **argv, const char *output,
+                                    int n);
 
 /* Adds flares to the N inputs ARGV[FIRST] on and writes each to FOLDER under
  * its own name. A failed input does not stop the others, unless the command
  * line or the lens is wrong. Returns the largest exit code. */
-static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
-                                    int first, int n, const char *folder,
-                                    const struct glint_options *options)
+static int add_flare_to_inputs_of_folder(const struct tool *tool, char **argv,
+                                         int first, int n, const char *folder,
+                                         const struct glint_options *options)
 {
     char **const line = calloc((size_t)first + 2, sizeof *line);
     bool is_new = false, is_wrong = false;
@@ -508,7 +511,7 @@ static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
         line[first] = argv[first + i];
         optind = 0;
         if (folder_make_output_path(path, folder, argv[first + i]))
-            one = overlay_command_line(first + 1, line, path, n);
+            one = run_overlay_command_line(first + 1, line, path, n);
         else
             tool_error(tool, "%s: the name is too long", argv[first + i]);
         done += one == EXIT_OK;
@@ -519,16 +522,16 @@ static int overlay_inputs_to_folder(const struct tool *tool, char **argv,
     free(line);
     if (done > 0 && failed > 0 && !tool->quiet)
         fprintf(stderr,
-                "glint overlay: %d of %d inputs failed, the others are "
-                "in %s\n",
+                "glint overlay: %d of %d inputs failed; the others were "
+                "written to %s\n",
                 n - done, n, folder);
     if (done == 0 && is_new)
         rmdir(folder); /* has no effect if the folder is not empty */
     return code;
 }
 
-static int overlay_command_line(int argc, char **argv, const char *output,
-                                int n)
+static int run_overlay_command_line(int argc, char **argv, const char *output,
+                                    int n)
 {
     struct tool tool = {
         .name = "overlay", .help = help, .help_end = COMMON_HELP};
@@ -544,13 +547,13 @@ static int overlay_command_line(int argc, char **argv, const char *output,
     o->is_one_of_many = n > 1;
     code = parse_options_and_inputs(&tool, argc, argv, o, output, &folder);
     if (code < 0 && folder)
-        code =
-            overlay_inputs_to_folder(&tool, argv, optind, argc - optind, folder,
-                                     &o->drawing.line.settings.options);
+        code = add_flare_to_inputs_of_folder(&tool, argv, optind, argc - optind,
+                                             folder,
+                                             &o->drawing.line.settings.options);
     else if (code < 0) {
         code = tool_start_threads(&tool);
         if (code == EXIT_OK)
-            code = overlay_single_input(&tool, o);
+            code = add_flare_to_single_input(&tool, o);
         tool_stop_threads(&tool);
     }
     overlay_y4m_close(o);
@@ -562,5 +565,5 @@ static int overlay_command_line(int argc, char **argv, const char *output,
 
 int cmd_overlay(int argc, char **argv)
 {
-    return overlay_command_line(argc, argv, NULL, 1);
+    return run_overlay_command_line(argc, argv, NULL, 1);
 }

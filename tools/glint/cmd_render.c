@@ -94,7 +94,7 @@ static int parse_option(struct tool *tool, struct render *r, int c)
         r->lights_file = optarg;
         return -1;
     case 'e':
-        word = tool_find_word(optarg, engines);
+        word = tool_find_word_index(optarg, engines);
         r->exact = word == 1;
         if (r->exact)
             r->settings.options.rays = GLINT_RAYS_EXACT;
@@ -150,7 +150,7 @@ static struct glint_lamp *split_lamps_into_points(const struct render *r,
                                                   int *n)
 {
     const struct glint_view view =
-        opened_lens_view(&r->lens, &r->settings, r->width, r->height);
+        opened_lens_compute_view(&r->lens, &r->settings, r->width, r->height);
     const double pixels =
         fabs(r->lens.setup.optics.focal_mm) * view.width / view.sensor_width_mm;
     struct glint_lamp *points;
@@ -181,19 +181,21 @@ static int render_exact_rays(struct tool *tool, struct render *r)
     struct glint_lamp *points = split_lamps_into_points(r, &n_points);
     struct glint_exact_config cfg = {
         .setup = &r->lens.setup,
-        .view = opened_lens_view(&r->lens, &r->settings, r->width, r->height),
+        .view = opened_lens_compute_view(&r->lens, &r->settings, r->width,
+                                         r->height),
         .lamps = points,
         .n_lamps = n_points,
-        .grid = settings_has_grid(&r->settings)
+        .grid = settings_has_grid_option(&r->settings)
                     ? (r->settings.dials.fineness + 1) / 2 * 2
                     : 512,
-        .only_ghost = settings_get_only_ghost(&r->settings),
+        .only_ghost = settings_get_selected_ghost(&r->settings),
         .tints = r->lens.tints,
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
-    const int n_ghosts =
-        settings_get_only_ghost(&r->settings) < 0 ? r->lens.setup.n_ghosts : 1;
+    const int n_ghosts = settings_get_selected_ghost(&r->settings) < 0
+                             ? r->lens.setup.n_ghosts
+                             : 1;
     double *rgb = malloc(n * sizeof *rgb);
     enum glint_status status = GLINT_E_MEMORY;
 
@@ -203,7 +205,7 @@ static int render_exact_rays(struct tool *tool, struct render *r)
     tool_progress_end(&progress);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         r->image.rgb[i] =
-            (float)(rgb[i] * settings_brightness_scale(&r->settings));
+            (float)(rgb[i] * settings_compute_brightness_scale(&r->settings));
     free(rgb);
     free(points);
     if (status != GLINT_OK)
@@ -223,18 +225,18 @@ static void print_light_statistics(const struct tool *tool,
 {
     char lights[64];
 
-    settings_warn_lights(tool, report);
+    settings_print_light_warnings(tool, report);
     if (!tool->verbose || tool->quiet)
         return;
-    settings_describe_lights(report, lights);
+    settings_write_light_counts(report, lights);
     fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
             lights, report->ghosts, report->stats.primitives,
             report->arena_bytes + report->star_bytes);
 }
 
 /* Returns the name of the chosen ray method for JSON: "model" or "exact". */
-static const char *chosen_ray_method(const struct render *r, const char *model,
-                                     const char *exact)
+static const char *get_ray_method_name(const struct render *r,
+                                       const char *model, const char *exact)
 {
     return r->lens.model.data ? model : exact;
 }
@@ -264,17 +266,17 @@ static int render_model_flare(struct tool *tool, struct render *r)
     }
     status = glint_engine_create(&engine, &cfg, &error);
     if (status == GLINT_OK)
-        status = glint_engine_render(engine, r->lamp, r->n_lamps,
-                                     settings_brightness_scale(&r->settings),
-                                     GLINT_ENGINE_ALL | GLINT_ENGINE_CORES,
-                                     r->image.rgb, &report);
+        status = glint_engine_render(
+            engine, r->lamp, r->n_lamps,
+            settings_compute_brightness_scale(&r->settings),
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, r->image.rgb, &report);
     glint_engine_destroy(engine);
     tool_progress_end(&progress);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (tool->json) {
         json_write(&r->json, "{engine: %s, rays: %s", "model",
-                   chosen_ray_method(r, "model", "exact"));
+                   get_ray_method_name(r, "model", "exact"));
         settings_write_json(&r->json, &report);
     }
     print_light_statistics(tool, &report);
@@ -282,10 +284,10 @@ static int render_model_flare(struct tool *tool, struct render *r)
 }
 
 /* Appends the lamps of frame 0 of the --lights file to those of --light. */
-static int append_lamp_file(struct tool *tool, struct render *r)
+static int append_lamps_of_file(struct tool *tool, struct render *r)
 {
     const struct glint_view view =
-        opened_lens_view(&r->lens, &r->settings, r->width, r->height);
+        opened_lens_compute_view(&r->lens, &r->settings, r->width, r->height);
     struct glint_error error = {""};
     struct lamp_list list;
     const enum glint_status status =
@@ -320,12 +322,13 @@ static int check_output_differs_from_inputs(const struct tool *tool,
 {
     struct apart files = {.n_read = 0};
 
-    apart_add_input(&files, NULL, lens);
-    apart_add_input(&files, "--lights", r->lights_file);
-    apart_add_input(&files, "--ghosts", r->settings.options.ghosts);
-    apart_add_input(&files, "--stop-mask", r->settings.options.stop_mask);
-    apart_add_output(&files, "-o", r->output);
-    return apart_check_outputs(tool, &files);
+    file_conflicts_add_input(&files, NULL, lens);
+    file_conflicts_add_input(&files, "--lights", r->lights_file);
+    file_conflicts_add_input(&files, "--ghosts", r->settings.options.ghosts);
+    file_conflicts_add_input(&files, "--stop-mask",
+                             r->settings.options.stop_mask);
+    file_conflicts_add_output(&files, "-o", r->output);
+    return file_conflicts_check_outputs(tool, &files);
 }
 
 static int render_lens_flare(struct tool *tool, struct render *r,
@@ -337,11 +340,11 @@ static int render_lens_flare(struct tool *tool, struct render *r,
 
     if (code == EXIT_OK)
         code = render_file_check_path(tool, r->output, &r->linear);
-    r->settings.unbaked = settings_choose_unbaked(&r->settings);
+    r->settings.unbaked = settings_choose_method_without_model(&r->settings);
     if (code == EXIT_OK)
         code = opened_lens_open(tool, &r->lens, &r->settings, lens);
     if (code == EXIT_OK && r->lights_file)
-        code = append_lamp_file(tool, r);
+        code = append_lamps_of_file(tool, r);
     if (code != EXIT_OK)
         return code;
     start = tool_clock_s();
@@ -359,7 +362,7 @@ static int render_lens_flare(struct tool *tool, struct render *r,
     if (code == EXIT_OK && tool->json)
         json_write(&r->json, "ms: %.3f}\n", 1e3 * (tool_clock_s() - start));
     snprintf(what, sizeof what, "%s, %s", r->lens.table.name,
-             chosen_ray_method(r, "baked model", "exact rays"));
+             get_ray_method_name(r, "baked model", "exact rays"));
     if (code == EXIT_OK)
         render_file_print_summary(tool, r->output, r->width, r->height, what,
                                   tool_clock_s() - start);

@@ -192,7 +192,7 @@ static int open_style_lens(const struct tool *tool, struct drawing *drawing)
 {
     drawing->line.is_still = true;
     drawing->line.settings.unbaked =
-        settings_choose_unbaked(&drawing->line.settings);
+        settings_choose_method_without_model(&drawing->line.settings);
     return drawing_open_lens(tool, drawing);
 }
 
@@ -272,10 +272,10 @@ static int check_output_differs_from_inputs(const struct tool *tool,
 {
     struct apart files = {.n_read = 0};
 
-    apart_add_input(&files, NULL, c->input);
-    apart_add_output(&files, "-o", c->output);
-    apart_add_drawing_files(&files, &drawing->line);
-    return apart_check_outputs(tool, &files);
+    file_conflicts_add_input(&files, NULL, c->input);
+    file_conflicts_add_output(&files, "-o", c->output);
+    file_conflicts_add_drawing_files(&files, &drawing->line);
+    return file_conflicts_check_outputs(tool, &files);
 }
 
 /* Checks the command line before a lens is baked. */

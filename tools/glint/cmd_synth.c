@@ -40,7 +40,7 @@ struct synth_file {
 
 struct synth_layout {
     const char *name, *type; /* name of the layout, and its default file type */
-    /* ends with an entry whose folder is NULL */
+    /* files of each item; ends with an entry whose folder is NULL */
     struct synth_file file[SYNTH_MAX_FILES];
 };
 
@@ -91,7 +91,7 @@ static const struct synth_layout layouts[] = {
 };
 
 /* Returns the layout NAME, or NULL if there is none. */
-static const struct synth_layout *find_layout(const char *name)
+static const struct synth_layout *find_layout_by_name(const char *name)
 {
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
         if (strcmp(layouts[i].name, name) == 0)
@@ -166,8 +166,8 @@ static int create_set_folders(const struct tool *tool,
 
 /* Rejects --item into a folder with a set, where it would overwrite an item of
  * the set. */
-static int check_item_outside_set(const struct tool *tool,
-                                  const struct synth_set *set)
+static int check_folder_contains_no_set(const struct tool *tool,
+                                        const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
 
@@ -653,7 +653,7 @@ static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
     case OPT_RANGE:
         return parse_parameter_range(tool, s, value);
     case OPT_LAYOUT:
-        s->set.layout = find_layout(value);
+        s->set.layout = find_layout_by_name(value);
         good = s->set.layout != NULL;
         break;
     case OPT_TYPE:
@@ -729,7 +729,7 @@ static char *format_set_settings(const struct synth *s, int seed)
     for (int i = 0; i < s->n_lenses; i++)
         json_write(&json, "%s", s->lens[i]);
     json_write(&json, "], ranges: {");
-    synth_ranges_json(&json, &s->ranges);
+    synth_ranges_write_json(&json, &s->ranges);
     json_write(&json, "}, backgrounds: [");
     for (int i = 0; i < s->backgrounds.n; i++)
         json_write(&json, "%s",
@@ -752,8 +752,8 @@ static int choose_item_parameters(const struct tool *tool, struct synth *s,
     *item = s->all;
     synth_item_randomise(item, &s->ranges, tool->seed, number);
     snprintf(item->lens, sizeof item->lens, "%s",
-             s->lens[synth_item_random_index(item, "lens", s->n_lenses)]);
-    k = synth_item_random_index(item, "background", s->backgrounds.n);
+             s->lens[synth_item_draw_random_index(item, "lens", s->n_lenses)]);
+    k = synth_item_draw_random_index(item, "background", s->backgrounds.n);
     snprintf(item->background, sizeof item->background, "%s",
              synth_background_file_name(s->backgrounds.path[k]));
     if (!s->keys[k][0])
@@ -801,7 +801,7 @@ static int draw_described_item(const struct tool *tool, struct synth *s)
                 "%s, which may draw it slightly differently\n",
                 item.glint, GLINT_VERSION);
     if (code == EXIT_OK)
-        code = check_item_outside_set(tool, &s->set);
+        code = check_folder_contains_no_set(tool, &s->set);
     if (code == EXIT_OK)
         code = create_set_folders(tool, &s->set);
     if (code == EXIT_OK)
@@ -872,8 +872,9 @@ static int draw_item_set(const struct tool *tool, struct synth *s)
         code = write_shard_manifest(tool, &s->set, &is_whole);
     if (code == EXIT_OK && !tool->quiet && s->set.count > 0)
         fprintf(stderr, "glint synth: %s: %s %d items\n", s->set.folder,
-                is_whole ? "all"
-                         : "all items of this shard, not yet all of the",
+                is_whole
+                    ? "all"
+                    : "all items of this shard, but not yet of all shards, of",
                 s->set.count);
     return code;
 }
@@ -896,7 +897,7 @@ int cmd_synth(int argc, char **argv)
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->set = (struct synth_set){
-        .layout = find_layout("plain"), .count = 100, .shards = 1};
+        .layout = find_layout_by_name("plain"), .count = 100, .shards = 1};
     s->all = (struct synth_item){.width = 512,
                                  .height = 512,
                                  .quality = 0.5,

@@ -111,8 +111,8 @@ struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
     double angle_deg;
-    struct glint_path
-        path; /* surfaces along the path of exact rays, in order */
+    /* surfaces that an exact ray meets, in this order */
+    struct glint_path path;
     /* Parts of the ghost's pupil for which the model has polynomials at this
      * angle, allocated */
     struct glint_transfer *part;
@@ -138,8 +138,8 @@ static double evaluate_model_output(const struct glint_transfer *t,
     return ldexp(out->at[kind], t->exponent[kind]);
 }
 
-static double relative_stop_radius(const struct glint_transfer *t,
-                                   const struct glint_outputs *out)
+static double compute_relative_stop_radius(const struct glint_transfer *t,
+                                           const struct glint_outputs *out)
 {
     double most = evaluate_model_output(t, out, GLINT_OUT_RADIUS);
 
@@ -203,7 +203,7 @@ static enum glint_ray_status trace_model_ray(const struct tracer *t,
         .sensor_y_mm =
             side[1] * evaluate_model_output(p, &out, GLINT_OUT_SENSOR_Y),
         .energy = evaluate_model_output(p, &out, GLINT_OUT_ENERGY),
-        .rel_radius = relative_stop_radius(p, &out)};
+        .rel_radius = compute_relative_stop_radius(p, &out)};
     return GLINT_RAY_OK;
 }
 
@@ -211,11 +211,11 @@ static enum glint_ray_status trace_model_ray(const struct tracer *t,
  * within a relative error of 1e-8. */
 static bool is_model_number_close(struct glint_real a, double b)
 {
-    return fabs(model_compute_real(a) - b) <= 1e-8 * fabs(b);
+    return fabs(model_convert_real_to_double(a) - b) <= 1e-8 * fabs(b);
 }
 
-static bool is_entry_of_ghost(const struct glint_lens *model, uint32_t entry,
-                              uint32_t ghost)
+static bool is_model_entry_of_ghost(const struct glint_lens *model,
+                                    uint32_t entry, uint32_t ghost)
 {
     return model->ghost[entry].i == model->ghost[ghost].i &&
            model->ghost[entry].j == model->ghost[ghost].j;
@@ -235,12 +235,12 @@ static enum glint_status find_ghost_parts(const struct glint_lens *model,
     size_t n = 0;
 
     for (uint32_t k = ghost; k < end; k++)
-        n += is_entry_of_ghost(model, k, ghost);
+        n += is_model_entry_of_ghost(model, k, ghost);
     tracer->part = calloc(n, sizeof *tracer->part);
     if (!tracer->part)
         return GLINT_E_MEMORY;
     for (uint32_t k = ghost; k < end; k++)
-        if (is_entry_of_ghost(model, k, ghost))
+        if (is_model_entry_of_ghost(model, k, ghost))
             tracer->n_parts +=
                 glint_transfer_init_at(&tracer->part[tracer->n_parts], model,
                                        (int)k, sine_q30, azimuth, wave_q24);
@@ -269,7 +269,7 @@ static int prepare_model_tracer(const struct tool *tool,
         return tool_usage(tool, "%g nm is outside the model's band",
                           o->wavelength_nm);
     tracer->trace = trace_model_ray;
-    tracer->stop_radius_mm = model_compute_real(h->stop_radius_mm);
+    tracer->stop_radius_mm = model_convert_real_to_double(h->stop_radius_mm);
     if (find_ghost_parts(
             model, (uint32_t)o->ghost,
             (int32_t)lrint(ldexp(sin(fabs(o->angle_deg) * GLINT_PI / 180), 30)),
@@ -282,9 +282,10 @@ static int prepare_model_tracer(const struct tool *tool,
 
 /* Sets AREA to the rectangle of ray origins on the front element's vertex
  * plane, mm. Returns an exit code. */
-static int find_grid_area(const struct tool *tool, const struct options *o,
-                          const struct glint_prescription *lens,
-                          const struct tracer *tracer, struct glint_pupil *area)
+static int find_ray_grid_area(const struct tool *tool, const struct options *o,
+                              const struct glint_prescription *lens,
+                              const struct tracer *tracer,
+                              struct glint_pupil *area)
 {
     const double semi = lens->surface[0].semi_mm;
     struct glint_optics optics;
@@ -304,7 +305,8 @@ static int find_grid_area(const struct tool *tool, const struct options *o,
     return EXIT_OK;
 }
 
-static double ray_grid_coordinate(double from, double to, int k, int last)
+static double compute_ray_grid_coordinate(double from, double to, int k,
+                                          int last)
 {
     return last ? from + (to - from) * k / last : 0.5 * (from + to);
 }
@@ -318,10 +320,10 @@ static void print_traced_rays(const struct tool *tool, const struct options *o,
 
     printf("px,py,status,stop_x,stop_y,sensor_x,sensor_y,energy,rel_radius\n");
     for (int k = 0; k < o->grid * o->grid && !ferror(stdout); k++) {
-        const double x =
-            ray_grid_coordinate(area->x0_mm, area->x1_mm, k % o->grid, last);
-        const double y =
-            ray_grid_coordinate(area->y0_mm, area->y1_mm, k / o->grid, last);
+        const double x = compute_ray_grid_coordinate(area->x0_mm, area->x1_mm,
+                                                     k % o->grid, last);
+        const double y = compute_ray_grid_coordinate(area->y0_mm, area->y1_mm,
+                                                     k / o->grid, last);
         struct glint_ray ray;
         const enum glint_ray_status status = tracer->trace(tracer, x, y, &ray);
 
@@ -361,7 +363,7 @@ static int trace_ray_grid(const struct tool *tool, const struct options *o,
     if (o->model && code == EXIT_OK)
         code = prepare_model_tracer(tool, o, lens, n, &model.lens, &tracer);
     if (code == EXIT_OK)
-        code = find_grid_area(tool, o, lens, &tracer, &area);
+        code = find_ray_grid_area(tool, o, lens, &tracer, &area);
     if (code == EXIT_OK)
         print_traced_rays(tool, o, &area, &tracer);
     free(tracer.part);
@@ -378,7 +380,7 @@ int cmd_trace(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = o.model ? coating_reject_for_model(&tool, &o.coating, o.model)
+    code = o.model ? coating_reject_option_for_model(&tool, &o.coating, o.model)
                    : EXIT_OK;
     if (code == EXIT_OK)
         code = tool_read_lens(&tool, argv[optind], &lens);

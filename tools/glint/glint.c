@@ -88,7 +88,7 @@ static int report_missing_command(const char *name)
 
     suggest_begin(&s, name);
     for (int i = 0; i < N_COMMANDS; i++)
-        suggest_consider(&s, commands[i].name, strlen(commands[i].name));
+        suggest_add_candidate(&s, commands[i].name, strlen(commands[i].name));
     fprintf(stderr, "glint: no command '%s'\n", name);
     if (suggest_find_best(&s))
         fprintf(stderr, "Did you mean 'glint %s'? ", s.best);

@@ -39,7 +39,8 @@ const struct import_format *import_find_format(const char *name)
 
 /* Converts the UTF-16 units of DATA from AT on to one byte each, '?' for
  * characters other than ASCII. HIGH: index of a unit's high byte, 0 or 1. */
-static void narrow_utf16(uint8_t *data, size_t *bytes, size_t at, int high)
+static void convert_utf16_to_bytes(uint8_t *data, size_t *bytes, size_t at,
+                                   int high)
 {
     size_t n = 0;
 
@@ -66,11 +67,11 @@ static void convert_line_ends(uint8_t *data, size_t bytes)
 static void decode_text(uint8_t *data, size_t *bytes)
 {
     if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)
-        narrow_utf16(data, bytes, 2, 1);
+        convert_utf16_to_bytes(data, bytes, 2, 1);
     else if (*bytes >= 2 && data[0] == 0xfe && data[1] == 0xff)
-        narrow_utf16(data, bytes, 2, 0);
+        convert_utf16_to_bytes(data, bytes, 2, 0);
     else if (*bytes >= 4 && data[0] && !data[1] && data[2] && !data[3])
-        narrow_utf16(data, bytes, 0, 1);
+        convert_utf16_to_bytes(data, bytes, 0, 1);
     else if (*bytes >= 3 && memcmp(data, "\xef\xbb\xbf", 3) == 0) {
         *bytes -= 3;
         memmove(data, data + 3, *bytes);

@@ -53,8 +53,8 @@ static bool is_semi_diameter_too_large(const struct imported *lens, int k)
     if (s->radius != 0 && s->semi > fabs(s->radius))
         return true;
     return k + 1 < lens->n && !s[0].stop && !s[1].stop &&
-           imported_gap_at_height(s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) <
-               0;
+           imported_compute_gap_at_height(
+               s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) < 0;
 }
 
 /* Halves all semi-diameters if the surfaces fit only then: some files were made

@@ -84,7 +84,8 @@ bool imported_add_note(struct imported *lens, int line, const char *format, ...)
 
 /* Adds a note about an input that does not affect the lens, so that STRICT
  * accepts it. */
-static void add_remark(struct imported *lens, int line, const char *format, ...)
+static void add_harmless_note(struct imported *lens, int line,
+                              const char *format, ...)
 {
     va_list values;
 
@@ -117,7 +118,8 @@ bool imported_set_unit(struct imported *lens, int line, double mm)
     lens->unit_mm = mm;
     lens->unit_said = true;
     return mm > 0 ||
-           imported_report_error(lens, line, "unit %g is not a length", mm);
+           imported_report_error(
+               lens, line, "the unit of length must be above 0 mm, not %g", mm);
 }
 
 void imported_set_image_surface(struct imported *lens, int line, double radius,
@@ -132,10 +134,10 @@ void imported_set_image_surface(struct imported *lens, int line, double radius,
     if (defocus == 0)
         return;
     lens->surface[lens->n - 1].thickness += defocus;
-    add_remark(lens, line,
-               "the image's defocus, %.6g mm, is added to the sensor's "
-               "distance",
-               defocus * lens->unit_mm);
+    add_harmless_note(lens, line,
+                      "the image's defocus, %.6g mm, is added to the sensor's "
+                      "distance",
+                      defocus * lens->unit_mm);
 }
 
 bool imported_note_missing_unit(struct imported *lens, const char *word)
@@ -394,7 +396,7 @@ static double compute_curvature(const struct imported_surface *s)
 
 /* Returns the curvature in the y-z plane, in which paraxial values are
  * computed. */
-static double paraxial_curvature(const struct imported_surface *s)
+static double compute_paraxial_curvature(const struct imported_surface *s)
 {
     return s->shape.bend == GLINT_BEND_X ? 0 : compute_curvature(s);
 }
@@ -409,9 +411,9 @@ static void trace_paraxial_ray(const struct imported *lens,
         const struct imported_surface *s = &lens->surface[k];
 
         ray->height[k] = ray->y;
-        ray->u =
-            (n * ray->u - ray->y * (s->index - n) * paraxial_curvature(s)) /
-            s->index;
+        ray->u = (n * ray->u -
+                  ray->y * (s->index - n) * compute_paraxial_curvature(s)) /
+                 s->index;
         if (k + 1 < lens->n)
             ray->y += s->thickness * ray->u;
         n = s->index;
@@ -447,10 +449,10 @@ static bool remove_dummy_surfaces(struct imported *lens)
         memmove(s, s + 1, (size_t)(lens->n - k) * sizeof *s);
     }
     if (n > 0)
-        add_remark(lens, line,
-                   "a surface between equal media is left out%s, which changes "
-                   "nothing",
-                   n > 1 ? ", and others like it" : "");
+        add_harmless_note(lens, line,
+                          "a surface between equal media is left out%s, as it "
+                          "refracts nothing",
+                          n > 1 ? ", and others like it" : "");
     return lens->n > 0 ||
            imported_report_error(lens, 0, "the file contains no glass");
 }
@@ -697,7 +699,8 @@ static void limit_semi_diameters(struct imported *lens)
     }
 }
 
-double imported_gap_at_height(const struct imported_surface *s, double h)
+double imported_compute_gap_at_height(const struct imported_surface *s,
+                                      double h)
 {
     return s->thickness + compute_surface_sag(s + 1, h) -
            compute_surface_sag(s, h);
@@ -711,13 +714,13 @@ static bool separate_surface_rims(struct imported *lens)
         struct imported_surface *s = &lens->surface[k];
         double low = 0, high = IMPORT_FREE * fmin(s[0].semi, s[1].semi), semi;
 
-        if (imported_gap_at_height(s, high) >= 0 ||
-            imported_gap_at_height(s, 0) < 0 || s[0].stop || s[1].stop)
+        if (imported_compute_gap_at_height(s, high) >= 0 ||
+            imported_compute_gap_at_height(s, 0) < 0 || s[0].stop || s[1].stop)
             continue;
         for (int i = 0; i < 40; i++) {
             const double middle = 0.5 * (low + high);
 
-            if (imported_gap_at_height(s, middle) < 0)
+            if (imported_compute_gap_at_height(s, middle) < 0)
                 high = middle;
             else
                 low = middle;
@@ -888,8 +891,8 @@ static void write_surface_shape(FILE *file, const struct glint_shape *shape,
         fputc('\n', file);
 }
 
-static void write_surface(FILE *file, const struct imported_surface *s,
-                          double unit)
+static void write_surface_line(FILE *file, const struct imported_surface *s,
+                               double unit)
 {
     char radius[32] = "flat";
 
@@ -960,7 +963,7 @@ char *imported_write_table(struct imported *lens, size_t *bytes)
     }
     write_table_head(lens, file);
     for (int k = 0; k < lens->n; k++)
-        write_surface(file, &lens->surface[k], lens->unit_mm);
+        write_surface_line(file, &lens->surface[k], lens->unit_mm);
     if (glint_memory_file_close(file))
         return text;
     free(text);

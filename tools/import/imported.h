@@ -28,10 +28,11 @@ struct imported_surface {
     double semi;      /* semi-diameter; 0: not stated */
     /* name of the glass behind the surface; "": nd and vd define it */
     char glass[32];
-    double nd,
-        vd; /* refractive index (1: air) and Abbe number (0: not stated) */
+    /* refractive index (1: air) and Abbe number (0: not stated) */
+    double nd, vd;
     bool stop;
-    struct glint_shape shape; /* group is not used */
+    struct glint_shape shape; /* shape of the surface; its member group is not
+                               * used */
     /* medium behind the surface in the syntax of lens tables; set when the
      * lens is completed */
     char medium[48];
@@ -141,7 +142,8 @@ bool imported_choose_position(struct imported *lens, int line, int n, int *at);
 struct imported_surface *imported_add_surface(struct imported *lens, int line);
 
 /* Returns the axial distance from S to the next surface at the height H. */
-double imported_gap_at_height(const struct imported_surface *s, double h);
+double imported_compute_gap_at_height(const struct imported_surface *s,
+                                      double h);
 
 /* Sorts notes by line; notes about the whole file come last. */
 void imported_sort_notes(struct imported *lens);

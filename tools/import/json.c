@@ -141,10 +141,11 @@ static bool parse_realflare(struct json_lens *j, json_t *root)
         return false;
     if (stop != floor(stop) || stop < 0 ||
         stop >= (double)json_array_size(elements))
-        return imported_report_error(j->lens, 0,
-                                     "\"aperture_index\" %g is none of the %d "
-                                     "\"lens_elements\", from 0",
-                                     stop, (int)json_array_size(elements));
+        return imported_report_error(
+            j->lens, 0,
+            "\"aperture_index\" %g must be the number, from 0, of one of %d "
+            "\"lens_elements\"",
+            stop, (int)json_array_size(elements));
     for (int k = 0; k < (int)json_array_size(elements); k++)
         if (!parse_element(j, json_array_get(elements, (size_t)k),
                            k == (int)stop))
@@ -213,7 +214,7 @@ static bool parse_lentil_element(struct json_lens *j, json_t *element)
 
 /* Returns the lens with the requested key, or the only lens; NULL with the
  * error set. */
-static const json_t *find_lens(struct imported *lens, json_t *root)
+static const json_t *find_requested_lens(struct imported *lens, json_t *root)
 {
     const char *key = lens->key ? lens->key : "";
     const json_t *found;
@@ -230,7 +231,7 @@ static const json_t *find_lens(struct imported *lens, json_t *root)
         imported_report_error(
             lens, 0, "has %d lenses%s%.40s%s: --lens %.40s or another",
             (int)json_object_size(root),
-            lens->key ? ", and none by the key '" : "", key,
+            lens->key ? ", but none with the key '" : "", key,
             lens->key ? "'" : "", json_object_iter_key(json_object_iter(root)));
     return NULL;
 }
@@ -238,7 +239,7 @@ static const json_t *find_lens(struct imported *lens, json_t *root)
 static bool parse_lentil(struct json_lens *j, json_t *root)
 {
     static const char list[] = "optical-elements-patent";
-    const json_t *found = find_lens(j->lens, root), *elements, *said;
+    const json_t *found = find_requested_lens(j->lens, root), *elements, *said;
     char key[64];
 
     if (!found)

@@ -28,7 +28,7 @@ static const char *find_closing_quote(const char *at, const char *end)
 
 /* Copies a line without its comment to l->text. Returns false if the line is
  * too long. */
-static bool copy_line(struct lines *l, char comment)
+static bool copy_line_without_comment(struct lines *l, char comment)
 {
     /* position of the closing quote, while inside quotes */
     const char *quoted = NULL;
@@ -110,7 +110,7 @@ static void split_line(struct lines *l)
 bool lines_read_next(struct lines *l, char comment)
 {
     while (l->at < l->end) {
-        if (!copy_line(l, comment))
+        if (!copy_line_without_comment(l, comment))
             return imported_report_error(l->lens, l->number,
                                          "the line is longer than %d bytes",
                                          LINE_CHARS - 1);
@@ -133,7 +133,9 @@ bool lines_parse_number(const struct lines *l, int k, const char *what,
         return imported_report_error(
             l->lens, l->number, "%s '%.40s' is not a number%s", what,
             l->word[k],
-            strchr(l->word[k], ',') ? ": decimals follow a point" : "");
+            strchr(l->word[k], ',')
+                ? ": write decimals with a point, not a comma"
+                : "");
     return true;
 }
 

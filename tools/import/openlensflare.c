@@ -27,16 +27,16 @@ struct reader {
     XML_Parser parser;
     int depth;       /* number of open XML elements */
     bool in_element; /* whether the parser is inside <element> */
-    bool coated,
-        ended; /* whether a coating, and whether the sensor, has been read */
-    int line;  /* line number of <element> */
+    /* whether a coating has been read, and whether the sensor has */
+    bool coated, ended;
+    int line; /* line number of <element> */
     char kind[24], text[IMPORT_TEXT];
     size_t bytes; /* number of bytes in text */
     double value[ELEMENT_VALUES], system[SYSTEM_VALUES];
     bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
 };
 
-static int current_parser_line(const struct reader *r)
+static int get_parser_line(const struct reader *r)
 {
     return (int)XML_GetCurrentLineNumber(r->parser);
 }
@@ -57,11 +57,11 @@ static void XMLCALL handle_start_tag(void *data, const char *name,
     r->bytes = 0;
     if (r->depth++ == 0 && strcmp(name, "opticalSystem") != 0)
         stop_parser_on_error(r, imported_report_error(
-                                    r->lens, current_parser_line(r),
+                                    r->lens, get_parser_line(r),
                                     "<%.40s> is not an <opticalSystem>", name));
     if (strcmp(name, "element") == 0) {
         r->in_element = true;
-        r->line = current_parser_line(r);
+        r->line = get_parser_line(r);
         r->kind[0] = '\0';
         memset(r->has, 0, sizeof r->has);
     }
@@ -86,7 +86,7 @@ static void XMLCALL reject_doctype(void *data, const char *name,
     (void)public_id;
     (void)has_internal;
     stop_parser_on_error(
-        r, imported_report_error(r->lens, current_parser_line(r),
+        r, imported_report_error(r->lens, get_parser_line(r),
                                  "<!DOCTYPE> is not allowed in lens files"));
 }
 
@@ -136,7 +136,7 @@ static bool parse_element_value(struct reader *r, const char *name, int n,
             continue;
         *done = has[i] = true;
         if (!tool_parse_number(r->text, &values[i]))
-            return imported_report_error(r->lens, current_parser_line(r),
+            return imported_report_error(r->lens, get_parser_line(r),
                                          "<%s> '%.40s' is not a number", name,
                                          r->text);
     }
@@ -174,7 +174,7 @@ static bool parse_end_tag(struct reader *r, const char *name)
     for (size_t i = 0; i < sizeof ignored / sizeof *ignored; i++)
         if (strcmp(ignored[i], name) == 0)
             return true;
-    return imported_note_unread_word(r->lens, current_parser_line(r), name);
+    return imported_note_unread_word(r->lens, get_parser_line(r), name);
 }
 
 static void XMLCALL handle_end_tag(void *data, const char *name)
@@ -228,7 +228,7 @@ bool import_openlensflare(struct imported *lens, const char *text, size_t bytes)
     XML_SetStartDoctypeDeclHandler(r.parser, reject_doctype);
     status = XML_Parse(r.parser, text, (int)bytes, XML_TRUE);
     if (status != XML_STATUS_OK && !lens->error[0])
-        imported_report_error(lens, current_parser_line(&r), "%.150s",
+        imported_report_error(lens, get_parser_line(&r), "%.150s",
                               XML_ErrorString(XML_GetErrorCode(r.parser)));
     XML_ParserFree(r.parser);
     return status == XML_STATUS_OK && !lens->error[0] && finish_lens(&r);

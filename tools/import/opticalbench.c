@@ -202,7 +202,7 @@ static bool parse_aspheric_term(struct optical_bench *b,
     if (i < 0 || i >= GLINT_SHAPE_TERMS)
         return imported_report_error(
             b->lens, b->lines.number,
-            "a term of h^%d: only h^4 to h^20 are supported",
+            "aspheric term h^%d is not supported; only h^4 to h^20 are",
             i < 0 ? b->a2 > 0 ? 2 : 3 : 2 * i + 4);
     s->shape.term[i] = value;
     return true;
@@ -224,7 +224,8 @@ static bool parse_aspheric_row(struct optical_bench *b)
     if (b->odd > 1)
         return imported_report_error(
             b->lens, b->lines.number,
-            "%g odd terms: only even ones are supported", b->odd);
+            "%g odd aspheric terms are not supported; only even powers are",
+            b->odd);
     if (strcasecmp(get_word_or_empty(b, 1), "Infinity") == 0)
         radius = 0;
     else if (!lines_parse_number(&b->lines, 1, "radius", &radius))

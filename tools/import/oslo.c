@@ -93,7 +93,7 @@ static bool parse_surface_keyword(struct oslo *o)
     return reject_or_note_keyword(o);
 }
 
-static bool parse_head_keyword(struct oslo *o)
+static bool parse_header_keyword(struct oslo *o)
 {
     const struct lines *l = &o->lines;
     double value;
@@ -124,7 +124,7 @@ static bool parse_keyword_line(struct oslo *o)
     }
     if (lines_first_word_is(l, "EBR") || lines_first_word_is(l, "ANG") ||
         lines_first_word_is(l, "UNI") || lines_first_word_is(l, "LEN"))
-        return parse_head_keyword(o);
+        return parse_header_keyword(o);
     if (!o->s && lines_first_word_is(l, "TH")) {
         double object;
 

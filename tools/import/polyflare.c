@@ -32,7 +32,7 @@ struct polyflare {
     double focal[POSITIONS], field[POSITIONS];
 };
 
-/* Removes the comment and all words in it from L. */
+/* Removes the words of L that belong to a comment. */
 static void remove_comment_words(struct lines *l)
 {
     for (int k = 0; k < l->n; k++) {
@@ -55,7 +55,7 @@ static bool report_too_many_words(struct polyflare *p)
 
 /* Parses "#EFL" and similar lines; other lines that begin with '#' are
  * comments. */
-static bool parse_head_line(struct polyflare *p)
+static bool parse_header_line(struct polyflare *p)
 {
     const struct lines *l = &p->lines;
     const bool focal = lines_first_word_is(l, "#EFL");
@@ -75,7 +75,8 @@ static bool parse_head_line(struct polyflare *p)
                imported_note_unread_word(p->lens, l->number, l->word[0]);
     return lines_parse_number(l, 1, "scale", &p->lens->unit_mm) &&
            (p->lens->unit_mm > 0 ||
-            imported_report_error(p->lens, l->number, "scale %g is not above 0",
+            imported_report_error(p->lens, l->number,
+                                  "the scale must be above 0, not %g",
                                   p->lens->unit_mm));
 }
 
@@ -107,9 +108,9 @@ static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
         at += bytes + more;
     }
     if (n > 1 && p->positions > 0 && n != p->positions)
-        return imported_report_error(p->lens, l->number,
-                                     "%d positions, but %d on line %d", n,
-                                     p->positions, p->line);
+        return imported_report_error(
+            p->lens, l->number, "%d zoom positions here, but %d on line %d", n,
+            p->positions, p->line);
     if (n > 1 && p->positions == 0) {
         p->positions = n;
         p->line = l->number;
@@ -203,7 +204,7 @@ static bool choose_plane_as_stop(struct imported *lens)
     lens->surface[at].stop = true;
     return imported_add_note(
         lens, lens->surface[at].line,
-        "no iris is stated; the plane in air is used as the stop");
+        "no iris is stated; the plane surface in air is used as the stop");
 }
 
 bool import_polyflare(struct imported *lens, const char *text, size_t bytes)
@@ -213,7 +214,7 @@ bool import_polyflare(struct imported *lens, const char *text, size_t bytes)
     lines_init(&p.lines, lens, text, bytes);
     while (lines_read_next(&p.lines, '\0')) {
         remove_comment_words(&p.lines);
-        if (p.lines.n > 0 && !(*p.lines.word[0] == '#' ? parse_head_line(&p)
+        if (p.lines.n > 0 && !(*p.lines.word[0] == '#' ? parse_header_line(&p)
                                                        : parse_surface_row(&p)))
             return false;
     }

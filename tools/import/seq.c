@@ -191,7 +191,8 @@ static bool parse_surface_command(struct seq *q)
 static bool parse_dimension_command(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
-    const char unit = (char)(*word & ~0x20); /* upper-case letter of the unit */
+    /* first letter of the unit, in upper case */
+    const char unit = (char)(*word & ~0x20);
 
     if (unit != 'I' && unit != 'C' && unit != 'M')
         return imported_report_error(q->lens, q->lines.number,
@@ -203,7 +204,7 @@ static bool parse_dimension_command(struct seq *q)
                                            : 1);
 }
 
-static bool parse_head_command(struct seq *q)
+static bool parse_header_command(struct seq *q)
 {
     const struct lines *l = &q->lines;
 
@@ -282,7 +283,7 @@ static bool parse_command(struct seq *q)
     if (!select_surface(q))
         return false;
     good = q->s && !lines_first_word_is(l, "DIM") ? parse_surface_command(q)
-                                                  : parse_head_command(q);
+                                                  : parse_header_command(q);
     q->s = current;
     return good;
 }

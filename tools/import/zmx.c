@@ -75,7 +75,7 @@ static bool parse_surface_parameter(struct zmx *z)
     if (k < 2 || k > 8 || k != floor(k))
         return imported_report_error(
             z->lens, z->lines.number,
-            "a term of h^%g: only h^4 to h^16 are supported", 2 * k);
+            "aspheric term h^%g is not supported; only h^4 to h^16 are", 2 * k);
     z->s->shape.term[(int)k - 2] = value;
     return true;
 }
@@ -131,7 +131,7 @@ static bool parse_unit_keyword(struct zmx *z)
         "unit '%s' is unknown; expected MM, CM, IN or METER", word);
 }
 
-static bool parse_head_keyword(struct zmx *z)
+static bool parse_header_keyword(struct zmx *z)
 {
     const struct lines *l = &z->lines;
     double value;
@@ -274,7 +274,7 @@ bool import_zmx(struct imported *lens, const char *text, size_t bytes)
                    lines_first_word_is(l, "DMFS"))
             tail = true;
         else if (!z.s)
-            more = parse_head_keyword(&z);
+            more = parse_header_keyword(&z);
         else if (!tail) {
             const bool indented = l->word[0] > l->text;
 

@@ -86,18 +86,19 @@ static int run_timed_rounds(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-double bench_median_ms(const struct bench *b, const struct bench_case *c,
-                       int stage)
+double bench_compute_median_ms(const struct bench *b,
+                               const struct bench_case *c, int stage)
 {
     return canvas_find_median(c->ms[stage], b->rounds);
 }
 
-static double median_floor_ms(const struct bench *b, const struct bench_case *c)
+static double compute_median_floor_ms(const struct bench *b,
+                                      const struct bench_case *c)
 {
     return canvas_find_median(c->canvas->floor_ms, b->rounds);
 }
 
-static int stage_column_width(const char *stage)
+static int compute_stage_column_width(const char *stage)
 {
     const int n = (int)strlen(stage);
 
@@ -109,23 +110,25 @@ static void print_bench_table(const struct bench *b)
     const struct bench_subject *const s = b->subject;
     const int whole = s->n_stages - 1;
 
-    printf("floor %.3f ms (%dx%d %s, %d rounds); stages are ratios to it\n",
-           median_floor_ms(b, b->cases[0]), b->cases[0]->canvas->image.width,
-           b->cases[0]->canvas->image.height, bench_format[b->word], b->rounds);
+    printf("memory floor %.3f ms (%dx%d %s, %d rounds); stages are multiples "
+           "of it\n",
+           compute_median_floor_ms(b, b->cases[0]),
+           b->cases[0]->canvas->image.width, b->cases[0]->canvas->image.height,
+           bench_format[b->word], b->rounds);
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
-        printf(" %*s", stage_column_width(s->stage[k]), s->stage[k]);
+        printf(" %*s", compute_stage_column_width(s->stage[k]), s->stage[k]);
     printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
-        const double floor_ms = median_floor_ms(b, c);
+        const double floor_ms = compute_median_floor_ms(b, c);
 
         s->print_case(b, c);
-        printf(" %8.3f %7.1f ", bench_median_ms(b, c, whole),
-               bench_median_ms(b, c, whole) / floor_ms);
+        printf(" %8.3f %7.1f ", bench_compute_median_ms(b, c, whole),
+               bench_compute_median_ms(b, c, whole) / floor_ms);
         for (int k = 0; k < whole; k++)
-            printf(" %*.2f", stage_column_width(s->stage[k]),
-                   bench_median_ms(b, c, k) / floor_ms);
+            printf(" %*.2f", compute_stage_column_width(s->stage[k]),
+                   bench_compute_median_ms(b, c, k) / floor_ms);
         printf("  ");
         s->print_result(b, c);
         printf("\n");
@@ -145,11 +148,13 @@ void bench_write_json_times(struct json_writer *json, const struct bench *b,
 {
     const struct bench_subject *const s = b->subject;
     const int whole = s->n_stages - 1;
-    const double ms = bench_median_ms(b, c, whole);
+    const double ms = bench_compute_median_ms(b, c, whole);
 
-    json_write(json, "ms: %.4f, ratio: %.3f", ms, ms / median_floor_ms(b, c));
+    json_write(json, "ms: %.4f, ratio: %.3f", ms,
+               ms / compute_median_floor_ms(b, c));
     for (int k = 0; k < whole; k++)
-        json_write(json, "%s_ms: %.4f", s->stage[k], bench_median_ms(b, c, k));
+        json_write(json, "%s_ms: %.4f", s->stage[k],
+                   bench_compute_median_ms(b, c, k));
 }
 
 static void print_bench_json(const struct bench *b)
@@ -159,8 +164,8 @@ static void print_bench_json(const struct bench *b)
     json_write(&json,
                "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
                "cases: [",
-               median_floor_ms(b, b->cases[0]), b->rounds, GLINT_VERSION,
-               canvas_describe_machine());
+               compute_median_floor_ms(b, b->cases[0]), b->rounds,
+               GLINT_VERSION, canvas_describe_machine());
     for (int i = 0; i < b->n_cases; i++) {
         json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);
         b->subject->json(&json, b, b->cases[i]);

@@ -10,7 +10,8 @@
 #include "measure/canvas.h"
 
 enum {
-    BENCH_CASES = 256, /* exceeds the number of cases of 16 lenses with --all */
+    BENCH_CASES = 256, /* max number of cases, more than 16 lenses have with
+                        * --all */
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
     BENCH_CANVASES = 8,
@@ -124,8 +125,8 @@ void bench_write_json_times(struct json_writer *json, const struct bench *bench,
                             const struct bench_case *c);
 
 /* Returns the median time of STAGE of case C, ms. */
-double bench_median_ms(const struct bench *bench, const struct bench_case *c,
-                       int stage);
+double bench_compute_median_ms(const struct bench *bench,
+                               const struct bench_case *c, int stage);
 
 /* Code of the first option that only one subject has */
 enum { BENCH_OWN = 'A' };

@@ -85,7 +85,8 @@ static const struct bench_variation all[] = {
     {.lights = 0},
     {.lights = 1, .star_stops = 12},
     {.lights = 10, .star_stops = 2},
-    {.lights = 1, .angle = 75}, /* beyond the max angle of baked models */
+    {.lights = 1, .angle = 75}, /* a lamp far off-screen, outside the angles of
+                                 * baked models */
 };
 
 /* Sets the exposure of T by the flare of lights 12 degrees off the axis, even
@@ -234,7 +235,7 @@ static void close_bench_lenses(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *rasteriser_name(const struct flare_case *t)
+static const char *get_rasteriser_name(const struct flare_case *t)
 {
     return t->is_star ? "star" : "edges";
 }
@@ -245,8 +246,8 @@ static void print_bench_case(const struct bench *b, const struct bench_case *c)
 
     (void)b;
     printf("%-22s %4dx%-4d %5d %2d %-5s %-5s", c->name, c->canvas->image.width,
-           c->canvas->image.height, t->n_lamps, c->threads, rasteriser_name(t),
-           c->kernels);
+           c->canvas->image.height, t->n_lamps, c->threads,
+           get_rasteriser_name(t), c->kernels);
 }
 
 static void print_bench_result(const struct bench *b,
@@ -270,7 +271,7 @@ static void write_bench_json(struct json_writer *to, const struct bench *b,
     json_write(to,
                "lights: %d, threads: %d, raster: %s, kernels: %s, "
                "quality: %.3f",
-               t->n_lamps, c->threads, rasteriser_name(t), c->kernels,
+               t->n_lamps, c->threads, get_rasteriser_name(t), c->kernels,
                r->quality >= 0 ? r->quality : b->base.options.quality);
     bench_write_json_times(to, b, c);
     json_write(to,

@@ -278,7 +278,7 @@ static void close_bench_scene(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *shading_method_name(const struct scene_case *t)
+static const char *get_shading_method_name(const struct scene_case *t)
 {
     return t->frame.cfg.half_shading ? "half" : "full";
 }
@@ -291,7 +291,7 @@ static void print_bench_case(const struct bench *b, const struct bench_case *c)
     (void)b;
     printf("%-16.16s %4dx%-4d %5d %6d %-7s %2d %-5s", c->name, cfg->width,
            cfg->height, cfg->edge_samples, cfg->shadow_points,
-           shading_method_name(t), c->threads, c->kernels);
+           get_shading_method_name(t), c->threads, c->kernels);
 }
 
 static void print_bench_result(const struct bench *b,
@@ -315,14 +315,15 @@ static void write_bench_json(struct json_writer *to, const struct bench *b,
     json_write(to,
                "edge_samples: %d, shadow_points: %d, shading: %s, threads: %d, "
                "kernels: %s",
-               cfg->edge_samples, cfg->shadow_points, shading_method_name(t),
-               c->threads, c->kernels);
+               cfg->edge_samples, cfg->shadow_points,
+               get_shading_method_name(t), c->threads, c->kernels);
     bench_write_json_times(to, b, c);
     json_write(to,
                "whole_ms: %.4f, instructions: %.0f, covered_px: %d, "
                "triangles: %d, arena_bytes: %zu, model_bytes: %zu",
-               bench_median_ms(b, c, WHOLE), t->instructions, t->covered_px,
-               t->frame.stats.triangles, t->frame.bytes, o->scene.bytes);
+               bench_compute_median_ms(b, c, WHOLE), t->instructions,
+               t->covered_px, t->frame.stats.triangles, t->frame.bytes,
+               o->scene.bytes);
 }
 
 /* ----------------------------------------------------------------- options */

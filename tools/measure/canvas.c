@@ -80,7 +80,7 @@ void canvas_time_memory_floor(struct canvas *c, int round)
 
 /* ------------------------------------------------------------------- lamps */
 
-static double lamp_power(int i, int n)
+static double compute_lamp_power(int i, int n)
 {
     return 1.0 / (n > 64 ? 1 + i : n);
 }
@@ -90,7 +90,7 @@ void canvas_set_lamps(struct glint_lamp *lamp, int n, double angle)
     for (int i = 0; i < n; i++)
         lamp[i] = (struct glint_lamp){i ? fmod(angle + 2.39 * i, 24) : angle,
                                       fmod(33 + 137.5 * i, 360),
-                                      lamp_power(i, n),
+                                      compute_lamp_power(i, n),
                                       {1, 1, 1},
                                       {0, 0},
                                       0};
@@ -141,11 +141,11 @@ draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
     struct tool_progress progress;
     struct glint_exact_config cfg = {
         .setup = setup,
-        .view = opened_lens_view(lens, s, to->width, to->height),
+        .view = opened_lens_compute_view(lens, s, to->width, to->height),
         .lamps = lamp,
         .n_lamps = n_lamps,
         .grid = grid,
-        .only_ghost = settings_get_only_ghost(s),
+        .only_ghost = settings_get_selected_ghost(s),
         .workers = tool->workers,
         .progress = tool_progress_show,
         .progress_ctx = &progress};
@@ -187,9 +187,9 @@ static uint64_t compute_cache_key(const struct opened_lens *lens,
                                   const struct glint_lamp *lamp, int n_lamps,
                                   int grid, const struct glint_float_image *to)
 {
-    const int only_ghost = settings_get_only_ghost(s);
+    const int only_ghost = settings_get_selected_ghost(s);
     const struct glint_view view =
-        opened_lens_view(lens, s, to->width, to->height);
+        opened_lens_compute_view(lens, s, to->width, to->height);
     const struct glint_engine_camera camera = opened_lens_make_camera(lens, s);
     const struct glint_iris *const i = &camera.iris;
     struct glint_bake_options options;
@@ -264,7 +264,7 @@ enum glint_status canvas_draw_exact(const struct tool *tool,
     return status;
 }
 
-enum glint_status canvas_convert_to_codes(struct glint_engine *engine,
+enum glint_status canvas_draw_flare_codes(struct glint_engine *engine,
                                           const struct glint_lamp *lamp,
                                           int n_lamps, double exposure,
                                           uint8_t *codes,

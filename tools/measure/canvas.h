@@ -27,8 +27,10 @@ struct canvas {
 enum glint_status canvas_init(struct canvas *canvas,
                               enum glint_pixel_format format, int width,
                               int height);
-void canvas_restore_background(
-    struct canvas *canvas); /* restores the pixels to the background */
+
+/* Restores the pixels of CANVAS to the background. */
+void canvas_restore_background(struct canvas *canvas);
+
 void canvas_free(struct canvas *canvas);
 
 /* Measures the memory floor of ROUND: the time of adding a small constant
@@ -66,7 +68,7 @@ enum glint_status canvas_draw_exact(const struct tool *tool,
 /* Draws only the flare, scaled by EXPOSURE, on black to sRGB codes
  * CODES[height][width][3], with the plan for 8-bit codes, which is cheaper than
  * that for linear light. */
-enum glint_status canvas_convert_to_codes(struct glint_engine *engine,
+enum glint_status canvas_draw_flare_codes(struct glint_engine *engine,
                                           const struct glint_lamp *lamp,
                                           int n_lamps, double exposure,
                                           uint8_t *codes,

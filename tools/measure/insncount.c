@@ -49,8 +49,9 @@ EXPORTED int qemu_plugin_version = 1;
 enum { MAX_MARKS = 32, ASLEEP = -2, IDLE = -1, REST = 0, INHERIT = -3 };
 
 struct block {
-    int n, stage; /* number of instructions; stage: ASLEEP in the idle function,
-                     INHERIT for that of the caller, else a stage index */
+    int n, stage; /* number of instructions in the block, and its stage: an
+                   * index, ASLEEP in the idle function, or INHERIT for the
+                   * stage of the caller */
 };
 
 static struct {

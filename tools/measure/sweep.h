@@ -22,8 +22,8 @@ struct sweep_parameter {
     const char *option; /* engine option; NULL: the tolerance of a bake */
     double standard;    /* default value */
     bool opens;         /* whether a change requires opening the lens again */
-    bool
-        many_lights; /* whether the parameter has no effect on a single light */
+    /* whether the parameter has no effect on a single light */
+    bool many_lights;
     int n_values, n_together;
     double value[MAX_VALUES]; /* values to measure, the finest first */
     double together[MAX_TOGETHER];
@@ -158,7 +158,7 @@ void sweep_describe_setting(const struct sweep_setting *set, char text[160]);
 
 /* Returns the index of the named quality of P, or -1 if its quality has no
  * name. */
-int sweep_quality_name_index(const struct sweep_point *p);
+int sweep_find_quality_name_index(const struct sweep_point *p);
 
 void sweep_write_csv(const struct sweep *s, FILE *file);
 void sweep_write_json(const struct sweep *s, FILE *file);

@@ -98,16 +98,17 @@ static void print_settings_above_front(const struct sweep *s, FILE *file)
                 n_above++ ? ", " : "\nAbove --quality: ", words, above);
     }
     if (n_alone > 0)
-        fprintf(
-            file,
-            "%s%d of %d settings of one parameter are better than --quality.\n",
-            n_above ? "; " : "\n", n_above, n_alone);
+        fprintf(file,
+                "%s%d of %d settings that vary one parameter are better than "
+                "--quality.\n",
+                n_above ? "; " : "\n", n_above, n_alone);
     free(mean);
 }
 
 void sweep_write_name_table(const struct sweep *s, FILE *file)
 {
-    fputs("Times memory floor; PSNR, dB; KiB of arena + model\n\n"
+    fputs("Each entry: time / memory floor; PSNR, dB; KiB of arena + model\n"
+          "\n"
           "| lens, size, lights |",
           file);
     for (int i = 0; i < GLINT_QUALITY_NAMES; i++)
@@ -121,7 +122,7 @@ void sweep_write_name_table(const struct sweep *s, FILE *file)
         for (int i = k->first; i < k->first + k->n; i++) {
             const struct sweep_point *const p = &s->point[i];
 
-            if (sweep_quality_name_index(p) >= 0)
+            if (sweep_find_quality_name_index(p) >= 0)
                 fprintf(file, " %.1f; %.1f; %.0f + %.0f |",
                         p->metric[SWEEP_RATIO], p->metric[SWEEP_PSNR_DB],
                         floor(p->metric[SWEEP_ARENA_BYTES] / 1024),

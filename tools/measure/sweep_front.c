@@ -78,8 +78,8 @@ void sweep_mark_fronts(struct sweep *s)
 /* Sets M to the means of setting I over all cases with combined parameters,
  * which all have the same settings. Returns false if a case has not measured
  * it. */
-static bool compute_setting_mean(const struct sweep *s, int i,
-                                 struct sweep_mean *m)
+static bool compute_means_of_setting(const struct sweep *s, int i,
+                                     struct sweep_mean *m)
 {
     int n = 0;
 
@@ -145,7 +145,7 @@ struct sweep_mean *sweep_compute_means(const struct sweep *s, int *n)
     while (first < s->n_cases && !s->scase[first].together)
         first++;
     for (int i = 0; mean && first < s->n_cases && i < s->scase[first].n; i++)
-        *n += compute_setting_mean(s, i, &mean[*n]);
+        *n += compute_means_of_setting(s, i, &mean[*n]);
     sweep_sort_means(mean, *n);
     mark_front_of_means(mean, *n);
     return mean;

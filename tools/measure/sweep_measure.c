@@ -40,8 +40,8 @@ struct bay {
     struct canvas canvas;
     struct glint_lamp *lamp;
     double exposure;
-    struct glint_float_image
-        exact; /* exact image; rgb is NULL until it is drawn */
+    /* exact image; rgb is NULL until it is drawn */
+    struct glint_float_image exact;
 };
 
 /* ------------------------------------------------------------------ making */
@@ -76,7 +76,7 @@ find_lens(struct bay *b, const struct sweep_setting *set, int *code)
     return *code == EXIT_OK ? open : NULL;
 }
 
-static int open_measurement_run(struct bay *b, struct run *r)
+static int prepare_run(struct bay *b, struct run *r)
 {
     struct glint_engine_config cfg;
     struct glint_error error = {""};
@@ -98,7 +98,7 @@ static int open_measurement_run(struct bay *b, struct run *r)
                               : tool_fail(b->s->tool, status, error.text);
 }
 
-static int open_measurement_bay(struct bay *b)
+static int open_case_measurement(struct bay *b)
 {
     const struct sweep_case *c = b->c;
     int code = EXIT_OK;
@@ -112,7 +112,7 @@ static int open_measurement_bay(struct bay *b)
     canvas_set_lamps(b->lamp, c->n_lamps, c->angle);
     for (int i = 0; i < c->n && code == EXIT_OK; i++) {
         b->run[i].point = &b->s->point[c->first + i];
-        code = open_measurement_run(b, &b->run[i]);
+        code = prepare_run(b, &b->run[i]);
     }
     if (code == EXIT_OK &&
         canvas_compute_exposure(b->run[0].engine, b->lamp, c->n_lamps,
@@ -121,7 +121,7 @@ static int open_measurement_bay(struct bay *b)
     return code;
 }
 
-static void close_measurement_bay(struct bay *b)
+static void close_case_measurement(struct bay *b)
 {
     for (int i = 0; b->run && i < b->c->n; i++)
         glint_engine_destroy(b->run[i].engine);
@@ -230,8 +230,8 @@ static enum glint_status measure_flux_error(struct bay *b, struct run *r)
 
 /* Reduces CODES, with rows of STRIDE bytes, to TO, WIDTH x HEIGHT pixels, each
  * the mean of BY x BY pixels. */
-static void reduce_image(const uint8_t *codes, int stride, int by, uint8_t *to,
-                         int width, int height)
+static void reduce_image_size(const uint8_t *codes, int stride, int by,
+                              uint8_t *to, int width, int height)
 {
     for (int y = 0; y < height; y++)
         for (int i = 0; i < 3 * width; i++) {
@@ -268,19 +268,19 @@ static bool store_reduced_picture(struct bay *b, int point,
     if (!p->rgb)
         return false;
     s->n_pictures++;
-    reduce_image(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
+    reduce_image_size(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
     return true;
 }
 
 /* Measures the error of R's frame against EXACT_CODES. CODES is scratch memory
  * for R's codes. */
-static enum glint_status measure_run_error(struct bay *b, struct run *r,
-                                           const uint8_t *exact_codes,
-                                           double exposure, uint8_t *codes)
+static enum glint_status measure_error_of_run(struct bay *b, struct run *r,
+                                              const uint8_t *exact_codes,
+                                              double exposure, uint8_t *codes)
 {
     struct glint_engine_report report;
     struct glint_measure m;
-    const enum glint_status status = canvas_convert_to_codes(
+    const enum glint_status status = canvas_draw_flare_codes(
         r->engine, b->lamp, b->c->n_lamps, exposure, codes, &report);
 
     if (status != GLINT_OK)
@@ -289,7 +289,7 @@ static enum glint_status measure_run_error(struct bay *b, struct run *r,
     r->point->metric[SWEEP_PSNR_DB] = m.psnr_db;
     r->point->metric[SWEEP_SSIM] = m.ssim;
     r->point->metric[SWEEP_P99] = m.p99;
-    if (sweep_quality_name_index(r->point) >= 0 &&
+    if (sweep_find_quality_name_index(r->point) >= 0 &&
         !store_reduced_picture(b, (int)(r->point - b->s->point), codes))
         return GLINT_E_MEMORY;
     return measure_flux_error(b, r);
@@ -315,8 +315,8 @@ static enum glint_status measure_all_points(struct bay *b,
         if (!exact_codes || !store_reduced_picture(b, -1, exact_codes))
             status = GLINT_E_MEMORY;
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
-            status =
-                measure_run_error(b, &b->run[i], exact_codes, exposure, codes);
+            status = measure_error_of_run(b, &b->run[i], exact_codes, exposure,
+                                          codes);
             tool_progress_show(progress,
                                from + (to - from) * (i + 1) / b->c->n);
         }
@@ -338,14 +338,14 @@ int sweep_measure_case(struct sweep *s, int c, struct tool_progress *progress)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
     b->s = s;
     b->c = &s->scase[c];
-    code = open_measurement_bay(b);
+    code = open_case_measurement(b);
     if (code == EXIT_OK)
         status = time_all_points(b, progress, from, (from + to) / 2);
     if (code == EXIT_OK && status == GLINT_OK)
         status = measure_all_points(b, progress, (from + to) / 2, to);
     if (code == EXIT_OK && status != GLINT_OK)
         code = tool_fail(s->tool, status, NULL);
-    close_measurement_bay(b);
+    close_case_measurement(b);
     free(b);
     return code;
 }

@@ -9,15 +9,15 @@
 #include "measure/sweep.h"
 
 static const char head[] =
-    "<p>The same frames with each dial turned by itself (coloured), with some "
-    "of them together (grey), and along <code>--quality</code> (diamonds), "
-    "against the exact picture: every ray in double, each cell clipped "
-    "exactly. PSNR, SSIM and the 99th percentile of differences are of sRGB "
-    "codes, 8 bits, exposed so that the exact picture's 99.9th percentile is "
-    "white; flux is compared before it becomes codes. The line is the front: "
-    "nothing that was measured is both cheaper and better, among what keeps "
-    "its flux within 2 percent; the rest is not shown in fronts. Marks say "
-    "what they are under the pointer.</p>\n";
+    "<p>The same frames were drawn with each quality parameter varied "
+    "separately (coloured), with several varied together (grey), and along "
+    "<code>--quality</code> (diamonds). Each is compared with the exact "
+    "picture, which traces every ray in double precision. PSNR, SSIM and the "
+    "99th percentile of differences are those of 8-bit sRGB codes, exposed so "
+    "that the exact picture's 99.9th percentile is white. Flux is compared in "
+    "linear light. The line is the Pareto front: no measured setting is both "
+    "faster and more accurate. Settings whose flux is off by more than 2 "
+    "percent are not shown in it. Point at a mark to see its setting.</p>\n";
 
 /* ------------------------------------------------------------------- table */
 
@@ -32,7 +32,7 @@ static void write_quality_names_table(const struct sweep *s, FILE *file)
         const struct sweep_point *p = &s->point[i];
         const struct sweep_case *c = &s->scase[p->of];
         const double *m = p->metric;
-        const int name = sweep_quality_name_index(p);
+        const int name = sweep_find_quality_name_index(p);
 
         if (name >= 0)
             html_write_table_row(
@@ -54,10 +54,12 @@ static void write_front_table(const struct sweep *s, FILE *file)
     int n;
     struct sweep_mean *const mean = sweep_compute_means(s, &n);
 
-    fputs("<h2>The front of all lenses together</h2>\n<table>", file);
-    html_write_table_row(
-        file, "th",
-        "setting|cost over default|PSNR dB, mean|least|flux %%, worst");
+    fputs("<h2>Pareto front, mean of all lenses</h2>\n"
+          "<table>",
+          file);
+    html_write_table_row(file, "th",
+                         "setting|cost / default cost|mean PSNR, dB|min PSNR, "
+                         "dB|max flux error, %%");
     for (int i = 0; i < n; i++) {
         char words[160];
 
@@ -115,8 +117,9 @@ static void write_picture_strips(const struct sweep *s, FILE *file)
 {
     const struct sweep_picture *exact = NULL;
 
-    fputs("<h2>Pictures</h2>\n<p>Each beside its difference from the exact "
-          "one, 16 times, about grey.</p>\n",
+    fputs("<h2>Pictures</h2>\n"
+          "<p>To the right of each picture: its difference from the exact "
+          "picture, times 16; grey is no difference.</p>\n",
           file);
     for (int i = 0; i < s->n_pictures; i++) {
         const struct sweep_picture *q = &s->picture[i];

@@ -92,7 +92,7 @@ static void read_quality_parameters(const struct settings *s, double *value)
 
 /* ------------------------------------------------------------------- points */
 
-static struct sweep_setting make_standard_setting(enum sweep_kind kind)
+static struct sweep_setting make_default_setting(enum sweep_kind kind)
 {
     struct sweep_setting set = {.kind = kind, .alone = -1, .quality = -1};
 
@@ -131,7 +131,7 @@ static enum glint_status add_single_parameter_points(struct sweep *s, int c)
             (s->small && p->opens))
             continue;
         for (int i = 0; i < p->n_values && status == GLINT_OK; i++) {
-            struct sweep_setting set = make_standard_setting(SWEEP_ALONE);
+            struct sweep_setting set = make_default_setting(SWEEP_ALONE);
 
             set.alone = d;
             set.value[d] = p->value[i];
@@ -151,7 +151,7 @@ static enum glint_status add_combined_parameter_points(struct sweep *s, int c)
     int at[MAX_PARAMETERS] = {0}, d = 0;
 
     while (d < n_sweep_parameters && status == GLINT_OK) {
-        struct sweep_setting set = make_standard_setting(SWEEP_TOGETHER);
+        struct sweep_setting set = make_default_setting(SWEEP_TOGETHER);
         int n_differ = 0;
 
         for (d = 0; d < n_sweep_parameters; d++)
@@ -174,7 +174,7 @@ static enum glint_status add_combined_parameter_points(struct sweep *s, int c)
 static enum glint_status add_quality_points(struct sweep *s, int c,
                                             double quality)
 {
-    struct sweep_setting set = make_standard_setting(SWEEP_QUALITY);
+    struct sweep_setting set = make_default_setting(SWEEP_QUALITY);
     struct settings settings = s->base;
 
     set.quality = quality;
@@ -187,7 +187,7 @@ static enum glint_status add_quality_points(struct sweep *s, int c,
 
 static enum glint_status plan_case_points(struct sweep *s, int c)
 {
-    const struct sweep_setting plain = make_standard_setting(SWEEP_STANDARD);
+    const struct sweep_setting plain = make_default_setting(SWEEP_STANDARD);
     enum glint_status status = add_sweep_point(s, c, &plain);
 
     if (status == GLINT_OK)
@@ -228,7 +228,7 @@ void sweep_describe_setting(const struct sweep_setting *set, char text[160])
         snprintf(text, 160, "default");
 }
 
-int sweep_quality_name_index(const struct sweep_point *p)
+int sweep_find_quality_name_index(const struct sweep_point *p)
 {
     const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
 

@@ -41,9 +41,10 @@ static void draw_setting_dots(const struct plot *p,
             snprintf(tip, sizeof tip, "%s: %.3g, %.1f dB", words, dot[i].cost,
                      dot[i].psnr_db);
             plot_draw_mark(p, dot[i].cost, dot[i].psnr_db, mark[set->kind],
-                           pass == 0         ? GREY
-                           : set->alone >= 0 ? plot_colour_of_series(set->alone)
-                                             : FRONT,
+                           pass == 0 ? GREY
+                           : set->alone >= 0
+                               ? plot_get_colour_of_series(set->alone)
+                               : FRONT,
                            tip);
         }
 }
@@ -66,7 +67,7 @@ static void draw_front_panel(struct plot *p, const struct sweep_mean *dot,
 
         if (d >= 0 && !seen[d]) {
             seen[d] = true;
-            plot_draw_legend_entry(p, 'o', plot_colour_of_series(d),
+            plot_draw_legend_entry(p, 'o', plot_get_colour_of_series(d),
                                    sweep_parameter[d].name);
         }
         if (dot[i].front) {
@@ -148,12 +149,12 @@ static void draw_parameter_curve(const struct sweep *s, const struct plot *p,
             if (!is_point_of_parameter(q, d) ||
                 q->set.value[d] != parameter->value[v])
                 continue;
-            plot_draw_line(p, x, y, cost, db, plot_colour_of_series(k->lens),
-                           false);
+            plot_draw_line(p, x, y, cost, db,
+                           plot_get_colour_of_series(k->lens), false);
             snprintf(words, sizeof words, "%g", parameter->value[v]);
             plot_draw_mark(p, cost, db,
                            q->set.kind == SWEEP_STANDARD ? 's' : 'o',
-                           plot_colour_of_series(k->lens), words);
+                           plot_get_colour_of_series(k->lens), words);
             plot_draw_label(p, cost, db, words);
             x = cost;
             y = db;
@@ -178,7 +179,7 @@ static void draw_parameter_panel(const struct sweep *s, FILE *file, int number,
         char name[16];
 
         snprintf(name, sizeof name, "%s", s->lens[i]);
-        plot_draw_legend_entry(&p, 'o', plot_colour_of_series(i), name);
+        plot_draw_legend_entry(&p, 'o', plot_get_colour_of_series(i), name);
     }
 }
 

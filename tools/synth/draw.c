@@ -182,8 +182,9 @@ static void interpolate_light(const struct glint_float_image *from, double x,
 /* Resamples the crop of FROM that ITEM defines to RGB. A pixel is the mean
  * of N x N points, where N is the number of pixels of FROM per pixel of RGB,
  * in one direction. */
-static void resample_crop(const struct glint_float_image *from,
-                          const struct synth_item *item, float *rgb)
+static void resample_cropped_background(const struct glint_float_image *from,
+                                        const struct synth_item *item,
+                                        float *rgb)
 {
     const int width = (int)item->width, height = (int)item->height;
     const double step = item->crop * fmin((double)from->width / width,
@@ -214,7 +215,7 @@ static void resample_crop(const struct glint_float_image *from,
 
 /* Scales RGB so that its mean light is LEVEL, by SYNTH_LEAST_EV to
  * SYNTH_MOST_EV stops. Returns the stops. */
-static double scale_to_level(float *rgb, size_t n, double level)
+static double scale_to_mean_level(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
 
@@ -254,8 +255,9 @@ static enum glint_status load_background(const struct synth_backgrounds *list,
     enum glint_status status;
 
     if (!path)
-        return glint_error_report(error, GLINT_E_IO, item->background,
-                                  "is not among the backgrounds");
+        return glint_error_report(
+            error, GLINT_E_IO, item->background,
+            "is not one of the background pictures of this command");
     status = synth_hash_background(key, path, error);
     if (status == GLINT_OK && strcmp(key, item->background_key) != 0)
         return glint_error_report(error, GLINT_E_IO, path,
@@ -266,10 +268,10 @@ static enum glint_status load_background(const struct synth_backgrounds *list,
         status = glint_picture_load_float(path, &image, error);
     if (status != GLINT_OK)
         return status;
-    resample_crop(&image, item, rgb);
+    resample_cropped_background(&image, item, rgb);
     free(image.rgb);
-    *ev = scale_to_level(rgb, 3 * (size_t)item->width * (size_t)item->height,
-                         item->level);
+    *ev = scale_to_mean_level(
+        rgb, 3 * (size_t)item->width * (size_t)item->height, item->level);
     return GLINT_OK;
 }
 
@@ -339,7 +341,7 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
     *lens = calloc(1, sizeof **lens);
     if (!*lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    /* added even if opening fails, so that the lens is closed later */
+    /* the lens is listed even if opening fails, so that it is closed later */
     lenses->lens[lenses->n++] = *lens;
     return open_lens_by_name(tool, *lens, item);
 }
@@ -387,7 +389,7 @@ static int set_lens_stop_and_dirt(const struct tool *tool,
 
 /* Sets RGB to the colour of a black body of KELVIN [Planck01], scaled so
  * that the largest component is 1. */
-static void set_black_body(double kelvin, double rgb[3])
+static void set_black_body_colour(double kelvin, double rgb[3])
 {
     enum { WAVES = 16 };
     double nm[WAVES], colour[WAVES][3], share[WAVES], most = 0;
@@ -414,7 +416,7 @@ static void set_lamps_of_item(const struct synth_item *item,
                               struct glint_lamp *lamp,
                               struct synth_result *result)
 {
-    const struct glint_view view = opened_lens_view(
+    const struct glint_view view = opened_lens_compute_view(
         &lens->opened, &lens->settings, (int)item->width, (int)item->height);
     const double focal = lens->opened.setup.optics.focal_mm;
 
@@ -425,7 +427,7 @@ static void set_lamps_of_item(const struct synth_item *item,
         lamp[i] = (struct glint_lamp){.power = light->power};
         glint_view_to_angles(&view, focal, light->x * item->width,
                              light->y * item->height, &lamp[i]);
-        set_black_body(light->kelvin, lamp[i].rgb);
+        set_black_body_colour(light->kelvin, lamp[i].rgb);
         /* The RMS extent of a disc along an axis is half of its radius. */
         glint_area_set_round(&lamp[i],
                              0.5 * light->radius * item->height *
@@ -509,8 +511,9 @@ static int draw_flare_part(const struct tool *tool,
  * brightest 0.1 % of the pixels get the light LEVEL, but the mean is at most
  * SYNTH_MOST_MEAN times LEVEL, as wide ghosts that fill the image would hide
  * everything else. */
-static double find_light_power(const struct glint_float_image *image,
-                               double level)
+static double
+compute_light_power_for_ghost_level(const struct glint_float_image *image,
+                                    double level)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
     const double by_peak = level * glint_measure_exposure(image);
@@ -546,7 +549,7 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     code = draw_flare_part(tool, lens, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
     if (code != EXIT_OK)
         return code;
-    power = find_light_power(&image, item->ghost_level);
+    power = compute_light_power_for_ghost_level(&image, item->ghost_level);
     scale_pixels(ghosts, n, power);
     /* Haze is quantised to 1e-6 of white, so lamps must have their final
      * power. */
@@ -607,12 +610,12 @@ void synth_sum_layers(const struct synth_drawing *d, unsigned layers,
 
 /* Returns a nearly Gaussian random number of mean 0 and variance 1, a sum of
  * twelve uniform numbers, the same on every machine. */
-static double random_normal(uint64_t *state)
+static double draw_normal_random_number(uint64_t *state)
 {
     int64_t sum = 0;
 
     for (int i = 0; i < 3; i++) {
-        const uint64_t bits = synth_random_bits(state);
+        const uint64_t bits = synth_draw_random_bits(state);
 
         for (int k = 0; k < 64; k += 16)
             sum += (int64_t)(bits >> k & 0xffff);
@@ -623,12 +626,12 @@ static double random_normal(uint64_t *state)
 void synth_add_noise(const struct synth_item *item, float *rgb)
 {
     const size_t n = 3 * (size_t)item->width * (size_t)item->height;
-    uint64_t state = synth_item_random_state(item, "noise");
+    uint64_t state = synth_item_init_random_state(item, "noise");
 
     for (size_t i = 0; i < n; i++) {
         const double light = rgb[i];
 
-        rgb[i] = (float)(light + random_normal(&state) *
+        rgb[i] = (float)(light + draw_normal_random_number(&state) *
                                      sqrt(light / item->full_well +
                                           item->read_noise * item->read_noise));
     }

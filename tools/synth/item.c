@@ -68,7 +68,7 @@ const struct synth_field synth_light_field[SYNTH_LIGHT_FIELDS] = {
 
 /* ------------------------------------------------------------------- ranges */
 
-static const struct synth_field *get_field(int k)
+static const struct synth_field *get_item_field(int k)
 {
     return k < SYNTH_FIELDS ? &synth_field[k]
                             : &synth_light_field[k - SYNTH_FIELDS];
@@ -77,17 +77,17 @@ static const struct synth_field *get_field(int k)
 void synth_ranges_set_defaults(struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++) {
-        ranges->low[k] = get_field(k)->low;
-        ranges->high[k] = get_field(k)->high;
+        ranges->low[k] = get_item_field(k)->low;
+        ranges->high[k] = get_item_field(k)->high;
     }
 }
 
-static int find_field(const char *name, size_t n)
+static int find_random_parameter(const char *name, size_t n)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (get_field(k)->law > SYNTH_COUNTED &&
-            strlen(get_field(k)->name) == n &&
-            strncmp(get_field(k)->name, name, n) == 0)
+        if (get_item_field(k)->law > SYNTH_COUNTED &&
+            strlen(get_item_field(k)->name) == n &&
+            strncmp(get_item_field(k)->name, name, n) == 0)
             return k;
     return -1;
 }
@@ -96,7 +96,7 @@ bool synth_ranges_parse(struct synth_ranges *ranges, const char *text,
                         struct glint_error *why)
 {
     const size_t n = strcspn(text, "=");
-    const int k = find_field(text, n);
+    const int k = find_random_parameter(text, n);
     const struct synth_field *f;
     double v[2];
     int count;
@@ -107,7 +107,7 @@ bool synth_ranges_parse(struct synth_ranges *ranges, const char *text,
                  (int)(n < 60 ? n : 60), text);
         return false;
     }
-    f = get_field(k);
+    f = get_item_field(k);
     count = text[n] ? tool_parse_numbers(text + n + 1, v, 2) : 0;
     if (count == 1)
         v[1] = v[0];
@@ -139,23 +139,24 @@ void synth_ranges_print(FILE *file, const struct synth_ranges *ranges)
                                       "whole numbers"};
 
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (get_field(k)->law > SYNTH_COUNTED)
-            fprintf(file, "%s=%.7g,%.7g  %s\n", get_field(k)->name,
-                    ranges->low[k], ranges->high[k], law[get_field(k)->law]);
+        if (get_item_field(k)->law > SYNTH_COUNTED)
+            fprintf(file, "%s=%.7g,%.7g  %s\n", get_item_field(k)->name,
+                    ranges->low[k], ranges->high[k],
+                    law[get_item_field(k)->law]);
 }
 
-void synth_ranges_json(struct json_writer *json,
-                       const struct synth_ranges *ranges)
+void synth_ranges_write_json(struct json_writer *json,
+                             const struct synth_ranges *ranges)
 {
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
-        if (get_field(k)->law > SYNTH_COUNTED)
-            json_write(json, "%s: [%.9g, %.9g]", get_field(k)->name,
+        if (get_item_field(k)->law > SYNTH_COUNTED)
+            json_write(json, "%s: [%.9g, %.9g]", get_item_field(k)->name,
                        ranges->low[k], ranges->high[k]);
 }
 
 /* ------------------------------------------------------------------ drawing */
 
-uint64_t synth_random_bits(uint64_t *state)
+uint64_t synth_draw_random_bits(uint64_t *state)
 {
     uint64_t z = *state += UINT64_C(0x9e3779b97f4a7c15);
 
@@ -164,42 +165,41 @@ uint64_t synth_random_bits(uint64_t *state)
     return z ^ z >> 31;
 }
 
-uint64_t synth_item_random_state(const struct synth_item *item,
-                                 const char *what)
+uint64_t synth_item_init_random_state(const struct synth_item *item,
+                                      const char *what)
 {
     uint64_t state =
         (uint64_t)item->seed << 32 ^ (uint64_t)(uint32_t)item->number;
 
-    for (state = synth_random_bits(&state); *what; what++) {
+    for (state = synth_draw_random_bits(&state); *what; what++) {
         state ^= (unsigned char)*what;
-        state = synth_random_bits(&state);
+        state = synth_draw_random_bits(&state);
     }
     return state;
 }
 
 /* Returns a random number in [0, 1) that depends on ITEM's seed and number
  * and on WHAT. */
-static double compute_random_unit(const struct synth_item *item,
-                                  const char *what)
+static double draw_random_fraction(const struct synth_item *item,
+                                   const char *what)
 {
-    uint64_t state = synth_item_random_state(item, what);
+    uint64_t state = synth_item_init_random_state(item, what);
 
-    return (double)(synth_random_bits(&state) >> 11) * 0x1p-53;
+    return (double)(synth_draw_random_bits(&state) >> 11) * 0x1p-53;
 }
 
-int synth_item_random_index(const struct synth_item *item, const char *what,
-                            int n)
+int synth_item_draw_random_index(const struct synth_item *item,
+                                 const char *what, int n)
 {
-    return (int)(compute_random_unit(item, what) * n);
+    return (int)(draw_random_fraction(item, what) * n);
 }
 
 /* Returns a random value of the member NAME, distributed by LAW between LOW
  * and HIGH, rounded to 1e-6. */
-static double compute_random_value(const struct synth_item *item,
-                                   const char *name, enum synth_law law,
-                                   double low, double high)
+static double draw_random_value(const struct synth_item *item, const char *name,
+                                enum synth_law law, double low, double high)
 {
-    double x = compute_random_unit(item, name), value;
+    double x = draw_random_fraction(item, name), value;
 
     if (law == SYNTH_WHOLE)
         return floor(low + x * (high - low + 1));
@@ -232,16 +232,15 @@ void synth_item_randomise(struct synth_item *item,
     for (int k = 0; k < SYNTH_FIELDS; k++)
         if (synth_field[k].law > SYNTH_COUNTED)
             *find_number_in_struct(item, &synth_field[k]) =
-                compute_random_value(item, synth_field[k].name,
-                                     synth_field[k].law, ranges->low[k],
-                                     ranges->high[k]);
+                draw_random_value(item, synth_field[k].name, synth_field[k].law,
+                                  ranges->low[k], ranges->high[k]);
     for (int i = 0; i < SYNTH_MAX_LIGHTS; i++)
         for (int k = 0; k < SYNTH_LIGHT_FIELDS; k++) {
             snprintf(name, sizeof name, "%s %d", synth_light_field[k].name, i);
             *find_number_in_struct(&item->light[i], &synth_light_field[k]) =
-                compute_random_value(item, name, synth_light_field[k].law,
-                                     ranges->low[SYNTH_FIELDS + k],
-                                     ranges->high[SYNTH_FIELDS + k]);
+                draw_random_value(item, name, synth_light_field[k].law,
+                                  ranges->low[SYNTH_FIELDS + k],
+                                  ranges->high[SYNTH_FIELDS + k]);
         }
     item->light[0].power = 1;
 }

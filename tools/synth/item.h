@@ -24,8 +24,8 @@
 enum { SYNTH_MAX_LIGHTS = 4, SYNTH_NAME_BYTES = 256 };
 
 struct synth_light {
-    double x,
-        y; /* position from the top left, fractions of the picture's sides */
+    /* position from the top left, fractions of the picture's sides */
+    double x, y;
     double radius; /* radius of the disc, fraction of the picture's height */
     double power;  /* power relative to the first light, before ghost_level */
     double kelvin; /* colour temperature of a black body */
@@ -96,8 +96,8 @@ bool synth_ranges_parse(struct synth_ranges *ranges, const char *text,
 void synth_ranges_print(FILE *file, const struct synth_ranges *ranges);
 
 /* Writes RANGES as members of a JSON object. */
-void synth_ranges_json(struct json_writer *json,
-                       const struct synth_ranges *ranges);
+void synth_ranges_write_json(struct json_writer *json,
+                             const struct synth_ranges *ranges);
 
 /* Sets the numbers of ITEM to random values that depend on SEED and NUMBER.
  * Does not change texts, size and quality. */
@@ -107,14 +107,15 @@ void synth_item_randomise(struct synth_item *item,
 
 /* Returns a random integer, 0 .. N - 1, that depends on ITEM's seed and number
  * and on WHAT. */
-int synth_item_random_index(const struct synth_item *item, const char *what,
-                            int n);
+int synth_item_draw_random_index(const struct synth_item *item,
+                                 const char *what, int n);
 
-/* synth_item_random_state() returns the initial state of a random generator for
- * WHAT of ITEM; synth_random_bits() returns its next 64 bits [Steele14]. */
-uint64_t synth_item_random_state(const struct synth_item *item,
-                                 const char *what);
-uint64_t synth_random_bits(uint64_t *state);
+/* synth_item_init_random_state() returns the initial state of a random
+ * generator for WHAT of ITEM; synth_draw_random_bits() returns its next 64 bits
+ * [Steele14]. */
+uint64_t synth_item_init_random_state(const struct synth_item *item,
+                                      const char *what);
+uint64_t synth_draw_random_bits(uint64_t *state);
 
 /* Returns ITEM and RESULT as a line of JSON, which the caller frees, or NULL
  * if there is no memory. */

@@ -387,17 +387,18 @@ static const char *check_frame_values(const struct glint_motion_baker *b,
     if (b->n_frames == GLINT_MOTION_MAX_FRAMES)
         return "more than 67108864 frames";
     if (s->n_foods < 3)
-        return "fewer than three foods: poses cannot be computed";
+        return "fewer than three food items, too few to compute a pose";
     if (s->n_foods > GLINT_MOTION_MAX_FOODS)
-        return "more than 32 foods";
+        return "more than 32 food items";
     if (b->n_frames && s->n_foods != b->n_foods)
-        return "the number of foods differs from the first frame";
+        return "the number of food items differs from the first frame";
     if (b->n_frames && s->n_intensities != b->n_intensities)
-        return "the number of intensities differs from the first frame";
+        return "the number of intensities per food item differs from the first "
+               "frame";
     for (int i = 0; i < s->n_foods; i++)
         for (int k = 0; k < 3; k++)
             if (!(fabs(s->food[i][k]) <= REACH))
-                return "the position of a food is not within +-1e6";
+                return "the position of a food item is not within +-1e6";
     for (int k = 0; k < 3; k++)
         if (!(fabs(s->tv[k]) <= REACH) || !(fabs(s->rv[k]) <= REACH))
             return "a number of rv or tv is not within +-1e6";
@@ -574,7 +575,8 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
         return set_error_text(error, "the recording has no frames");
     if (b->n_intensities > 1 && b->n_intensities != b->body.n_sensors) {
         snprintf(error->text, sizeof error->text,
-                 "foods have %d intensities, but there are %d sensors",
+                 "each food item must have one intensity per sensor, but has "
+                 "%d for %d sensors",
                  b->n_intensities, b->body.n_sensors);
         return GLINT_E_LENS;
     }

@@ -69,8 +69,9 @@ static const char *locate_body(struct glint_localiser *l, int n,
 {
     if (!fit_pose_to_known_landmarks(l, n, seen, is_new, -1, &located->pose))
         return located->n_known < 3
-                   ? "fewer than three foods have known positions"
-                   : "the foods with known positions lie on a line";
+                   ? "fewer than three food items have known positions"
+                   : "the food items with known positions lie on a line, so "
+                     "the pose is ambiguous";
     if (l->average)
         update_landmark_positions(l, n, seen, is_new);
     for (int i = 0; i < n; i++)

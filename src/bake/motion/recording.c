@@ -344,7 +344,8 @@ static bool read_food_intensities(const struct recording *r, const json_t *food,
                                   GLINT_MOTION_MAX_SENSORS);
     if (i > 0 && (int)n != s->n_intensities)
         return set_error_in_piece(
-            r, 1, 1, "foods have different numbers of intensities: %d and %d",
+            r, 1, 1,
+            "food items have different numbers of intensities: %d and %d",
             s->n_intensities, (int)n);
     s->n_intensities = (int)n;
     for (size_t k = 0; k < n; k++) {

@@ -114,7 +114,7 @@ static bool check_surface_profile(const struct glint_surface *s,
     if (a->across_mm != 0.0 && semi >= fabs(a->across_mm))
         return glint_text_set_error(text, place,
                                     "semi-diameter %g must be less than the "
-                                    "radius %g across",
+                                    "radius %g of the other section",
                                     semi, fabs(a->across_mm));
     for (int k = GLINT_SHAPE_TERMS - 1; k >= 0; k--) {
         terms = terms * semi * semi + a->term[k];
@@ -122,8 +122,10 @@ static bool check_surface_profile(const struct glint_surface *s,
     }
     terms *= semi * semi * semi * semi;
     return (fabs(terms) <= MOST_TERMS * semi && most < 1e30) ||
-           glint_text_set_error(
-               text, place, "the aspheric terms add %.4g mm at the rim", terms);
+           glint_text_set_error(text, place,
+                                "the aspheric terms add %.4g mm of sag at the "
+                                "rim, which is too much",
+                                terms);
 }
 
 /* Checks that elements do not overlap. The distance between two spheres is

@@ -152,9 +152,10 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
     *held = 0;
     if (side < 1 || side > GLINT_SCATTER_MAX_SIDE || kernel < 1 ||
         kernel > GLINT_SCATTER_MAX_KERNEL || kernel % 2 == 0) {
-        snprintf(error->text, sizeof error->text,
-                 "rows of %d x %d texels and kernels of %d are out of range",
-                 side, side, kernel);
+        snprintf(
+            error->text, sizeof error->text,
+            "data of %d x %d texels with kernels of %d texels are out of range",
+            side, side, kernel);
         return GLINT_E_ARGUMENT;
     }
     if (picture->width != side * kernel || picture->height != side * kernel) {

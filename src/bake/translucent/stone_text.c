@@ -250,8 +250,9 @@ static bool check_line_consistency(struct reader *r)
     if (t->stone.pattern == GLINT_STONE_CHESS &&
         t->stone.fields > t->stone.side)
         return glint_text_set_error(
-            &r->text, r->pattern, "%d fields per side are more than %d texels",
-            t->stone.fields, t->stone.side);
+            &r->text, r->pattern,
+            "%d fields per side exceed the %d texels per side", t->stone.fields,
+            t->stone.side);
     if (t->fit.model == GLINT_SCATTER_ALBEDO)
         t->fit.kernels = 1;
     return true;

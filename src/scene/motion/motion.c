@@ -24,7 +24,7 @@ GLINT_BLOB_HEADER(struct glint_motion_header, variant);
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("motion", "motions", "baked");
 
-static const char outside[] = "a table lies outside the motion";
+static const char outside[] = "damaged motion: a table lies outside the file";
 
 /* ------------------------------------------------------------------ blocks */
 
@@ -95,24 +95,27 @@ static uint32_t count_index_entries(const struct glint_motion_header *h)
 static const char *check_record_counts(const struct glint_motion_header *h)
 {
     if (h->variant != 0)
-        return "the motion's variant is unknown";
+        return "the motion file is of a variant that this glint does not know";
     if (h->n_frames < 1 || h->n_frames > GLINT_MOTION_MAX_FRAMES ||
         h->n_foods > GLINT_MOTION_MAX_FOODS ||
         h->n_sensors > GLINT_MOTION_MAX_SENSORS || h->n_events < h->n_foods ||
         h->n_events > (uint64_t)h->n_frames * h->n_foods)
-        return "the motion has too many records of one type";
+        return "damaged motion: it has too many frames, food items, sensors or "
+               "events";
     if (h->intensities != 0 && h->intensities != h->n_foods &&
         h->intensities != h->n_foods * h->n_sensors)
-        return "the number of intensities differs from foods times sensors";
+        return "damaged motion: the number of intensities is not that of food "
+               "items times sensors";
     if (h->unit_log2 < -30 || h->unit_log2 > 60 || h->size < 0 ||
         h->size >= GLINT_MOTION_SPAN || h->cos_half_q30 < -(1 << 30) ||
         h->cos_half_q30 > 1 << 30 || h->tan_half_q24 < 1 << 12 ||
         h->tan_half_q24 > 1 << 30 || h->residual_frame >= h->n_frames)
-        return "a parameter of the motion is out of range";
+        return "damaged motion: a unit, size or angle of view is out of range";
     for (int k = 0; k < 3; k++)
         if (h->low[k] <= -GLINT_MOTION_SPAN || h->high[k] < h->low[k] ||
             h->high[k] >= GLINT_MOTION_SPAN)
-            return "the motion's box is out of range";
+            return "damaged motion: the bounding box of the poses is out of "
+                   "range";
     return NULL;
 }
 
@@ -311,10 +314,10 @@ static const char *copy_sensors_from_file(struct glint_motion *m)
 
         if (read_table_record(m, m->header.sensor_block, i, sizeof *m->sensor,
                               &record) != GLINT_OK)
-            return "the motion's sensors cannot be read";
+            return "damaged motion: the sensors cannot be read";
         m->sensor[i] = *(const struct glint_motion_sensor *)record;
         if (!glint_scene_is_unit_vector(m->sensor[i].axis_q30, 3))
-            return "a sensor's axis is not a unit vector";
+            return "damaged motion: a sensor's axis is not a unit vector";
     }
     return NULL;
 }
@@ -328,7 +331,7 @@ static const char *check_poses(struct glint_motion *m)
                               sizeof(struct glint_motion_pose),
                               &pose) != GLINT_OK ||
             !is_valid_pose(&m->header, pose))
-            return "a pose is out of range";
+            return "damaged motion: a pose is out of range";
     }
     return NULL;
 }
@@ -344,7 +347,8 @@ static const char *check_events(struct glint_motion *m)
 
         if (read_event(m, i, &e) != GLINT_OK || e->frame < last ||
             (i < m->header.n_foods && (e->slot != i || e->frame)))
-            return "an event is out of range, or not in order";
+            return "damaged motion: a change of a food item's position is "
+                   "unsorted or out of range";
         last = e->frame;
     }
     return NULL;
@@ -372,7 +376,8 @@ static const char *check_event_index(struct glint_motion *m)
         for (uint32_t s = 0; fits && s < m->header.n_foods; s++)
             fits = index.food[s] == food[s];
         if (!fits)
-            return "the index disagrees with the events";
+            return "damaged motion: the index does not match the changes of "
+                   "the food items' positions";
     }
     return NULL;
 }
@@ -421,8 +426,9 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
     motion->buffer = buffer;
     motion->held = 0;
     status = get_file_block(motion, 0, &first);
-    *reason =
-        status == GLINT_OK ? NULL : "the motion's first block cannot be read";
+    *reason = status == GLINT_OK
+                  ? NULL
+                  : "the first block of the motion file cannot be read";
     if (status != GLINT_OK)
         return status;
     motion->header = *(const struct glint_motion_header *)(const void *)first;

@@ -16,7 +16,8 @@ GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };
 
-static const char outside[] = "a table lies outside the translucent medium";
+static const char outside[] =
+    "damaged translucent medium: a table lies outside the file";
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("stone", "stones", "baked");
@@ -29,32 +30,37 @@ static int is_value_between(int64_t x, int64_t lo, int64_t hi)
 static const char *check_medium_header(const struct glint_translucent_header *h)
 {
     if (h->variant > GLINT_TRANSLUCENT_ALBEDO)
-        return "the translucent medium's model is unknown";
+        return "the translucent medium is of a model that this glint does not "
+               "know";
     if (!is_value_between(h->side_log2, GLINT_TRANSLUCENT_LEAST_LOG2,
                           GLINT_TRANSLUCENT_MOST_LOG2) ||
         !is_value_between(h->kernel, 1, GLINT_TRANSLUCENT_MOST_KERNEL) ||
         h->kernel % 2 == 0)
-        return "a translucent medium's side or kernel is out of range";
+        return "damaged translucent medium: its texel count or kernel size is "
+               "out of range";
     if (!is_value_between(h->n_planes, 1,
                           h->variant == GLINT_TRANSLUCENT_ALBEDO
                               ? 1
                               : GLINT_TRANSLUCENT_MOST_PLANES) ||
         !is_value_between(h->rank, 1, GLINT_TRANSLUCENT_MOST_RANK))
-        return "the translucent medium has too many planes or ranks";
+        return "damaged translucent medium: it has too many kernels or terms "
+               "per kernel";
     if (!is_value_between(h->texel_um, 1, 1000000) ||
         !is_value_between(h->index_q16, 1 << 16, 3 << 16))
-        return "the translucent medium's texel or index is out of range";
+        return "damaged translucent medium: its texel size or refractive index "
+               "is out of range";
     if (h->code_bits != GLINT_TRANSLUCENT_CODE_BITS ||
         h->tap_bits != GLINT_TRANSLUCENT_TAP_BITS)
-        return "the translucent medium's codes have too few or too many bits";
+        return "damaged translucent medium: its codes have an unsupported "
+               "number of bits";
     if (!is_value_between(h->mean_transmit_q15, 0, 1 << 15))
-        return "the translucent medium's transmittance is not 0 .. 1";
+        return "damaged translucent medium: its transmittance is not 0 .. 1";
     for (int c = 0; c < CHANNELS; c++)
         if (h->gain[c].mantissa != 0 &&
             (h->gain[c].mantissa < 1 << 30 ||
              !is_value_between(h->gain[c].exponent, LEAST_GAIN, -31)))
-            return "the translucent medium's gain is not normalised, or not 0 "
-                   ".. 1";
+            return "damaged translucent medium: its gain is not normalised, or "
+                   "not 0 .. 1";
     return NULL;
 }
 
@@ -93,15 +99,16 @@ static const char *check_tap_sums(const struct glint_translucent *t)
             if (!add_magnitudes_of_taps(tap, h->kernel, limit, &row) ||
                 !add_magnitudes_of_taps(tap + h->kernel, h->kernel, limit,
                                         &columns))
-                return "a tap of the translucent medium has too many bits";
+                return "damaged translucent medium: a kernel coefficient has "
+                       "too many bits";
             if (shift > MOST_SHIFT || row > UINT32_C(1) << shift ||
                 row > GLINT_TRANSLUCENT_MOST_TAPS)
-                return "the row taps of a translucent medium's plane are too "
-                       "large";
+                return "damaged translucent medium: the row coefficients of a "
+                       "kernel are too large";
         }
         if (columns > GLINT_TRANSLUCENT_MOST_TAPS)
-            return "the column taps of a translucent medium's plane are too "
-                   "large";
+            return "damaged translucent medium: the column coefficients of a "
+                   "kernel are too large";
     }
     return NULL;
 }
@@ -140,7 +147,8 @@ static const char *locate_tables_in_file(struct glint_translucent *t,
     if (!t->code || !t->tap || !t->shift || !t->transmit_q15)
         return outside;
     if (h->variant != GLINT_TRANSLUCENT_CLUSTERED)
-        return h->cluster_at ? "the translucent material has unused clusters"
+        return h->cluster_at ? "damaged translucent medium: only the clustered "
+                               "model may have clusters"
                              : NULL;
     t->cluster = glint_blob_find_section(b, h->cluster_at, texels / 4, 4);
     return t->cluster ? NULL : outside;
@@ -160,14 +168,16 @@ static const char *check_medium_contents(struct glint_translucent *t,
         wrong = check_tap_sums(t);
     for (uint32_t i = 0; !wrong && i < count_weight_codes(h); i++)
         if (h->variant == GLINT_TRANSLUCENT_FACTORED && t->code[i] == 128)
-            wrong = "a signed code of the translucent medium is -128";
+            wrong = "damaged translucent medium: a signed code is -128";
     for (uint32_t i = 0; !wrong && t->cluster && i < 1U << 2 * h->side_log2;
          i++)
         if (t->cluster[i] >= h->n_planes)
-            wrong = "a texel's cluster is out of range";
+            wrong = "damaged translucent medium: a texel refers to a cluster "
+                    "that does not exist";
     for (int i = 0; !wrong && i <= GLINT_TRANSLUCENT_COSINES; i++)
         if (t->transmit_q15[i] > 1 << 15)
-            wrong = "the translucent medium's transmittance is not 0 .. 1";
+            wrong =
+                "damaged translucent medium: its transmittance is not 0 .. 1";
     return wrong;
 }
 

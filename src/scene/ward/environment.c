@@ -18,7 +18,8 @@ STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 /* The header begins like the header of every baked file. */
 GLINT_BLOB_HEADER(struct glint_environment_header, variant);
 
-static const char outside[] = "a table lies outside the environment";
+static const char outside[] =
+    "damaged environment: a table lies outside the file";
 
 static const char *const fault_text[GLINT_BLOB_FAULTS] =
     GLINT_BLOB_FAULT_TEXT("environment", "environments", "baked");
@@ -39,14 +40,17 @@ static const char *
 check_environment_header(const struct glint_environment_header *h)
 {
     if (h->variant > GLINT_ENVIRONMENT_MIP || h->code != GLINT_ENVIRONMENT_9E5)
-        return "the environment's levels or codes are unknown: bake it again";
+        return "the environment's mip levels or pixel codes are unknown: bake "
+               "it again";
     if (h->side_log2 < GLINT_ENVIRONMENT_LEAST_LOG2 ||
         h->side_log2 > GLINT_ENVIRONMENT_MOST_LOG2 ||
         h->n_levels != h->side_log2 + 1 ||
         h->n_lights > GLINT_ENVIRONMENT_MAX_LIGHTS)
-        return "the environment has too many records of one type";
+        return "damaged environment: its size, or its number of mip levels or "
+               "lights is out of range";
     if (h->unit_log2 < -160 || h->unit_log2 > 100)
-        return "the environment's unit is out of range";
+        return "damaged environment: the scale of its pixel codes is out of "
+               "range";
     return NULL;
 }
 
@@ -59,7 +63,7 @@ static const char *check_mip_level(struct glint_environment *e,
     if (l->side_log2 !=
             glint_environment_side_log2(h->variant, h->side_log2, k) ||
         l->zero[0] || l->zero[1])
-        return "a level's side is out of range";
+        return "damaged environment: the size of a mip level is wrong";
     e->texel[k] = glint_blob_find_section(blob, l->texel_at,
                                           UINT64_C(1) << (2 * l->side_log2), 4);
     return e->texel[k] ? NULL : outside;
@@ -79,12 +83,13 @@ static const char *
 check_bright_light(const struct glint_environment_light *light)
 {
     if (!glint_scene_is_unit_vector(light->toward_q30, 3))
-        return "a light's direction is not a unit vector";
+        return "damaged environment: a light's direction is not a unit vector";
     if (light->radius_q30 < 0 || light->radius_q30 > 1 << 29)
-        return "a light is too large";
+        return "damaged environment: a light is too large";
     for (int c = 0; c < 3; c++)
         if (!glint_scene_is_valid_intensity(&light->rgb[c]))
-            return "a light is negative or not normalised";
+            return "damaged environment: a light's intensity is negative or "
+                   "not normalised";
     return NULL;
 }
 

@@ -440,12 +440,14 @@ TEST(rejects_wrong_shape_lines)
         {"surface 20 9 9 1.5 60\nshape A4", "t.lens:6:9: aspheric term is "
                                             "missing"},
         {"surface 20 9 9 1.5 60\nshape A4 1e-2\nsurface flat 9 9 air\n",
-         "t.lens:5:14: the aspheric terms add 65.61 mm at the rim"},
+         "t.lens:5:14: the aspheric terms add 65.61 mm of sag at the rim, "
+         "which is too much"},
         {"surface 20 9 9 1.5 60\nshape conic 9\nsurface flat 9 9 air\n",
          "t.lens:5:14: semi-diameter 9 must be less than 6.32456, where the "
          "conic ends"},
         {"surface 20 9 9 1.5 60\nshape toric y 8\nsurface flat 9 9 air\n",
-         "t.lens:5:14: semi-diameter 9 must be less than the radius 8 across"},
+         "t.lens:5:14: semi-diameter 9 must be less than the radius 8 of the "
+         "other section"},
         {"surface 20 9 9 1.5 60\nshape cylinder z",
          "t.lens:6:16: the axis of a cylinder or toric must be x or y"},
         {"surface 20 9 9 1.5 60\nshape cylinder x toric x 9",

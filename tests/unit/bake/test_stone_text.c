@@ -129,7 +129,7 @@ static const struct {
      "x:3:22: a pattern needs two different stones"},
     {TWO "pattern chess 3 pale\n", "the name of a 'stone' is missing"},
     {"size 32\n" TWO "pattern chess 33 pale dark\n",
-     "x:4:9: 33 fields per side are more than 32 texels"},
+     "x:4:9: 33 fields per side exceed the 32 texels per side"},
     {"data a.pfm\nstone a scatter 1 1 1 absorb 0 0 0\n",
      "'data' excludes 'stone' and 'pattern'"},
     {"data\n", "the name of the rows is missing"},

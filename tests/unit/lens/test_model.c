@@ -64,7 +64,7 @@ TEST(rejects_truncated_models)
         free(copy);
     }
     assert_string_equal(open_model_error(m.data, m.bytes + 4),
-                        "the model continues after its end");
+                        "the model file is longer than its header says");
     free(m.data);
 }
 
@@ -101,8 +101,9 @@ TEST(rejects_files_that_are_not_models)
                         "this is not a glint model");
     free(copy);
     memmove(m.data + 2, m.data, m.bytes);
-    assert_string_equal(open_model_error(m.data + 2, m.bytes),
-                        "the model is not aligned to 4 bytes");
+    assert_string_equal(
+        open_model_error(m.data + 2, m.bytes),
+        "the model's address in memory is not a multiple of 4 bytes");
     memmove(m.data, m.data + 2, m.bytes);
     word[1] = GLINT_MODEL_VERSION + 1;
     assert_string_equal(open_model_error(m.data, m.bytes),
@@ -114,7 +115,8 @@ TEST(rejects_files_that_are_not_models)
                         "the model was made by an older glint: bake it again");
     word[1] = 0;
     assert_string_equal(open_model_error(m.data, m.bytes),
-                        "the model's version is unknown");
+                        "no glint has ever written a model of this version: "
+                        "not a glint model, or damaged");
     free(m.data);
 }
 
@@ -176,10 +178,10 @@ static const char
 static const struct rule auto_rules[] = {
     {HEADER_(basis), 2, "damaged model: the basis is unknown"},
     {HEADER_(basis), 1, "damaged model: the basis is unknown"},
-    {HEADER_(name[0]), 0, "the name is empty"},
-    {HEADER_(name[0]), 0x1b, "the name has a control character"},
-    {HEADER_(name[0]), 0x7f, "the name has a control character"},
-    {HEADER_(name[0]), 0x9b, "the name has a byte beyond ASCII"},
+    {HEADER_(name[0]), 0, "damaged model: its name is empty"},
+    {HEADER_(name[0]), 0x1b, "damaged model: its name has a control character"},
+    {HEADER_(name[0]), 0x7f, "damaged model: its name has a control character"},
+    {HEADER_(name[0]), 0x9b, "damaged model: its name has a byte outside ASCII"},
     {HEADER_(focal_mm.mantissa), 0, "damaged model: the focal length is 0"},
     {HEADER_(focal_mm.mantissa), (1 << 30) - 1, unnormal},
     {HEADER_(focal_mm.mantissa), 1 - (1 << 30), unnormal},
@@ -356,7 +358,7 @@ TEST(rejects_an_endless_name)
     memset(model_header_of(&m)->name, 'x', 64);
     model_seal_checksum(&m);
     assert_string_equal(open_model_error(m.data, m.bytes),
-                        "the name does not end");
+                        "damaged model: its name is not zero-terminated");
     free(m.data);
 }
 

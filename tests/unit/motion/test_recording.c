@@ -92,7 +92,7 @@ TEST(rejects_invalid_recordings)
     bake_must_fail("", "run.json:1:1: the file ends within the recording");
     bake_must_fail("[]", "run.json:1:1: expected '{' here");
     bake_must_fail("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
-    bake_must_fail("{\"frames\": [" FRAME "]}", "there is no structure");
+    bake_must_fail("{\"frames\": [" FRAME "]}", "this JSON is not a recording");
     bake_must_fail("{" BODY_0 ", \"frames\": []}",
                    "the recording has no frames");
     bake_must_fail("{" BODY_0 "}", "the recording has no frames");
@@ -110,11 +110,11 @@ TEST(rejects_invalid_recordings)
     bake_must_fail(RUN(FRAME ", {\"foods\": [{\"x\": 1, \"z\": 2}]}"),
                    "frame 1: food 0 has no 'y'");
     bake_must_fail(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
-                   "fewer than three foods");
+                   "fewer than three food items, too few");
     bake_must_fail(RUN(FRAME
                        ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
                        "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
-                   "the number of foods differs");
+                   "the number of food items differs");
     bake_must_fail(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
                        "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
                    "frame 1: frames are missing: frame 6 follows frame 4");
@@ -162,9 +162,10 @@ TEST(rejects_recordings_that_cannot_be_localised)
     struct baked baked;
 
     bake_must_fail(RUN(LINE ", " LINE),
-                   "frame 1: the foods with known positions lie on a line");
+                   "frame 1: the food items with known positions lie on a "
+                   "line, so the pose is ambiguous");
     bake_must_fail(RUN(FRAME ", " GONE("true", "1")),
-                   "frame 1: fewer than three foods have known positions");
+                   "frame 1: fewer than three food items have known positions");
     assert_ok(
         bake_recording_text(RUN(FRAME ", " GONE("true", "false")), 9, &baked));
     assert_int_equal(baked.report.n_resets, 1);

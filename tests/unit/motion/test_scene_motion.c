@@ -235,17 +235,17 @@ TEST(failed_control_lines_change_nothing)
 
         control_parse_line(before[i], "f:1", &line, &error);
         assert_ok(
-            steer_execute_line(&steer, d->frame.scene, &line, "", &error));
+            steer_execute_command(&steer, d->frame.scene, &line, "", &error));
         moving_draw_frame(d);
         hash = hash_image(d);
         was = steer;
         control_parse_line("distance 9e5", "f:2", &line, &error);
         assert_int_equal(
-            steer_execute_line(&steer, d->frame.scene, &line, "", &error),
+            steer_execute_command(&steer, d->frame.scene, &line, "", &error),
             GLINT_E_FORMAT);
         assert_memory_equal(&steer, &was, sizeof was);
         assert_int_equal(
-            steer_execute_line(&steer, d->frame.scene, &bright, "", &error),
+            steer_execute_command(&steer, d->frame.scene, &bright, "", &error),
             GLINT_E_FORMAT);
         moving_draw_frame(d);
         assert_true(hash_image(d) == hash);
@@ -254,7 +254,7 @@ TEST(failed_control_lines_change_nothing)
         assert_true(hash_image(d) == hash);
     }
     control_parse_line("orbit 30 20", "f:3", &line, &error);
-    assert_ok(steer_execute_line(&steer, d->frame.scene, &line, "", &error));
+    assert_ok(steer_execute_command(&steer, d->frame.scene, &line, "", &error));
     steer_close(&steer);
     moving_close_scene(d);
 }

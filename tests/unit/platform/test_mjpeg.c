@@ -506,7 +506,7 @@ TEST(rejects_unsupported_codings)
     check_coding_is_rejected(y444, set_progressive_coding, "several scans");
     check_coding_is_rejected(y444, set_two_scans, "several scans");
     check_coding_is_rejected(y420, set_arithmetic_coding, "arithmetic");
-    check_coding_is_rejected(y444, set_rgb_coding, "components");
+    check_coding_is_rejected(y444, set_rgb_coding, "YCbCr");
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
         memcpy(c.factor, odd[i], sizeof c.factor);
         check_coding_is_rejected(c, NULL, "subsampling");
@@ -545,7 +545,8 @@ TEST(open_rejects_invalid_sizes)
     assert_int_equal(
         glint_mjpeg_open(&d, NAME, 8, GLINT_PANEL_SIDE + 1, &error),
         GLINT_E_ARGUMENT);
-    assert_string_equal(error.text, NAME ": MJPEG of 8 x 8193 pixels");
+    assert_string_equal(error.text, NAME ": MJPEG frames of up to 8 x 8193 "
+                                         "pixels are not supported");
     glint_mjpeg_close(NULL);
 }
 
@@ -563,10 +564,10 @@ static void check_every_truncation(struct coding c)
 
         expect_decoding_fails(d, &b, GLINT_E_FORMAT,
                               n == 0    ? "frame is empty"
-                              : n < 100 ? "frame ends in its header"
+                              : n < 100 ? "cut off in its header"
                                         : "");
         if (n == end - 1)
-            assert_non_null(strstr(error.text, "frame ends in row "));
+            assert_non_null(strstr(error.text, "cut off in row "));
         free(b.data);
     }
     for (size_t n = end; n <= whole.n; n++) {
@@ -703,7 +704,7 @@ TEST(decoding_does_not_grow_the_heap)
         if (i == 10)
             early = mallinfo2();
         decode_valid_frame(d, &whole);
-        expect_decoding_fails(d, &half, GLINT_E_FORMAT, "frame ends in row ");
+        expect_decoding_fails(d, &half, GLINT_E_FORMAT, "cut off in row ");
     }
     late = mallinfo2();
     assert_int_equal(late.uordblks, early.uordblks);

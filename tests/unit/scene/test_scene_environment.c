@@ -353,8 +353,8 @@ static const char *reopen_modified_file_error(struct drawn *d)
 TEST(rejects_invalid_environment_tables)
 {
     static const struct scene_dials dials = {.width = 16, .height = 9};
-    static const char range[] =
-        "the environment's turn or scale is out of range";
+    static const char range[] = "damaged scene: the environment's rotation or "
+                                "intensity scale is invalid";
     struct glint_scene_environment *e;
     struct glint_scene_light *light;
     struct drawn d;
@@ -363,16 +363,19 @@ TEST(rejects_invalid_environment_tables)
     e = (void *)(d.data + d.model.header->environment_at);
     light = (void *)(d.data + d.model.header->light_at);
     REFUSES(e->name[0], '\0',
-            "an environment's name is empty, unterminated or not printable");
+            "damaged scene: an environment's name is empty, unterminated or "
+            "not printable");
     REFUSES(e->turn_q30[0], 1 << 29, range);
     REFUSES(e->scale.mantissa, 0, range);
     REFUSES(e->scale.mantissa, -e->scale.mantissa, range);
-    REFUSES(e->file_bytes, 1 << 28, "a table lies outside the file");
-    REFUSES(e->file_bytes, e->file_bytes - 1, "a table lies outside the file");
+    REFUSES(e->file_bytes, 1 << 28,
+            "damaged scene: a table lies outside the file");
+    REFUSES(e->file_bytes, e->file_bytes - 1,
+            "damaged scene: a table lies outside the file");
     memset(light[1].toward_q30, 0, sizeof light[1].toward_q30);
     light[1].radius = 0;
     REFUSES(light[1].kind, GLINT_LIGHT_LAMP,
-            "a light of the environment is not a sun");
+            "damaged scene: a light of the environment is not of the type sun");
     drawn_close_scene(&d);
 }
 
@@ -461,8 +464,8 @@ TEST(lookups_are_counted_per_object)
 
     open_scene_text(&d, STAGE "environment 9e5\n" BALLS "white\n", &dials);
     drawn_draw_image(&d, 32, 32, light_q20);
-    assert_ok(scene_account_collect(&account, &d.frame));
-    /* objects 0 .. 3 are of steel, brushed metal, old metal, and white */
+    assert_ok(scene_account_collect_costs(&account, &d.frame));
+    /* objects 0 .. 3: steel, brushed, old, white */
     for (int i = 0; i < 4; i++) {
         const int64_t *n = account.objects[i].count;
 

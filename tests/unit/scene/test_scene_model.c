@@ -101,19 +101,27 @@ TEST(rejects_truncated_scenes)
 
 TEST(rejects_invalid_headers)
 {
-    REFUSES(header.variant, 2, "the scene's variant is unknown");
-    REFUSES(header.unit_log2, 61, "the scene's unit is out of range");
-    REFUSES(header.shadow, 2, "the scene's settings are out of range");
-    REFUSES(header.highlights, 9, "the scene's settings are out of range");
+    REFUSES(header.variant, 2,
+            "the scene file is of a variant that this glint does not know");
+    REFUSES(header.unit_log2, 61,
+            "damaged scene: the unit of length is out of range");
+    REFUSES(header.shadow, 2,
+            "damaged scene: the settings of shadow, flare or background are "
+            "out of range");
+    REFUSES(header.highlights, 9,
+            "damaged scene: the settings of shadow, flare or background are "
+            "out of range");
     REFUSES(header.background_q15[1], 1,
-            "the background's colour is out of range");
-    REFUSES(header.n_lights, 33, "the scene has too many objects of one type");
+            "damaged scene: the background's colour is out of range");
+    REFUSES(
+        header.n_lights, 33,
+        "damaged scene: it has too many objects, lights, materials or meshes");
     REFUSES(header.name[0], 7, "the name has a control character");
-    REFUSES(header.camera.kind, 3, "the camera's kind is unknown");
+    REFUSES(header.camera.kind, 3, "the scene's camera is of an unknown type");
     REFUSES(header.camera.at[2], GLINT_SCENE_SPAN,
-            "the camera is outside the scene's range");
+            "the scene's camera is outside the scene's coordinate range");
     REFUSES(header.camera.axis_q30[0][1], 1 << 28,
-            "the camera's axes are not orthogonal unit vectors");
+            "the axes of the scene's camera are not orthogonal unit vectors");
     REFUSES(header.camera.tan_x_q24, 0,
             "the camera's field of view is out of range");
     REFUSES(header.camera.tan_y_q24, 1,
@@ -122,45 +130,59 @@ TEST(rejects_invalid_headers)
 
 TEST(rejects_invalid_lights)
 {
-    REFUSES(light[0].kind, 2, "a light's kind is unknown");
+    REFUSES(light[0].kind, 2, "damaged scene: a light is of an unknown type");
     REFUSES(light[0].name[0], 0,
-            "a light's name is empty, unterminated or not printable");
+            "damaged scene: a light's name is empty, unterminated or not "
+            "printable");
     REFUSES(light[0].at[0], 1,
-            "a light is outside the scene's range, or too large");
+            "damaged scene: a light is too large, or outside the scene's "
+            "coordinate range");
     REFUSES(light[1].radius, -1,
-            "a light is outside the scene's range, or too large");
+            "damaged scene: a light is too large, or outside the scene's "
+            "coordinate range");
     REFUSES(light[0].toward_q30[0], 1 << 29,
-            "a light's direction is not a unit vector");
+            "damaged scene: a light's direction is not a unit vector");
     REFUSES(light[1].toward_q30[0], 1,
-            "a light's direction is not a unit vector");
+            "damaged scene: a light's direction is not a unit vector");
     REFUSES(light[0].rgb[2].mantissa, -(1 << 30),
-            "a light is negative or not normalised");
+            "damaged scene: a light's intensity is negative or not normalised");
 }
 
 TEST(rejects_invalid_materials)
 {
     REFUSES(material[0].name[2], ' ',
-            "a material's name is empty, unterminated or not printable");
+            "damaged scene: a material's name is empty, unterminated or not "
+            "printable");
     REFUSES(material[0].ambient_q15, 1,
-            "a material's weights sum to more than 1");
+            "damaged scene: a material's weights sum to more than 1");
     REFUSES(material[0].pass_q15, 32769,
-            "a material's weight or colour is not 0 .. 1");
+            "damaged scene: a material's weight or colour is not 0 .. 1");
     REFUSES(material[0].power_q8, 255,
-            "a material's power or index is out of range");
+            "damaged scene: a material's Phong exponent or refractive index is "
+            "out of range");
     REFUSES(material[0].index_q16, 0,
-            "a material's power or index is out of range");
-    REFUSES(material[0].texture, 1, "a material's texture is out of range");
-    REFUSES(material[0].ward, 0, "a material's brushed metal is out of range");
+            "damaged scene: a material's Phong exponent or refractive index is "
+            "out of range");
+    REFUSES(
+        material[0].texture, 1,
+        "damaged scene: a material refers to a texture that does not exist");
+    REFUSES(material[0].ward, 0,
+            "damaged scene: a material refers to a brushed metal that does not "
+            "exist");
     REFUSES(header.n_wards, 1,
-            "a brushed metal's roughness or norm is out of range");
+            "the roughness or norm of a brushed metal is out of range");
     REFUSES(header.background, GLINT_BACKGROUND_ENVIRONMENT,
-            "the background needs an environment, but there is none");
-    REFUSES(header.n_environments, 17,
-            "the scene has too many objects of one type");
-    REFUSES(header.n_environment_lights, 1,
-            "the scene has too many objects of one type");
-    REFUSES(texture[0].width_log2, 13, "a texture is too large");
-    REFUSES(texture[0].height_log2, 12, "a table lies outside the file");
+            "damaged scene: the background needs an environment, but there is "
+            "none");
+    REFUSES(
+        header.n_environments, 17,
+        "damaged scene: it has too many objects, lights, materials or meshes");
+    REFUSES(
+        header.n_environment_lights, 1,
+        "damaged scene: it has too many objects, lights, materials or meshes");
+    REFUSES(texture[0].width_log2, 13, "damaged scene: a texture is too large");
+    REFUSES(texture[0].height_log2, 12,
+            "damaged scene: a table lies outside the file");
 }
 
 /* Checks that a triangle grid is rejected if a list lacks a triangle or
@@ -176,12 +198,15 @@ TEST(rejects_wrong_grid_lists)
     end = start[cells];
     for (uint32_t i = 0; i <= cells; i++)
         start[i] -= start[i] == end;
-    expect_scene_error(&file, "a grid's list lacks a triangle");
+    expect_scene_error(
+        &file,
+        "damaged scene: a grid cell does not list a triangle that overlaps it");
     make_scene_of_all_types();
     ref = file.data + m->ref_at / 4;
     assert_true(start[1] > 1);
     ref[0] = ref[1];
-    expect_scene_error(&file, "a grid's list is not in rising order");
+    expect_scene_error(
+        &file, "damaged scene: a grid cell lists its triangles out of order");
     make_scene_of_all_types();
     scene_seal_checksum(&file);
     assert_null(open_scene_error(&file));
@@ -189,22 +214,35 @@ TEST(rejects_wrong_grid_lists)
 
 TEST(rejects_invalid_meshes)
 {
-    REFUSES(mesh[0].radius, 2000,
-            "a vertex is outside the bounding sphere of its mesh");
+    REFUSES(
+        mesh[0].radius, 2000,
+        "damaged scene: a vertex is outside the bounding sphere of its mesh");
     REFUSES(mesh[0].radius, GLINT_SCENE_SPAN / 2,
-            "a mesh is too large, or outside the scene's range");
-    REFUSES(mesh[0].n_vertices, 3, "a triangle's vertex is out of range");
-    REFUSES(mesh[0].n_vertices, 1 << 30, "a table lies outside the file");
-    REFUSES(mesh[0].cell_log2, 1, "a mesh's grid is out of range");
-    REFUSES(mesh[0].cells[1], 0, "a mesh's grid is out of range");
-    REFUSES(mesh[0].cells[1], 257, "a mesh's grid is out of range");
-    REFUSES(mesh[0].start_at, file.mesh[0].start_at + 4,
-            "a grid's lists do not begin at entry 0");
-    REFUSES(mesh[0].n_triangles, 3, "a grid's triangle is out of range");
+            "damaged scene: a mesh is too large, or outside the scene's "
+            "coordinate range");
+    REFUSES(mesh[0].n_vertices, 3,
+            "damaged scene: a triangle refers to a vertex that does not exist");
+    REFUSES(mesh[0].n_vertices, 1 << 30,
+            "damaged scene: a table lies outside the file");
+    REFUSES(mesh[0].cell_log2, 1,
+            "damaged scene: the grid of a mesh is outside the scene's "
+            "coordinate range");
+    REFUSES(mesh[0].cells[1], 0,
+            "damaged scene: the grid of a mesh is outside the scene's "
+            "coordinate range");
+    REFUSES(mesh[0].cells[1], 257,
+            "damaged scene: the grid of a mesh is outside the scene's "
+            "coordinate range");
+    REFUSES(
+        mesh[0].start_at, file.mesh[0].start_at + 4,
+        "damaged scene: the triangle lists of a grid do not begin at entry 0");
+    REFUSES(
+        mesh[0].n_triangles, 3,
+        "damaged scene: a grid cell refers to a triangle that does not exist");
     REFUSES(mesh[0].uv_at, file.mesh[0].normal_at,
-            "a vertex's u or v is out of range");
+            "damaged scene: a vertex's texture coordinate is out of range");
     REFUSES(mesh[0].normal_at, file.mesh[0].vertex_at,
-            "a vertex's normal is not a unit vector");
+            "damaged scene: a vertex's normal is not a unit vector");
     make_scene_of_all_types();
     for (int i = 0; i < 63; i++)
         file.mesh[file.header.n_meshes++] = file.mesh[0];
@@ -213,17 +251,25 @@ TEST(rejects_invalid_meshes)
 
 TEST(rejects_invalid_objects)
 {
-    REFUSES(object[0].kind, 3, "an object's kind is unknown");
-    REFUSES(object[0].material, 1, "an object's material is out of range");
-    REFUSES(object[0].mesh, 1, "an object's mesh is out of range");
-    REFUSES(object[2].mesh, 1, "an object's mesh is out of range");
-    REFUSES(object[0].radius, 0, "a sphere's radius is out of range");
-    REFUSES(object[1].radius, 1, "a sphere's radius is out of range");
+    REFUSES(object[0].kind, 3,
+            "damaged scene: an object is of an unknown type");
+    REFUSES(
+        object[0].material, 1,
+        "damaged scene: an object refers to a material that does not exist");
+    REFUSES(object[0].mesh, 1,
+            "damaged scene: an object refers to a mesh that does not exist");
+    REFUSES(object[2].mesh, 1,
+            "damaged scene: an object refers to a mesh that does not exist");
+    REFUSES(object[0].radius, 0,
+            "damaged scene: a sphere's radius is out of range");
+    REFUSES(object[1].radius, 1,
+            "damaged scene: a sphere's radius is out of range");
     REFUSES(object[0].catcher_q15, 1,
-            "a plane's fraction of shadow is out of range");
-    REFUSES(object[0].turn_q30[1], 1 << 24, "an object's pose is out of range");
+            "damaged scene: the shadow strength of a plane is not 0 .. 1");
+    REFUSES(object[0].turn_q30[1], 1 << 24,
+            "damaged scene: an object's rotation is not a unit quaternion");
     REFUSES(object[0].at[0], GLINT_SCENE_SPAN - 1000,
-            "an object is outside the scene's range");
+            "damaged scene: an object is outside the scene's coordinate range");
     make_scene_of_all_types();
     file.object[0].at[0] = GLINT_SCENE_SPAN - 1001;
     scene_open_model(&file);

@@ -192,26 +192,28 @@ TEST(rejects_every_invalid_field)
         damage_fn *damage;
         const char *reason;
     } row[] = {
-        {set_too_large_column_taps,
-         "the column taps of a translucent medium's plane are too large"},
-        {set_too_large_row_taps,
-         "the row taps of a translucent medium's plane are too large"},
-        {decrement_shift,
-         "the row taps of a translucent medium's plane are too large"},
-        {set_shift_out_of_range,
-         "the row taps of a translucent medium's plane are too large"},
+        {set_too_large_column_taps, "damaged translucent medium: the column "
+                                    "coefficients of a kernel are too large"},
+        {set_too_large_row_taps, "damaged translucent medium: the row "
+                                 "coefficients of a kernel are too large"},
+        {decrement_shift, "damaged translucent medium: the row coefficients of "
+                          "a kernel are too large"},
+        {set_shift_out_of_range, "damaged translucent medium: the row "
+                                 "coefficients of a kernel are too large"},
         {set_tap_out_of_range,
-         "a tap of the translucent medium has too many bits"},
-        {set_cluster_out_of_range, "a texel's cluster is out of range"},
+         "damaged translucent medium: a kernel coefficient has too many bits"},
+        {set_cluster_out_of_range, "damaged translucent medium: a texel refers "
+                                   "to a cluster that does not exist"},
         {set_transmittance_out_of_range,
-         "the translucent medium's transmittance is not 0 .. 1"},
-        {set_gain_out_of_range,
-         "the translucent medium's gain is not normalised, or not 0 .. 1"},
-        {set_planes_out_of_range,
-         "the translucent medium has too many planes or ranks"},
-        {set_even_kernel_size,
-         "a translucent medium's side or kernel is out of range"},
-        {move_taps_beyond_end, "a table lies outside the translucent medium"}};
+         "damaged translucent medium: its transmittance is not 0 .. 1"},
+        {set_gain_out_of_range, "damaged translucent medium: its gain is not "
+                                "normalised, or not 0 .. 1"},
+        {set_planes_out_of_range, "damaged translucent medium: it has too many "
+                                  "kernels or terms per kernel"},
+        {set_even_kernel_size, "damaged translucent medium: its texel count or "
+                               "kernel size is out of range"},
+        {move_taps_beyond_end,
+         "damaged translucent medium: a table lies outside the file"}};
 
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         const char *reason = "nothing";

@@ -297,8 +297,8 @@ TEST(skips_unknown_sections)
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
     expect_stderr_message(
-        "glint live: x.ini:4: the section [camra] is unknown; its "
-        "lines are used all the same\n");
+        "glint live: x.ini:4: the section [camra] is unknown, but "
+        "its lines are used\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
     config = make_empty_config();

@@ -171,7 +171,7 @@ static int execute_line_and_play_next_frame(struct playback *p,
                                             const char *text, double elapsed_s)
 {
     assert_ok(control_parse_line(text, "f:1", &line, &error));
-    assert_int_equal(playback_execute_line(p, &line), *text != 0);
+    assert_int_equal(playback_execute_command(p, &line), *text != 0);
     return playback_next_frame(p, elapsed_s);
 }
 

@@ -14,7 +14,7 @@ static enum glint_status parse_key_file_text(struct keys *keys,
                                              const char *text,
                                              struct glint_error *error)
 {
-    return keys_parse_text(keys, "k.csv", text, strlen(text), error);
+    return key_frames_parse_text(keys, "k.csv", text, strlen(text), error);
 }
 
 TEST(interpolates_values_between_keys)
@@ -27,21 +27,20 @@ TEST(interpolates_values_between_keys)
                             "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
                             "20,3,,100,\n\n30,,8,,50\r\n",
                             &error));
-    assert_true(keys_has_column(&k, KEYS_GAIN) &&
-                !keys_has_column(&k, KEYS_STRENGTH));
-    assert_true(keys_interpolate_at(&k, KEYS_STRENGTH, 15, 7) == 7);
-    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 0, 7) == 1);
-    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 10, 7) == 1);
-    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 15, 7) == 2);
-    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 20, 7) == 3);
-    assert_true(keys_interpolate_at(&k, KEYS_GAIN, 1000000, 7) == 3);
-    /* an empty field is not a key frame value: interpolates from frame 10 to
-     * 30 */
-    assert_true(keys_interpolate_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
-    assert_true(keys_interpolate_at(&k, KEYS_X, 15, 7) == 50);
-    assert_true(keys_interpolate_at(&k, KEYS_Y, 20, 7) == 25);
-    keys_free(&k);
-    assert_false(keys_has_column(&k, KEYS_GAIN));
+    assert_true(key_frames_have_column(&k, KEYS_GAIN) &&
+                !key_frames_have_column(&k, KEYS_STRENGTH));
+    assert_true(key_frames_interpolate_at(&k, KEYS_STRENGTH, 15, 7) == 7);
+    assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 0, 7) == 1);
+    assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 10, 7) == 1);
+    assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 15, 7) == 2);
+    assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 20, 7) == 3);
+    assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 1000000, 7) == 3);
+    /* an empty field is not a key: interpolates from frame 10 to 30 */
+    assert_true(key_frames_interpolate_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
+    assert_true(key_frames_interpolate_at(&k, KEYS_X, 15, 7) == 50);
+    assert_true(key_frames_interpolate_at(&k, KEYS_Y, 20, 7) == 25);
+    key_frames_free(&k);
+    assert_false(key_frames_have_column(&k, KEYS_GAIN));
 }
 
 /* Checks that the two key frames around the requested frame are used, out of
@@ -61,11 +60,12 @@ TEST(uses_the_right_two_of_many_keys)
     }
     assert_ok(parse_key_file_text(&k, text, &error));
     for (int i = 0; i < 999; i++) {
-        assert_true(keys_interpolate_at(&k, KEYS_GAIN, 3 * i, 0) == i * i);
-        assert_true(keys_interpolate_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
+        assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 3 * i, 0) ==
+                    i * i);
+        assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 3 * i + 1, 0) ==
                     i * i + (2 * i + 1) * 1.0 / 3);
     }
-    keys_free(&k);
+    key_frames_free(&k);
 }
 
 TEST(rejects_wrong_key_files)

@@ -178,7 +178,7 @@ TEST(steps_become_coarser)
             struct glint_dials d;
 
             adapt.step = s;
-            d = live_adapt_set_dials(&adapt, ask[i]);
+            d = live_adapt_coarsen_parameters(&adapt, ask[i]);
             if (s == 0)
                 assert_memory_equal(&d, &ask[i], sizeof d);
             /* steps above 3 draw at half resolution */

@@ -126,7 +126,7 @@ TEST(rejects_wrong_lines)
     expect_poses_error("\n0,ball,1,2,3,4\n", 2, "expected frame,object,x,y,z");
     expect_poses_error("0,ball,1,2,3,1,0,0,0,0\n", 1,
                        "expected frame,object,x,y,z");
-    expect_poses_error("0,ball,1,two,3\n", 1, "are numbers");
+    expect_poses_error("0,ball,1,two,3\n", 1, "must be numbers");
     expect_poses_error("-3,ball,1,2,3\n", 1, "frame must be");
     expect_poses_error("-1,ball,1,2,3\n", 1, "frame must be");
     expect_poses_error("1.5,ball,1,2,3\n", 1, "frame must be");
@@ -137,8 +137,8 @@ TEST(rejects_wrong_lines)
     expect_poses_error("frame,ball\n", 1, "the heading");
     expect_poses_error("{\"x\":1}\n", 1, "are needed");
     expect_poses_error("{\"x\":1\n", 1, "expected , or }");
-    expect_poses_error("{\"x\" 1}\n", 1, "expected :");
-    expect_poses_error("{\"w\":1}\n", 1, "a key is none of");
+    expect_poses_error("{\"x\" 1}\n", 1, "a colon is missing");
+    expect_poses_error("{\"w\":1}\n", 1, "unknown key; expected one of");
     expect_poses_error("{\"object\":3}\n", 1, "object is a");
     assert_int_equal(poses_open(&poses, "/no/such/file", false, &model, &error),
                      GLINT_E_IO);

@@ -27,11 +27,11 @@ TEST(levels_have_their_quality)
 
         scene_dials_set_quality(&dials, quality[i]);
         scene_budget_init(&budget, &dials);
-        assert_true(scene_budget_flare_quality(&budget) == quality[i]);
-        assert_int_equal(scene_budget_level_of_quality(quality[i]), i);
+        assert_true(scene_budget_get_flare_quality(&budget) == quality[i]);
+        assert_int_equal(scene_budget_find_level_of_quality(quality[i]), i);
         for (int k = 0; k < SCENE_BUDGET_LEVELS; k++) {
             budget.level = k;
-            assert_true(scene_budget_flare_quality(&budget) ==
+            assert_true(scene_budget_get_flare_quality(&budget) ==
                         fmin(quality[i], quality[k]));
         }
     }
@@ -45,9 +45,9 @@ TEST(live_steps_follow_the_levels)
     double last = 1;
 
     live_adapt_init(&adapt);
-    assert_true(live_adapt_scene_quality(&adapt) == 1);
+    assert_true(live_adapt_get_max_scene_quality(&adapt) == 1);
     for (adapt.step = 1; adapt.step <= LIVE_MAX_STEP; adapt.step++) {
-        const double now = live_adapt_scene_quality(&adapt);
+        const double now = live_adapt_get_max_scene_quality(&adapt);
 
         assert_true(now < last || (now == 0 && last == 0));
         last = now;
@@ -232,11 +232,11 @@ TEST(images_equal_those_of_the_quality)
     over.budget_ms = 2 * over.ms;
     for (int i = 0; i < 20; i++)
         simulate_scene_frame(&over, got);
-    assert_true(scene_budget_flare_quality(&over.budget) == .5);
+    assert_true(scene_budget_get_flare_quality(&over.budget) == .5);
     step_s = 3e-3;
     for (int i = 0; i < 20; i++)
         simulate_scene_frame(&over, got);
-    assert_true(scene_budget_flare_quality(&over.budget) == 0);
+    assert_true(scene_budget_get_flare_quality(&over.budget) == 0);
     assert_memory_equal(got, coarse, BYTES);
     over_scene_close(&over);
 }

@@ -19,8 +19,9 @@
 
 /* clang-format off */
 const struct control_form control_forms[] = {
-    /* verb, word, clause; number of names, names after the clause; min and
-     * max count of numbers, lowest, highest, integers only */
+    /* columns: verb, its word, its clause; number of names, how many of them
+     * follow the clause; min and max count of numbers, their lowest and highest
+     * value, whether they must be integers */
     {CONTROL_ORBIT,    "orbit",       NULL,       0, 0, 2, 2, -360, 360, false,
      "orbit YAW PITCH"},
     {CONTROL_DISTANCE, "distance",    NULL,       0, 0, 1, 1, 1e-6, 1e6, false,
@@ -80,17 +81,17 @@ static const char blanks[] = " \t\r\n";
 
 /* Parser state of one line */
 struct reader {
-    const char *text,
-        *at; /* the line, and the position after the last word read */
+    /* the line, and the position in it after the word read last */
+    const char *text, *at;
     const char *where;
     char word[CONTROL_LINE];
     int column; /* column of the word read last, or of the end of the line */
     struct glint_error *error;
 };
 
-enum glint_status control_report_error(struct glint_error *error,
-                                       const char *where, int column,
-                                       const char *format, ...)
+enum glint_status control_set_line_error(struct glint_error *error,
+                                         const char *where, int column,
+                                         const char *format, ...)
 {
     char cause[sizeof error->text], place[sizeof error->text];
     va_list values;
@@ -116,7 +117,7 @@ static bool read_next_word(struct reader *r)
 }
 
 /* Returns a copy of R that has read one more word; R does not change. */
-static struct reader peek_word(const struct reader *r)
+static struct reader peek_next_word(const struct reader *r)
 {
     struct reader ahead = *r;
 
@@ -138,13 +139,13 @@ static enum glint_status report_unknown_word(const struct reader *r,
         const char *const may = before ? f->clause : f->word;
 
         if (may && (!before || strcmp(before, f->word) == 0))
-            suggest_consider(&suggest, may, strlen(may));
+            suggest_add_candidate(&suggest, may, strlen(may));
     }
     for (int i = 0; !before && i < GLINT_N_OPTIONS; i++)
         if (can_control_change_option(glint_option(i)))
-            suggest_consider(&suggest, glint_option(i)->name,
-                             strlen(glint_option(i)->name));
-    return control_report_error(
+            suggest_add_candidate(&suggest, glint_option(i)->name,
+                                  strlen(glint_option(i)->name));
+    return control_set_line_error(
         r->error, r->where, r->column, "'%.24s' is not a %s%s%s", r->word,
         before ? "word of " : "command", before ? before : "",
         suggest_from_words(&suggest));
@@ -161,17 +162,17 @@ static const struct control_form *find_command_form(const char *word, int i)
 }
 
 /* Reads the N names of FORM. */
-static enum glint_status read_form_names(struct reader *r,
-                                         const struct control_form *form, int n,
-                                         struct control_line *line)
+static enum glint_status read_command_names(struct reader *r,
+                                            const struct control_form *form,
+                                            int n, struct control_line *line)
 {
     for (int i = 0; i < n; i++) {
         if (!read_next_word(r))
-            return control_report_error(r->error, r->where, r->column,
-                                        "expected %s", form->usage);
+            return control_set_line_error(r->error, r->where, r->column,
+                                          "expected %s", form->usage);
         if (strlen(r->word) >= CONTROL_NAME)
-            return control_report_error(r->error, r->where, r->column,
-                                        "a name has at most 31 letters");
+            return control_set_line_error(r->error, r->where, r->column,
+                                          "a name has at most 31 letters");
         memcpy(line->name[i], r->word, strlen(r->word) + 1);
         line->name_column[i] = r->column;
     }
@@ -180,16 +181,16 @@ static enum glint_status read_form_names(struct reader *r,
 
 /* Reads the clause if the command word has forms with one, and sets FORM to the
  * form with that clause. */
-static enum glint_status read_optional_clause(struct reader *r,
-                                              const struct control_form **form)
+static enum glint_status read_command_clause(struct reader *r,
+                                             const struct control_form **form)
 {
     const struct control_form *f = *form;
 
     if (!f->clause)
         return GLINT_OK;
     if (!read_next_word(r))
-        return control_report_error(r->error, r->where, r->column,
-                                    "expected %s", f->usage);
+        return control_set_line_error(r->error, r->where, r->column,
+                                      "expected %s", f->usage);
     for (; f; f = find_command_form(f->word, (int)(f - control_forms) + 1))
         if (strcmp(f->clause, r->word) == 0) {
             *form = f;
@@ -198,33 +199,33 @@ static enum glint_status read_optional_clause(struct reader *r,
     return report_unknown_word(r, (*form)->word);
 }
 
-static enum glint_status read_form_numbers(struct reader *r,
-                                           const struct control_form *form,
-                                           struct control_line *line)
+static enum glint_status read_command_numbers(struct reader *r,
+                                              const struct control_form *form,
+                                              struct control_line *line)
 {
-    line->column = peek_word(r).column;
+    line->column = peek_next_word(r).column;
     while (line->n < form->most && read_next_word(r)) {
         double v;
 
         if (!tool_parse_number(r->word, &v))
-            return control_report_error(r->error, r->where, r->column,
-                                        "'%.24s' is not a number; expected %s",
-                                        r->word, form->usage);
+            return control_set_line_error(
+                r->error, r->where, r->column,
+                "'%.24s' is not a number; expected %s", r->word, form->usage);
         if (!(v >= form->lowest && v <= form->highest))
-            return control_report_error(r->error, r->where, r->column,
-                                        "%s must be %.9g to %.9g, not %.9g",
-                                        form->usage, form->lowest,
-                                        form->highest, v);
+            return control_set_line_error(r->error, r->where, r->column,
+                                          "%s must be %.9g to %.9g, not %.9g",
+                                          form->usage, form->lowest,
+                                          form->highest, v);
         if (form->is_whole && v != rint(v))
-            return control_report_error(r->error, r->where, r->column,
-                                        "%s needs whole numbers, not %.9g",
-                                        form->usage, v);
+            return control_set_line_error(r->error, r->where, r->column,
+                                          "%s needs whole numbers, not %.9g",
+                                          form->usage, v);
         line->v[line->n++] = v;
     }
     return line->n >= form->least
                ? GLINT_OK
-               : control_report_error(r->error, r->where, r->column,
-                                      "expected %s", form->usage);
+               : control_set_line_error(r->error, r->where, r->column,
+                                        "expected %s", form->usage);
 }
 
 /* -------------------------------------------------------------------- line */
@@ -233,7 +234,7 @@ static enum glint_status read_form_numbers(struct reader *r,
 static enum glint_status read_frame_number(struct reader *r,
                                            struct control_line *line)
 {
-    const struct reader ahead = peek_word(r);
+    const struct reader ahead = peek_next_word(r);
     double v;
 
     if (!strchr("+-.0123456789", *ahead.word) || !*ahead.word)
@@ -241,7 +242,7 @@ static enum glint_status read_frame_number(struct reader *r,
     *r = ahead;
     if (!tool_parse_number(r->word, &v) ||
         !(v >= 0 && v <= CONTROL_MOST_FRAME) || v != rint(v))
-        return control_report_error(
+        return control_set_line_error(
             r->error, r->where, r->column,
             "a frame must be a whole number from 0, not '%.24s'", r->word);
     line->frame = (int)v;
@@ -261,15 +262,15 @@ static enum glint_status read_option_value(struct reader *r,
 
     snprintf(line->name[0], CONTROL_NAME, "%s", option->name);
     line->name_column[0] = r->column;
-    status = read_form_numbers(r, form, line);
+    status = read_command_numbers(r, form, line);
     glint_options_defaults(&options);
     if (status != GLINT_OK || glint_options_set(&options, option->name,
                                                 line->v[0], &error) == GLINT_OK)
         return status;
     glint_option_accepts(option, accepts, sizeof accepts);
-    return control_report_error(r->error, r->where, line->column,
-                                "%s is %s, not %.9g", option->name, accepts,
-                                line->v[0]);
+    return control_set_line_error(r->error, r->where, line->column,
+                                  "%s must be %s, not %.9g", option->name,
+                                  accepts, line->v[0]);
 }
 
 /* Reads the command after the frame number. */
@@ -285,7 +286,7 @@ static enum glint_status read_command_words(struct reader *r,
 
     if (!read_next_word(r))
         return line->frame < 0 ? GLINT_OK
-                               : control_report_error(
+                               : control_set_line_error(
                                      r->error, r->where, r->column,
                                      "a command must follow the frame number");
     option = glint_option_named(r->word);
@@ -297,16 +298,16 @@ static enum glint_status read_command_words(struct reader *r,
         form = find_command_form(r->word, 0);
         if (!form)
             return report_unknown_word(r, NULL);
-        status = read_form_names(r, form, form->names, line);
+        status = read_command_names(r, form, form->names, line);
         if (status == GLINT_OK)
-            status = read_optional_clause(r, &form);
+            status = read_command_clause(r, &form);
         if (status == GLINT_OK)
-            status = read_form_names(r, form, form->behind, line);
+            status = read_command_names(r, form, form->behind, line);
         if (status == GLINT_OK)
-            status = read_form_numbers(r, form, line);
+            status = read_command_numbers(r, form, line);
     }
     if (status == GLINT_OK && read_next_word(r))
-        status = control_report_error(
+        status = control_set_line_error(
             r->error, r->where, r->column,
             "'%.24s' is one value too many; expected %s", r->word, form->usage);
     line->verb = form->verb;
@@ -323,9 +324,9 @@ enum glint_status control_parse_line(const char *text, const char *where,
     enum glint_status status;
 
     if (strlen(text) >= CONTROL_LINE)
-        return control_report_error(error, where, CONTROL_LINE,
-                                    "a line has at most %d bytes",
-                                    CONTROL_LINE - 1);
+        return control_set_line_error(error, where, CONTROL_LINE,
+                                      "a line has at most %d bytes",
+                                      CONTROL_LINE - 1);
     status = read_frame_number(&r, &read);
     if (status == GLINT_OK)
         status = read_command_words(&r, &read);
@@ -405,7 +406,7 @@ enum glint_status keyboard_open(struct keyboard *k, int fd)
 
 /* Returns the length of the first key of TEXT[N]: one byte, or the bytes of
  * an escape sequence up to its final letter. */
-static int first_key_length(const char *text, int n)
+static int get_first_key_length(const char *text, int n)
 {
     int i = 2;
 
@@ -418,7 +419,7 @@ static int first_key_length(const char *text, int n)
 
 int keyboard_parse_key(const char *text, int n, struct control_line *line)
 {
-    const int length = first_key_length(text, n);
+    const int length = get_first_key_length(text, n);
 
     *line = (struct control_line){.frame = -1};
     for (int i = 0; i < N_KEYS; i++)
@@ -491,14 +492,15 @@ static enum glint_status parse_control_line(const struct controls *in,
     return status;
 }
 
-static enum glint_status parse_all_lines(struct controls *in,
-                                         struct glint_error *error)
+static enum glint_status parse_all_control_lines(struct controls *in,
+                                                 struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
     struct control_line line = {.verb = CONTROL_NONE};
     const char *text;
 
-    while (status == GLINT_OK && (text = text_lines_read_raw(&in->lines))) {
+    while (status == GLINT_OK &&
+           (text = text_lines_read_untrimmed(&in->lines))) {
         struct control_line *const more =
             text_grow_array(in->row, in->n, sizeof *more);
 
@@ -532,7 +534,7 @@ enum glint_status controls_open(struct controls *input, const char *path,
         return text_lines_open_pipe(&in->lines, path, error);
     status = text_lines_open(&in->lines, path, NULL, MAX_BYTES, error);
     if (status == GLINT_OK)
-        status = parse_all_lines(in, error);
+        status = parse_all_control_lines(in, error);
     text_lines_close(&in->lines);
     if (status != GLINT_OK)
         controls_close(in);
@@ -556,7 +558,8 @@ static bool read_next_pipe_command(struct controls *in)
 {
     const char *text;
 
-    while (in->lines.is_pipe && (text = text_lines_read_raw(&in->lines))) {
+    while (in->lines.is_pipe &&
+           (text = text_lines_read_untrimmed(&in->lines))) {
         struct glint_error error;
 
         if (parse_control_line(in, text, &in->ahead, &error) != GLINT_OK)
@@ -579,7 +582,7 @@ const struct control_line *controls_next_line(struct controls *input,
     if (in->next < in->n)
         return in->row[in->next].frame > picture ? NULL : &in->row[in->next++];
     if (in->read_at != picture)
-        text_lines_begin_turn(&in->lines);
+        text_lines_reset_read_limit(&in->lines);
     in->read_at = picture;
     in->has_ahead = in->has_ahead || read_next_pipe_command(in);
     if (!in->has_ahead || in->ahead.frame > picture)

@@ -156,9 +156,9 @@ enum glint_status control_parse_line(const char *text, const char *where,
 
 /* Sets ERROR to "WHERE:COLUMN: cause", the cause by printf() format. Returns
  * GLINT_E_FORMAT. */
-enum glint_status control_report_error(struct glint_error *error,
-                                       const char *where, int column,
-                                       const char *format, ...)
+enum glint_status control_set_line_error(struct glint_error *error,
+                                         const char *where, int column,
+                                         const char *format, ...)
     GLINT_PRINTF(4, 5);
 
 /* Starts reading keys from the terminal FD. Returns GLINT_E_IO if FD is not a

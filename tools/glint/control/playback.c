@@ -16,8 +16,8 @@ static void jump_to_frame(struct playback *p, double at)
     p->has_shown = false;
 }
 
-bool playback_execute_line(struct playback *playback,
-                           const struct control_line *line)
+bool playback_execute_command(struct playback *playback,
+                              const struct control_line *line)
 {
     switch (line->verb) {
     case CONTROL_STEP:

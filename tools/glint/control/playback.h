@@ -4,8 +4,8 @@
  * picture shows.
  *
  *     playback_init(&playback);
- *     playback_execute_line(&playback, &line);            step, jump, play ...
- *     frame = playback_next_frame(&playback, elapsed_s);  each picture
+ *     playback_execute_command(&playback, &line);            step, jump, play
+ * ... frame = playback_next_frame(&playback, elapsed_s);  each picture
  *
  * If a rate is set, playback follows time, not the number of pictures: frame k
  * does not depend on what was shown before.
@@ -31,8 +31,8 @@ void playback_init(struct playback *playback);
 
 /* Executes LINE if it is one of the commands CONTROL_STEP to CONTROL_STOP.
  * Returns whether it is. */
-bool playback_execute_line(struct playback *playback,
-                           const struct control_line *line);
+bool playback_execute_command(struct playback *playback,
+                              const struct control_line *line);
 
 /* Returns the frame of the next picture, ELAPSED_S after the previous
  * picture. */

@@ -41,8 +41,8 @@ check_environment_command(const struct steer *steer,
     struct suggest suggest;
 
     if (count_environments(steer) == 0)
-        return control_report_error(error, where, line->column,
-                                    "the scene has no environment");
+        return control_set_line_error(error, where, line->column,
+                                      "the scene has no environment");
     if (line->verb != CONTROL_MAP ||
         glint_scene_find_environment(&steer->model, line->name[0]) >= 0)
         return GLINT_OK;
@@ -50,11 +50,11 @@ check_environment_command(const struct steer *steer,
     for (int i = 0; i < count_environments(steer); i++) {
         const char *const name = steer->model.environment[i].name;
 
-        suggest_consider(&suggest, name, strlen(name));
+        suggest_add_candidate(&suggest, name, strlen(name));
     }
-    return control_report_error(error, where, line->name_column[0],
-                                "the scene has no environment '%s'%s",
-                                line->name[0], suggest_from_words(&suggest));
+    return control_set_line_error(error, where, line->name_column[0],
+                                  "the scene has no environment '%s'%s",
+                                  line->name[0], suggest_from_words(&suggest));
 }
 
 /* Shows the current environment with its rotation and scale. */
@@ -132,10 +132,10 @@ static enum glint_status check_motion_sensor(const struct steer *steer,
     if (m)
         n = (int)((const struct glint_motion_header *)(const void *)(m + 1))
                 ->n_sensors;
-    return line->v[0] > n
-               ? control_report_error(error, where, line->column,
-                                      "the scene's motion has %d sensors", n)
-               : GLINT_OK;
+    return line->v[0] > n ? control_set_line_error(
+                                error, where, line->column,
+                                "no such sensor: the scene's motion has %d", n)
+                          : GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- camera
@@ -387,10 +387,9 @@ static const char *find_object_or_material_name(const struct steer *s,
 }
 
 /* Sets INDEX to the index of name K of LINE. */
-static enum glint_status find_name_index(const struct steer *s,
-                                         const struct control_line *line, int k,
-                                         bool is_material, const char *where,
-                                         struct glint_error *error, int *index)
+static enum glint_status find_index_of_command_name(
+    const struct steer *s, const struct control_line *line, int k,
+    bool is_material, const char *where, struct glint_error *error, int *index)
 {
     const char *const name = line->name[k];
     const int n = is_material ? count_materials(s) : count_objects(s);
@@ -405,12 +404,12 @@ static enum glint_status find_name_index(const struct steer *s,
         const char *const known =
             find_object_or_material_name(s, is_material, i);
 
-        suggest_consider(&suggest, known, strlen(known));
+        suggest_add_candidate(&suggest, known, strlen(known));
     }
-    return control_report_error(error, where, line->name_column[k],
-                                "the scene has no %s '%s'%s",
-                                is_material ? "material" : "object", name,
-                                suggest_from_words(&suggest));
+    return control_set_line_error(error, where, line->name_column[k],
+                                  "the scene has no %s '%s'%s",
+                                  is_material ? "material" : "object", name,
+                                  suggest_from_words(&suggest));
 }
 
 /* Returns whether the first name of LINE must be a material. */
@@ -429,10 +428,11 @@ find_name_indices(const struct steer *s, const struct control_line *line,
 
     index[0] = index[1] = 0;
     if (*line->name[0])
-        status = find_name_index(s, line, 0, is_command_for_material(line),
-                                 where, error, index);
+        status = find_index_of_command_name(
+            s, line, 0, is_command_for_material(line), where, error, index);
     if (status == GLINT_OK && *line->name[1])
-        status = find_name_index(s, line, 1, true, where, error, index + 1);
+        status = find_index_of_command_name(s, line, 1, true, where, error,
+                                            index + 1);
     return status;
 }
 
@@ -469,14 +469,14 @@ enum glint_status steer_check_line(const struct steer *steer,
         return status;
     if (is_set && line->verb != CONTROL_COLOUR &&
         !is_brushed_metal(steer, index[0]))
-        return control_report_error(error, where, line->name_column[0],
-                                    "'%s' is not brushed metal; use 'colour'",
-                                    line->name[0]);
+        return control_set_line_error(error, where, line->name_column[0],
+                                      "'%s' is not brushed metal; use 'colour'",
+                                      line->name[0]);
     if (line->verb == CONTROL_SIZE &&
         steer->model.object[index[0]].kind != GLINT_OBJECT_SPHERE)
-        return control_report_error(error, where, line->name_column[0],
-                                    "'%s' is not a sphere, so it has no radius",
-                                    line->name[0]);
+        return control_set_line_error(
+            error, where, line->name_column[0],
+            "'%s' is not a sphere, so it has no radius", line->name[0]);
     return GLINT_OK;
 }
 
@@ -744,11 +744,11 @@ static enum glint_status execute_control_line(struct steer *s,
     }
 }
 
-enum glint_status steer_execute_line(struct steer *steer,
-                                     struct glint_scene *scene,
-                                     const struct control_line *line,
-                                     const char *where,
-                                     struct glint_error *error)
+enum glint_status steer_execute_command(struct steer *steer,
+                                        struct glint_scene *scene,
+                                        const struct control_line *line,
+                                        const char *where,
+                                        struct glint_error *error)
 {
     enum glint_status status = steer_check_line(steer, line, where, error);
 
@@ -758,7 +758,7 @@ enum glint_status steer_execute_line(struct steer *steer,
     if (line->is_change)
         return GLINT_OK;
     if (status == GLINT_E_ARGUMENT)
-        status = control_report_error(
+        status = control_set_line_error(
             error, where, line->column,
             is_command_for_material(line)
                 ? "the specular and diffuse colours sum to more than 1"

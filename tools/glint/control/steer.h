@@ -3,7 +3,7 @@
  * steer.h - applies control lines to a scene and records the changes.
  *
  *     steer_open(&steer, &model);
- *     steer_execute_line(&steer, scene, &line, where, &error);  each line
+ *     steer_execute_command(&steer, scene, &line, where, &error);  each line
  *     steer_apply_state(&steer, scene);          after the scene was placed
  *     steer_close(&steer);
  *
@@ -44,8 +44,8 @@ struct steer {
     /* Private. */
     struct glint_scene_model model;
     struct steer_thing *thing; /* state of each object, [n_objects] */
-    struct glint_scene_look
-        *look; /* appearance of each material, [n_materials] */
+    /* appearance of each material, [n_materials] */
+    struct glint_scene_look *look;
     struct steer_orbit orbit;
     /* Camera before the orbit began */
     struct glint_scene_camera camera;
@@ -78,11 +78,11 @@ enum glint_status steer_check_line(const struct steer *steer,
 
 /* Executes LINE, any command except those of playback.h. Returns GLINT_E_FORMAT
  * like steer_check_line(), without a change. */
-enum glint_status steer_execute_line(struct steer *steer,
-                                     struct glint_scene *scene,
-                                     const struct control_line *line,
-                                     const char *where,
-                                     struct glint_error *error);
+enum glint_status steer_execute_command(struct steer *steer,
+                                        struct glint_scene *scene,
+                                        const struct control_line *line,
+                                        const char *where,
+                                        struct glint_error *error);
 
 /* Applies all recorded changes to SCENE, which must be in the state of its
  * model. */

@@ -13,9 +13,10 @@
 struct ghost_list {
     struct glint_explain *explain;
     const char *lens;
-    const int
-        *ghosts; /* indices of the ghosts in list order, [explain->n_ghosts] */
-    int top;     /* max ghosts on a sheet */
+    /* indices of the ghosts in the order in which they are listed,
+     * [explain->n_ghosts] */
+    const int *ghosts;
+    int top; /* max ghosts on a sheet */
     const struct glint_image *picture;
 };
 

@@ -37,8 +37,8 @@ struct reading {
 
 /* Parses the text FIELD as a value of column C. Returns NULL or an error
  * message. */
-static const char *parse_key_value(struct reading *r, int c, const char *field,
-                                   double *value)
+static const char *parse_key_frame_value(struct reading *r, int c,
+                                         const char *field, double *value)
 {
     const struct glint_option *const option =
         columns[c].range ? NULL : glint_option_named(columns[c].name);
@@ -106,8 +106,8 @@ static const char *parse_column_heading(struct reading *r,
                             : check_column_heading(seen);
 }
 
-static const char *parse_key_row(struct reading *r, struct text_lines *lines,
-                                 char *line)
+static const char *parse_key_frame_row(struct reading *r,
+                                       struct text_lines *lines, char *line)
 {
     struct keys *const keys = r->keys;
     struct key_value key = {-1, lines->number, 0};
@@ -122,7 +122,7 @@ static const char *parse_key_row(struct reading *r, struct text_lines *lines,
 
         given[c] = *field[i] != '\0';
         if (given[c])
-            cause = parse_key_value(r, c, field[i], &value[c]);
+            cause = parse_key_frame_value(r, c, field[i], &value[c]);
     }
     if (cause)
         return cause;
@@ -141,18 +141,18 @@ static const char *parse_key_row(struct reading *r, struct text_lines *lines,
     return cause;
 }
 
-static const char *parse_key_line(void *ctx, struct text_lines *lines,
-                                  char *line)
+static const char *parse_key_frame_line(void *ctx, struct text_lines *lines,
+                                        char *line)
 {
     struct reading *const r = ctx;
 
-    return (r->n_columns ? parse_key_row : parse_column_heading)(r, lines,
-                                                                 line);
+    return (r->n_columns ? parse_key_frame_row : parse_column_heading)(r, lines,
+                                                                       line);
 }
 
-enum glint_status keys_parse_text(struct keys *keys, const char *name,
-                                  const char *text, size_t bytes,
-                                  struct glint_error *error)
+enum glint_status key_frames_parse_text(struct keys *keys, const char *name,
+                                        const char *text, size_t bytes,
+                                        struct glint_error *error)
 {
     struct reading r = {.keys = keys};
     struct text_lines lines;
@@ -161,33 +161,34 @@ enum glint_status keys_parse_text(struct keys *keys, const char *name,
 
     *keys = (struct keys){.n = {0}};
     if (status == GLINT_OK)
-        status = text_lines_parse_each(&lines, parse_key_line, &r, error);
+        status = text_lines_parse_each(&lines, parse_key_frame_line, &r, error);
     if (status == GLINT_OK && keys->n[KEYS_FRAME] == 0)
         status = glint_error_report(error, GLINT_E_FORMAT, name,
                                     "has no key frames");
     if (status != GLINT_OK)
-        keys_free(keys);
+        key_frames_free(keys);
     return status;
 }
 
-enum glint_status keys_read_file(struct keys *keys, const char *path,
-                                 struct glint_error *error)
+enum glint_status key_frames_read_file(struct keys *keys, const char *path,
+                                       struct glint_error *error)
 {
-    return keys_parse_text(keys, path, NULL, MAX_BYTES, error);
+    return key_frames_parse_text(keys, path, NULL, MAX_BYTES, error);
 }
 
-int keys_find_column(const char *name)
+int key_frames_find_column(const char *name)
 {
     return text_find_column(columns, KEYS_COLUMNS, name);
 }
 
-bool keys_has_column(const struct keys *keys, enum key_column column)
+bool key_frames_have_column(const struct keys *keys, enum key_column column)
 {
     return keys->n[column] > 0;
 }
 
-double keys_interpolate_at(const struct keys *keys, enum key_column column,
-                           int frame, double other)
+double key_frames_interpolate_at(const struct keys *keys,
+                                 enum key_column column, int frame,
+                                 double other)
 {
     const struct key_value *const key = keys->key[column];
     const int n = keys->n[column];
@@ -209,7 +210,7 @@ double keys_interpolate_at(const struct keys *keys, enum key_column column,
                                 (key[high].frame - key[low].frame);
 }
 
-void keys_free(struct keys *keys)
+void key_frames_free(struct keys *keys)
 {
     for (int i = 0; i < KEYS_COLUMNS; i++)
         free(keys->key[i]);

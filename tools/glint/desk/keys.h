@@ -51,25 +51,27 @@ struct keys {
 
 /* Reads PATH. On GLINT_E_IO, GLINT_E_FORMAT or GLINT_E_MEMORY, ERROR names
  * file, line and cause, and KEYS is empty. */
-enum glint_status keys_read_file(struct keys *keys, const char *path,
-                                 struct glint_error *error);
+enum glint_status key_frames_read_file(struct keys *keys, const char *path,
+                                       struct glint_error *error);
 
-/* Parses TEXT[BYTES] as keys_read_file() parses a file; NAME is used in errors.
+/* Parses TEXT[BYTES] as key_frames_read_file() parses a file; NAME is used in
+ * errors.
  */
-enum glint_status keys_parse_text(struct keys *keys, const char *name,
-                                  const char *text, size_t bytes,
-                                  struct glint_error *error);
+enum glint_status key_frames_parse_text(struct keys *keys, const char *name,
+                                        const char *text, size_t bytes,
+                                        struct glint_error *error);
 
 /* Returns the index of the column NAME, or -1. */
-int keys_find_column(const char *name);
+int key_frames_find_column(const char *name);
 
 /* Returns whether COLUMN has keys. */
-bool keys_has_column(const struct keys *keys, enum key_column column);
+bool key_frames_have_column(const struct keys *keys, enum key_column column);
 
 /* Returns the value of COLUMN at FRAME, or OTHER if COLUMN has no keys. */
-double keys_interpolate_at(const struct keys *keys, enum key_column column,
-                           int frame, double other);
+double key_frames_interpolate_at(const struct keys *keys,
+                                 enum key_column column, int frame,
+                                 double other);
 
-void keys_free(struct keys *keys);
+void key_frames_free(struct keys *keys);
 
 #endif

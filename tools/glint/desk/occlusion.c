@@ -52,8 +52,9 @@ static enum glint_status load_numbered_mask(struct occlusion *o, int frame,
 }
 
 /* Reads frames of the mask video up to FRAME. */
-static enum glint_status read_mask_video_up_to(struct occlusion *o, long frame,
-                                               struct glint_error *error)
+static enum glint_status read_mask_video_up_to_frame(struct occlusion *o,
+                                                     long frame,
+                                                     struct glint_error *error)
 {
     enum glint_status status = GLINT_OK;
 
@@ -82,7 +83,8 @@ static enum glint_status open_mask_video(struct occlusion *o,
         o->black = 16;
         o->white = 235;
     }
-    return status == GLINT_OK ? read_mask_video_up_to(o, 0, error) : status;
+    return status == GLINT_OK ? read_mask_video_up_to_frame(o, 0, error)
+                              : status;
 }
 
 enum glint_status occlusion_open(struct occlusion *o, struct glint_error *error)
@@ -119,7 +121,7 @@ static void load_frame_mask(struct occlusion *o, int frame)
     if (o->is_over || o->frame >= frame)
         return;
     if (o->is_video)
-        status = read_mask_video_up_to(o, frame, &error);
+        status = read_mask_video_up_to_frame(o, frame, &error);
     else if (o->is_numbered)
         status = load_numbered_mask(o, frame, &error);
     if (status == GLINT_OK)
@@ -169,10 +171,10 @@ static double interpolate_mask(const struct occlusion *o,
 }
 
 /* Returns the mean of the mask over the disc of LAMP. */
-static double mean_mask_over_lamp(const struct occlusion *o,
-                                  const struct glint_view *view,
-                                  double focal_mm,
-                                  const struct glint_lamp *lamp)
+static double compute_mean_mask_over_lamp(const struct occlusion *o,
+                                          const struct glint_view *view,
+                                          double focal_mm,
+                                          const struct glint_lamp *lamp)
 {
     const double pixel = glint_view_pixel_tangent(view, focal_mm);
     /* With such a large pixel size every lamp counts as large and gets POINTS
@@ -223,7 +225,7 @@ void occlusion_dim_lamps(struct occlusion *o, int frame,
 
         glint_view_to_pixel(view, focal_mm, lamp, &x, &y);
         if (o->image.plane[0])
-            share = mean_mask_over_lamp(o, view, focal_mm, lamp);
+            share = compute_mean_mask_over_lamp(o, view, focal_mm, lamp);
         share *= compute_off_screen_fade(x, y, view->width, view->height,
                                          o->fade_px);
         lamp->power *= share;

@@ -74,10 +74,10 @@ static void draw_number_label(struct labels *l, int number, int x, int y)
     paint_text(p, x + 2 * p->line, y + 2 * p->line, text);
 }
 
-enum glint_status preview_draw_numbers(struct glint_engine *engine,
-                                       const struct glint_engine_lamp *lamps,
-                                       int n, double scale,
-                                       const struct glint_image *image)
+enum glint_status
+preview_draw_ghost_numbers(struct glint_engine *engine,
+                           const struct glint_engine_lamp *lamps, int n,
+                           double scale, const struct glint_image *image)
 {
     const int width = image->width < SMALL ? image->width : SMALL;
     const int height = (int)((int64_t)image->height * width / image->width);

@@ -11,9 +11,9 @@
  * SCALE, each at the brightest point of its ghost. To find these points,
  * ENGINE draws each ghost at a small size. Returns GLINT_E_MEMORY on
  * failure. */
-enum glint_status preview_draw_numbers(struct glint_engine *engine,
-                                       const struct glint_engine_lamp *lamps,
-                                       int n, double scale,
-                                       const struct glint_image *image);
+enum glint_status
+preview_draw_ghost_numbers(struct glint_engine *engine,
+                           const struct glint_engine_lamp *lamps, int n,
+                           double scale, const struct glint_image *image);
 
 #endif

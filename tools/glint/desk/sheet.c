@@ -21,7 +21,7 @@ static int compute_caption_stroke_width(int width)
 /* Returns the number of bytes of TEXT in the next row of a caption below an
  * image of WIDTH: whole words, or a part of a word that is wider than the
  * row. */
-static size_t caption_row_length(int width, const char *text)
+static size_t get_caption_row_length(int width, const char *text)
 {
     const int line = compute_caption_stroke_width(width);
     /* number of letters in a row: a letter with its gap is 4 strokes wide, the
@@ -47,11 +47,11 @@ int sheet_count_caption_lines(int width, const char *text)
     int rows = 0;
 
     for (text = skip_caption_blanks(text); *text; rows++)
-        text = skip_caption_blanks(text + caption_row_length(width, text));
+        text = skip_caption_blanks(text + get_caption_row_length(width, text));
     return rows;
 }
 
-static int caption_height(const struct sheet *s)
+static int compute_caption_height(const struct sheet *s)
 {
     return (2 + 7 * s->rows) * s->line;
 }
@@ -63,11 +63,11 @@ void sheet_draw_caption(const struct sheet *s, int k, const char *text)
     char row[160];
 
     below.plane[0] += s->height * below.stride_bytes[0];
-    below.height = caption_height(s);
+    below.height = compute_caption_height(s);
     paint_set_colour(&p, 224, 224, 224);
     text = skip_caption_blanks(text);
     for (int i = 0; i < s->rows && *text; i++) {
-        const size_t n = caption_row_length(s->width, text);
+        const size_t n = get_caption_row_length(s->width, text);
 
         snprintf(row, sizeof row, "%.*s", (int)n, text);
         paint_text(&p, 2 * s->line, (2 + 7 * i) * s->line, row);
@@ -96,7 +96,7 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
     s->image = (struct glint_image){
         .format = GLINT_RGB24,
         .width = GAP + s->columns * (width + GAP),
-        .height = GAP + rows * (height + caption_height(s) + GAP)};
+        .height = GAP + rows * (height + compute_caption_height(s) + GAP)};
     bytes = glint_image_bytes(GLINT_RGB24, s->image.width, s->image.height);
     mem = malloc(bytes);
     if (!mem)
@@ -115,7 +115,8 @@ enum glint_status sheet_open(struct sheet *s, int n, int width, int height,
 struct glint_image sheet_get_image(const struct sheet *s, int k)
 {
     const int x = GAP + k % s->columns * (s->width + GAP);
-    const int y = GAP + k / s->columns * (s->height + caption_height(s) + GAP);
+    const int y =
+        GAP + k / s->columns * (s->height + compute_caption_height(s) + GAP);
     struct glint_image p = s->image;
 
     p.width = s->width;

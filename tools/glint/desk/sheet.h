@@ -17,8 +17,8 @@
 struct sheet {
     struct glint_image image; /* GLINT_RGB24, dark grey between pictures */
     int width, height;        /* size of each image, pixels */
-    int columns,
-        line; /* number of columns; line: stroke width of letters, pixels */
+    /* number of columns, and stroke width of letters, pixels */
+    int columns, line;
     int rows; /* number of text lines per caption */
 };
 

@@ -38,7 +38,7 @@ const struct style styles[] = {
       {"haze", "0.03"}}},
     {NULL, NULL, {{NULL, NULL}}}};
 
-const struct style *find_style_of_lens(const char *name)
+const struct style *find_style_by_name(const char *name)
 {
     for (const struct style *s = styles; s->name; s++)
         if (strcmp(s->name, name) == 0)

@@ -21,6 +21,6 @@ struct style {
 extern const struct style styles[];
 
 /* Returns the style NAME, or NULL. */
-const struct style *find_style_of_lens(const char *name);
+const struct style *find_style_by_name(const char *name);
 
 #endif

@@ -17,8 +17,8 @@ struct explain_title {
     bool linear;
     int top; /* max ghosts and lights to list, and ghosts to mark */
     const struct glint_engine_report *report;
-    const struct glint_engine
-        *engine; /* engine that searched the picture, or NULL */
+    /* engine that searched the picture, or NULL */
+    const struct glint_engine *engine;
 };
 
 void explain_print_tables(const struct glint_explain *explain,

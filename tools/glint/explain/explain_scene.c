@@ -37,7 +37,8 @@ enum glint_status explained_scene_open(struct explained_scene *scene,
                                        const struct glint_explain *flare)
 {
     *scene = (struct explained_scene){.drawing = drawing, .flare = flare};
-    return scene_account_collect(&scene->account, &drawing->files.scene.frame);
+    return scene_account_collect_costs(&scene->account,
+                                       &drawing->files.scene.frame);
 }
 
 void explained_scene_close(struct explained_scene *scene)
@@ -111,9 +112,9 @@ static const char *describe_lamp_outcome(const struct explained_scene *s,
                : explain_outcome_reason((enum glint_outcome)most);
 }
 
-/* Returns the state of light I. SEEN[N]: lights ahead of the camera. Lamps of
- * the drawing correspond to the lights in SEEN that have any light, in this
- * order. */
+/* Returns the state of scene light I. SEEN[N] are the lights in front of the
+ * camera. Those of them whose intensity is not 0 are, in the same order, the
+ * lamps that the scene adds to the flare. */
 static struct light find_light_outcome(const struct explained_scene *s, int i,
                                        const struct glint_scene_lamp *seen,
                                        int n)
@@ -169,7 +170,8 @@ static int list_scene_lights(const struct explained_scene *s,
     int all = (int)h->n_lights;
 
     while (all > own && !has_light_power(&get_model(s)->light[all - 1]))
-        all--; /* reserved for another environment */
+        all--; /* an unused entry, which an environment with more lights would
+                * use */
     for (int i = 0; i < all; i++)
         light[i] = find_light_outcome(s, i, seen, n);
     return all;

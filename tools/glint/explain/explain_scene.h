@@ -11,8 +11,8 @@
 
 struct explained_scene {
     const struct drawing *drawing; /* drawing of the explained frame */
-    const struct glint_explain
-        *flare; /* explanation of the flare; NULL without a lens */
+    /* explanation of the flare; NULL without a lens */
+    const struct glint_explain *flare;
     struct scene_account account;
 };
 
@@ -23,7 +23,7 @@ enum glint_status explained_scene_open(struct explained_scene *scene,
                                        const struct glint_explain *flare);
 void explained_scene_close(struct explained_scene *scene);
 
-/* Print tables, or a JSON object. */
+/* Print the explanation of the scene as tables, or as JSON. */
 void explain_scene_print_tables(const struct explained_scene *scene);
 void explain_scene_write_json(struct json_writer *json,
                               const struct explained_scene *scene);

@@ -17,7 +17,7 @@ static const struct {
     const char *word, *reason;
 } outcomes[GLINT_OUTCOMES] = {
     [GLINT_OUTCOME_DRAWN] = {"drawn", "drawn"},
-    [GLINT_OUTCOME_EMPTY] = {"empty", "no edge of its grid changes a pixel"},
+    [GLINT_OUTCOME_EMPTY] = {"empty", "its outline changes no pixel"},
     [GLINT_OUTCOME_OTHER] = {"other", "not requested, or muted"},
     [GLINT_OUTCOME_BEYOND] = {"beyond",
                               "light outside the angles of the model"},
@@ -38,7 +38,7 @@ const char *explain_outcome_reason(enum glint_outcome outcome)
     return outcomes[outcome].reason;
 }
 
-static double direction_angle_deg(double y, double x)
+static double compute_direction_angle_deg(double y, double x)
 {
     return atan2(y, x) * 180 / GLINT_PI;
 }
@@ -74,15 +74,15 @@ static void print_cost_columns(const struct glint_explain_part *p)
     printf("\n");
 }
 
-static void print_table_head(const char *what)
+static void print_table_heading(const char *what)
 {
     printf("\n%-30s %9s %8s %9s %8s %5s %7s %9s %7s\n", what, "vertices",
            "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
 }
 
 /* Prints a cost that is zero in most frames, unless it is zero. */
-static void print_rare_cost(const struct glint_explain *e,
-                            enum glint_cost_kind kind)
+static void print_cost_unless_zero(const struct glint_explain *e,
+                                   enum glint_cost_kind kind)
 {
     if (e->stage[kind] > 0)
         printf(",\n      %s %.1f (%.1f M)", glint_cost_weight[kind].name,
@@ -100,8 +100,8 @@ static void print_merged_dim_bundles(const struct glint_explain *e)
                dim, e->all.of[GLINT_OUTCOME_SHARED]);
 }
 
-static void print_table_title(const struct glint_explain *e,
-                              const struct explain_title *t)
+static void print_explanation_title(const struct glint_explain *e,
+                                    const struct explain_title *t)
 {
     const struct glint_explain_part *all = &e->all;
 
@@ -129,8 +129,8 @@ static void print_table_title(const struct glint_explain *e,
         if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)
             printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
                    100 * e->stage[i] / all->work);
-    print_rare_cost(e, GLINT_COST_PARTS);
-    print_rare_cost(e, GLINT_COST_VEIL);
+    print_cost_unless_zero(e, GLINT_COST_PARTS);
+    print_cost_unless_zero(e, GLINT_COST_VEIL);
     printf("\n");
     print_merged_dim_bundles(e);
 }
@@ -138,13 +138,13 @@ static void print_table_title(const struct glint_explain *e,
 static void print_light_rows(const struct glint_explain *e,
                              const struct explain_title *t)
 {
-    print_table_head("light    angle azimuth bundles");
+    print_table_heading("light    angle azimuth bundles");
     for (int i = 0; i < e->n_lights && i < t->top; i++) {
         const struct glint_light *b = &e->lights[i];
 
         printf("%5d %8.3f %7.1f %7d", i + 1,
-               direction_angle_deg(b->sine_q30, b->cosine_q30),
-               direction_angle_deg(b->sin_q30, b->cos_q30),
+               compute_direction_angle_deg(b->sine_q30, b->cosine_q30),
+               compute_direction_angle_deg(b->sin_q30, b->cos_q30),
                glint_explain_drawn(&e->light[i]));
         print_cost_columns(&e->light[i]);
     }
@@ -154,10 +154,10 @@ static void print_light_rows(const struct glint_explain *e,
 
 static void print_wavelength_rows(const struct glint_explain *e)
 {
-    print_table_head("wavelength             bundles");
+    print_table_heading("wavelength             bundles");
     for (int i = 0; i < e->n_waves; i++) {
         if (e->sets)
-            printf("%-3d for a ghost %14d", e->sets->size[i],
+            printf("%-3d per ghost   %14d", e->sets->size[i],
                    glint_explain_drawn(&e->wave[i]));
         else
             printf("%7.1f nm %19d", e->setup->wavelength_nm[i],
@@ -171,7 +171,7 @@ static void print_ghost_rows(const struct glint_explain *e,
 {
     int n = 0;
 
-    print_table_head("ghost   pair bundles terms cut");
+    print_table_heading("ghost   pair bundles terms cut");
     for (int i = 0; i < e->n_ghosts; i++) {
         const struct glint_explain_part *p = &e->ghost[ghosts[i]];
         const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
@@ -232,7 +232,7 @@ static void print_invalid_lights(const struct glint_explain *e,
                                  const struct explain_title *t)
 {
     const struct glint_engine_report *r = t->report;
-    const double most = model_angle_deg(e->lens->header->sine_hi_q30);
+    const double most = model_convert_sine_to_deg(e->lens->header->sine_hi_q30);
     int n = 0, dark = 0;
 
     for (int i = 0; i < t->n_lamps; i++) {
@@ -245,7 +245,7 @@ static void print_invalid_lights(const struct glint_explain *e,
             dark += !(t->lamp[i].lamp.power > 0);
     }
     if (n > t->top)
-        printf("and %d more outside the model (--top)\n", n - t->top);
+        printf("and %d more lights outside the model (--top)\n", n - t->top);
     if (dark)
         printf("%d light%s no power\n", dark, dark == 1 ? " has" : "s have");
     n = t->n_lamps - r->beyond_lights - dark;
@@ -307,7 +307,7 @@ void explain_print_tables(const struct glint_explain *e,
     int ghosts[GLINT_MAX_GHOSTS];
 
     glint_explain_sort(e, ghosts);
-    print_table_title(e, t);
+    print_explanation_title(e, t);
     if (e->n_lights) {
         print_light_rows(e, t);
         print_wavelength_rows(e);
@@ -347,8 +347,8 @@ static void write_lights_json(struct json_writer *json,
         const struct glint_light *b = &e->lights[i];
 
         json_write(json, "{angle_deg: %.6g, azimuth_deg: %.6g",
-                   direction_angle_deg(b->sine_q30, b->cosine_q30),
-                   direction_angle_deg(b->sin_q30, b->cos_q30));
+                   compute_direction_angle_deg(b->sine_q30, b->cosine_q30),
+                   compute_direction_angle_deg(b->sin_q30, b->cos_q30));
         write_bundles_json(json, &e->light[i]);
         json_write(json, "}");
     }
@@ -357,7 +357,7 @@ static void write_lights_json(struct json_writer *json,
         if (glint_explain_is_beyond(e, &t->lamp[i].lamp))
             json_write(json, "%.6g", t->lamp[i].lamp.theta_deg);
     json_write(json, "], model_max_deg: %.6g",
-               model_angle_deg(e->lens->header->sine_hi_q30));
+               model_convert_sine_to_deg(e->lens->header->sine_hi_q30));
 }
 
 static void write_title_json(struct json_writer *json,

@@ -35,7 +35,7 @@ static bool contains_one_of(const char *text, const char *const *words)
 }
 
 /* Returns the bits per sample of pixel format PIXELS: 8, 10, 12 or 16. */
-static int pixel_format_bits(const char *pixels)
+static int get_pixel_format_bits(const char *pixels)
 {
     static const char *const of_8[] = {"nv12", "nv16", "yuv410p", NULL};
     static const char *const of_16[] = {"16", "14", "48", "64", "f32", NULL};
@@ -67,7 +67,7 @@ static bool has_pixel_format_alpha(const char *pixels)
 
 /* Returns the chroma subsampling of pixel format PIXELS: "444" (also for RGB),
  * "422", "440", "420", "411", "410", or "gray" without chroma. */
-static const char *pixel_format_chroma(const char *pixels)
+static const char *get_pixel_format_chroma(const char *pixels)
 {
     static const char *const of_444[] = {"444",  "nv24", "nv42", "p410", "p416",
                                          "ayuv", "vuy",  "xv",   NULL};
@@ -107,13 +107,13 @@ const char *find_pixel_format(const char *chroma, int bits)
  * alpha, or the nearest one if y4m lacks its chroma subsampling. */
 static const char *choose_y4m_pixel_format(const char *pixels)
 {
-    const char *const chroma = pixel_format_chroma(pixels);
+    const char *const chroma = get_pixel_format_chroma(pixels);
 
     if (strncmp(pixels, "yuvj", 4) == 0) /* full range, too */
         return strcmp(chroma, "444") == 0   ? "yuvj444p"
                : strcmp(chroma, "422") == 0 ? "yuvj422p"
                                             : "yuvj420p";
-    return find_pixel_format(chroma, pixel_format_bits(pixels));
+    return find_pixel_format(chroma, get_pixel_format_bits(pixels));
 }
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
@@ -256,7 +256,7 @@ static enum glint_status start_program(struct child *child,
         return GLINT_OK;
     if (child->pid < 0)
         child->pid = 0;
-    child_wait(child);
+    child_wait_for_exit(child);
     return report_start_failure(argv[0], number, error);
 }
 
@@ -347,7 +347,7 @@ static void close_filter_script(struct child *child)
     child->script = -1;
 }
 
-int child_wait(struct child *child)
+int child_wait_for_exit(struct child *child)
 {
     int status = 0;
     pid_t pid;
@@ -376,7 +376,7 @@ void child_kill(struct child *child)
 {
     if (child->pid > 0)
         kill(child->pid, SIGKILL);
-    child_wait(child);
+    child_wait_for_exit(child);
 }
 
 enum { MAX_WORDS = 96, PROBE_BYTES = 1 << 16 };
@@ -424,7 +424,7 @@ static const char *const input_limits[] = {"-format_whitelist", containers,
 
 /* If LINE is "NAME=value", sets WORD to the value, unless WORD is already set
  * or the value is "unknown". */
-static void parse_word_line(const char *line, const char *name, char *word)
+static void parse_word_property(const char *line, const char *name, char *word)
 {
     const size_t n = strlen(name);
 
@@ -436,11 +436,12 @@ static void parse_word_line(const char *line, const char *name, char *word)
     snprintf(word, FFMPEG_WORD, "%s", line + n + 1);
 }
 
-static void parse_number_line(const char *line, const char *name, int *number)
+static void parse_number_property(const char *line, const char *name,
+                                  int *number)
 {
     char word[FFMPEG_WORD] = "";
 
-    parse_word_line(line, name, word);
+    parse_word_property(line, name, word);
     if (*word)
         tool_parse_integer(word, 1, GLINT_MAX_SIDE, number);
 }
@@ -448,18 +449,18 @@ static void parse_number_line(const char *line, const char *name, int *number)
 /* Parses LINE, a property of the first video stream. */
 static void parse_stream_line(struct ffmpeg_video *v, const char *line)
 {
-    parse_word_line(line, "codec_name", v->codec);
-    parse_word_line(line, "profile", v->profile);
-    parse_word_line(line, "pix_fmt", v->pixels);
-    parse_word_line(line, "field_order", v->fields);
-    parse_word_line(line, "r_frame_rate", v->rate);
-    parse_word_line(line, "avg_frame_rate", v->mean_rate);
-    parse_word_line(line, "color_range", v->range);
-    parse_word_line(line, "color_space", v->space);
-    parse_word_line(line, "color_transfer", v->transfer);
-    parse_word_line(line, "color_primaries", v->primaries);
-    parse_number_line(line, "width", &v->width);
-    parse_number_line(line, "height", &v->height);
+    parse_word_property(line, "codec_name", v->codec);
+    parse_word_property(line, "profile", v->profile);
+    parse_word_property(line, "pix_fmt", v->pixels);
+    parse_word_property(line, "field_order", v->fields);
+    parse_word_property(line, "r_frame_rate", v->rate);
+    parse_word_property(line, "avg_frame_rate", v->mean_rate);
+    parse_word_property(line, "color_range", v->range);
+    parse_word_property(line, "color_space", v->space);
+    parse_word_property(line, "color_transfer", v->transfer);
+    parse_word_property(line, "color_primaries", v->primaries);
+    parse_number_property(line, "width", &v->width);
+    parse_number_property(line, "height", &v->height);
 }
 
 /* Returns the ratio NAME in TEXT, lines of ffprobe, as a numerator for the
@@ -538,7 +539,7 @@ static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
 
     if (strncmp(line, "codec_name=", 11) == 0)
         snprintf(codec, FFMPEG_WORD, "%.31s", line + 11);
-    parse_word_line(line, "codec_type", kind);
+    parse_word_property(line, "codec_type", kind);
     if (*kind) {
         count_stream_of_type(v, codec, kind);
         if (strcmp(kind, "audio") == 0 && !*v->sound)
@@ -547,8 +548,8 @@ static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
     }
     if (strcmp(line, "codec_tag_string=tmcd") == 0)
         v->n_data--;
-    parse_word_line(line, "TAG:timecode", v->timecode);
-    parse_word_line(line, "TAG:TIMECODE", v->timecode);
+    parse_word_property(line, "TAG:timecode", v->timecode);
+    parse_word_property(line, "TAG:TIMECODE", v->timecode);
     v->n_chapters += strncmp(line, "start_time=", 11) == 0;
     if (strncmp(line, "TAG:", 4) != 0)
         return;
@@ -591,7 +592,7 @@ static bool run_ffprobe(const char *url, const char *const *options,
     if (start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
     read_child_output(&child, text);
-    return child_wait(&child) == 0;
+    return child_wait_for_exit(&child) == 0;
 }
 
 static const char *const of_pictures[] = {"-select_streams", "v:0", NULL};
@@ -645,14 +646,14 @@ long ffmpeg_count_frames(const char *name)
         !run_ffprobe(url, of_counted, "stream=nb_read_packets", text))
         return 0;
     text[strcspn(text, "\r\n")] = '\0';
-    parse_word_line(text, "nb_read_packets", n);
+    parse_word_property(text, "nb_read_packets", n);
     return strtol(n, NULL, 10);
 }
 
 /* Appends ", KIND TAG" to REPORT if VALUE is unknown. Returns VALUE, or the
  * default for an unknown one. */
-static int add_unknown_tag(int value, const char *kind, const char *tag,
-                           char report[FFMPEG_REPORT])
+static int replace_unknown_tag(int value, const char *kind, const char *tag,
+                               char report[FFMPEG_REPORT])
 {
     const size_t n = strlen(report);
 
@@ -661,9 +662,9 @@ static int add_unknown_tag(int value, const char *kind, const char *tag,
     return value;
 }
 
-void ffmpeg_set_colours(const struct ffmpeg_video *video,
-                        struct glint_y4m_header *header,
-                        char report[FFMPEG_REPORT])
+void ffmpeg_set_y4m_colour_tags(const struct ffmpeg_video *video,
+                                struct glint_y4m_header *header,
+                                char report[FFMPEG_REPORT])
 {
     static const char *const sd[] = {"smpte170m", "bt470bg", "fcc", NULL};
     static const char *const rgb[] = {"gbr", "rgb", NULL};
@@ -677,9 +678,9 @@ void ffmpeg_set_colours(const struct ffmpeg_video *video,
 
     *report = '\0';
     if (!is_word_in_list(space, rgb))
-        add_unknown_tag(matrix, "matrix", space, report);
-    add_unknown_tag(transfer, "transfer", video->transfer, report);
-    add_unknown_tag(primaries, "primaries", video->primaries, report);
+        replace_unknown_tag(matrix, "matrix", space, report);
+    replace_unknown_tag(transfer, "transfer", video->transfer, report);
+    replace_unknown_tag(primaries, "primaries", video->primaries, report);
     if (matrix >= 0)
         header->matrix = (enum glint_matrix)matrix;
     if (transfer >= 0)
@@ -717,7 +718,7 @@ static void add_input_url(struct words *w, const char *url)
     add_two_arguments(w, "-i", url);
 }
 
-static void begin_ffmpeg_arguments(struct words *w)
+static void begin_ffmpeg_argument_list(struct words *w)
 {
     static const char *const first[] = {"ffmpeg",    "-nostdin", "-hide_banner",
                                         "-loglevel", "error",    NULL};
@@ -728,8 +729,8 @@ static void begin_ffmpeg_arguments(struct words *w)
 }
 
 /* Terminates the arguments by NULL. Returns an error if there were too many. */
-static enum glint_status end_arguments(struct words *w,
-                                       struct glint_error *error)
+static enum glint_status end_ffmpeg_arguments(struct words *w,
+                                              struct glint_error *error)
 {
     if (w->n > MAX_WORDS)
         return glint_error_report(error, GLINT_E_ARGUMENT, "ffmpeg",
@@ -744,11 +745,11 @@ static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
 
-static enum glint_status report_long_name(const char *name,
-                                          struct glint_error *error)
+static enum glint_status report_too_long_file_name(const char *name,
+                                                   struct glint_error *error)
 {
     return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
-                              "the name is too long");
+                              "the file name is too long for ffmpeg");
 }
 
 /* ------------------------------------------------------------------- times */
@@ -851,12 +852,12 @@ bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
         fclose(from);
         child.fd = -1;
     }
-    child_wait(&child);
+    child_wait_for_exit(&child);
     if (!is_frame_rate_variable(times, parse_ratio(video->rate)))
         return false;
     run_ffprobe(url, of_all, "format=start_time", text);
     text[strcspn(text, "\r\n")] = '\0';
-    parse_word_line(text, "start_time", start);
+    parse_word_property(text, "start_time", start);
     for (int i = 0; i < times->n; i++)
         times->at[i] -= glint_option_number(start, &end);
     return true;
@@ -917,8 +918,8 @@ enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
 
     *child = CHILD_NONE;
     if (!set_file_url(url, name))
-        return report_long_name(name, error);
-    begin_ffmpeg_arguments(&w);
+        return report_too_long_file_name(name, error);
+    begin_ffmpeg_argument_list(&w);
     add_input_url(&w, url);
     add_two_arguments(&w, "-map", "0:v:0");
     if (keeps_times)
@@ -927,7 +928,7 @@ enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
     add_two_arguments(&w, "-strict", "-1");
     add_two_arguments(&w, "-f", "yuv4mpegpipe");
     add_argument(&w, "-");
-    status = end_arguments(&w, error);
+    status = end_ffmpeg_arguments(&w, error);
     return status == GLINT_OK ? start_heard(child, w.word, CHILD_WRITES,
                                             ffmpeg_cut_words, error)
                               : status;
@@ -1070,7 +1071,7 @@ static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
     if (is_pixel_format_rgb(v->pixels))
         add_two_arguments(
             w, "-pix_fmt",
-            find_pixel_format("420", pixel_format_bits(v->pixels)));
+            find_pixel_format("420", get_pixel_format_bits(v->pixels)));
     if (find_padding_filter(t, v) && !t->quiet)
         fprintf(
             stderr,
@@ -1081,8 +1082,8 @@ static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
 /* An encoder, and the codecs and file types for which it is used */
 struct family {
     const char *codec; /* codec of the input */
-    const char
-        *types; /* extensions of supported output files, each after a blank */
+    /* extensions of supported output files, each after a blank */
+    const char *types;
     const char *encoder;
     const char *options; /* ffmpeg arguments, separated by blanks */
     const char *alpha;   /* pixel format with alpha, or NULL */
@@ -1118,7 +1119,7 @@ static bool is_encoder_installed(const char *encoder)
     if (start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
         return false;
     read_child_output(&child, text);
-    child_wait(&child);
+    child_wait_for_exit(&child);
     snprintf(word, sizeof word, " %s ", encoder);
     return strstr(text, word) != NULL;
 }
@@ -1155,7 +1156,8 @@ static const char *find_prores_profile(const struct ffmpeg_video *v)
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcasecmp(names[i][0], v->profile) == 0)
             return names[i][1];
-    return strcmp(pixel_format_chroma(v->pixels), "444") == 0 ? "4444" : "hq";
+    return strcmp(get_pixel_format_chroma(v->pixels), "444") == 0 ? "4444"
+                                                                  : "hq";
 }
 
 static bool is_video_interlaced(const struct ffmpeg_video *v)
@@ -1274,8 +1276,8 @@ enum glint_status ffmpeg_start_writer(struct child *child,
     if (!set_file_url(out, t->file) ||
         (t->sound && !set_file_url(sound, t->sound)) ||
         (t->options && strlen(t->options) >= sizeof options))
-        return report_long_name(t->name, error);
-    begin_ffmpeg_arguments(&w);
+        return report_too_long_file_name(t->name, error);
+    begin_ffmpeg_argument_list(&w);
     add_argument(&w, "-y");
     add_two_arguments(&w, "-f", "yuv4mpegpipe");
     add_colour_tags(&w, t, video);
@@ -1305,7 +1307,7 @@ enum glint_status ffmpeg_start_writer(struct child *child,
     } else if (pad)
         add_two_arguments(&w, "-vf", pad);
     add_argument(&w, out);
-    status = end_arguments(&w, error);
+    status = end_ffmpeg_arguments(&w, error);
     if (status == GLINT_OK)
         status = start_ffmpeg_child(child, w.word, CHILD_READS, error);
     if (status == GLINT_OK)
@@ -1411,7 +1413,7 @@ static bool decode_video_piece(const char *url, enum piece piece,
         fclose(from);
         child.fd = -1;
     }
-    if (child_wait(&child) == 0 && n > 0)
+    if (child_wait_for_exit(&child) == 0 && n > 0)
         return true;
     if (!*cause)
         snprintf(cause, CAUSE, "ffmpeg decodes no frame");
@@ -1426,7 +1428,7 @@ enum glint_status ffmpeg_check_output(const char *file, const char *name,
 
     if (!set_file_url(url, file))
         return glint_error_report(error, GLINT_E_OUTPUT, name,
-                                  "the name is too long");
+                                  "the file name is too long for ffmpeg");
     has_first = decode_video_piece(url, FIRST, cause);
     /* ffmpeg cannot seek from the end of files without an index, such as .ts;
      * all of their frames are decoded. */
@@ -1460,7 +1462,8 @@ __attribute__((format(printf, 2, 3))) static void note(struct report *report,
         report->n += (size_t)n;
 }
 
-/* Reports that only MADE of FROM streams of type KIND remain. */
+/* Adds to the report that the output has only MADE of the input's FROM streams
+ * of type KIND. */
 static void note_lost_streams(struct report *r, const char *kind, int from,
                               int made)
 {
@@ -1468,8 +1471,8 @@ static void note_lost_streams(struct report *r, const char *kind, int from,
         note(r, ", %d of %d %s", made, from, kind);
 }
 
-/* Reports the tags of FROM that are missing in MADE, ignoring case, except tags
- * that belong to the file type. */
+/* Adds to the report which of the input's tags FROM are not among the output's
+ * tags MADE, ignoring case, except tags that belong to the file type. */
 static void note_lost_tags(struct report *r, const char *from, const char *made)
 {
     static const char *const own[] = {"major_brand",
@@ -1498,14 +1501,15 @@ static void note_lost_tags(struct report *r, const char *from, const char *made)
 static void note_pixel_losses(struct report *r, const char *made,
                               const char *from)
 {
-    if (pixel_format_bits(made) < pixel_format_bits(from))
-        note(r, ", %d bits in place of %d", pixel_format_bits(made),
-             pixel_format_bits(from));
-    if (strcmp(pixel_format_chroma(from), "gray") != 0 &&
-        strcmp(pixel_format_chroma(made), "444") != 0 &&
-        strcmp(pixel_format_chroma(made), pixel_format_chroma(from)) != 0)
-        note(r, ", chroma %s in place of %s", pixel_format_chroma(made),
-             is_pixel_format_rgb(from) ? "RGB" : pixel_format_chroma(from));
+    if (get_pixel_format_bits(made) < get_pixel_format_bits(from))
+        note(r, ", %d bits in place of %d", get_pixel_format_bits(made),
+             get_pixel_format_bits(from));
+    if (strcmp(get_pixel_format_chroma(from), "gray") != 0 &&
+        strcmp(get_pixel_format_chroma(made), "444") != 0 &&
+        strcmp(get_pixel_format_chroma(made), get_pixel_format_chroma(from)) !=
+            0)
+        note(r, ", chroma %s in place of %s", get_pixel_format_chroma(made),
+             is_pixel_format_rgb(from) ? "RGB" : get_pixel_format_chroma(from));
     if (has_pixel_format_alpha(from) && !has_pixel_format_alpha(made))
         note(r, ", no alpha");
 }

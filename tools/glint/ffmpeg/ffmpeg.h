@@ -32,21 +32,24 @@
 #include "video/y4m.h"
 
 enum child_pipe {
-    CHILD_WRITES, /* The child's standard output is FD, its input is empty. */
-    CHILD_PRINTS, /* FD receives its standard output and standard error; its
-                     input is empty. */
-    CHILD_READS /* The child's standard input is FD, its output goes nowhere. */
+    CHILD_WRITES, /* FD receives the child's standard output; its standard input
+                   * is empty. */
+    CHILD_PRINTS, /* FD receives the child's standard output and standard error;
+                   * its standard input is empty. */
+    CHILD_READS   /* FD feeds the child's standard input; its standard output is
+                   * discarded. */
 };
 
 struct child {
     pid_t pid;  /* 0: no process */
     int fd;     /* glint's end of the pipe; -1: closed */
-    int said;   /* file that receives its standard error; -1: it writes to
-                   glint's standard error */
+    int said;   /* file that receives the child's standard error; -1: the child
+                 * writes to glint's standard error */
     off_t told; /* bytes of SAID already copied to glint's standard error */
-    const char *const *listening; /* texts to find in its messages; ends with
-                                     NULL, not owned */
-    bool heard;                   /* one of the texts was found */
+    const char *const *listening; /* texts to search for in the child's
+                                   * messages; ends with NULL, not owned */
+    bool heard;                   /* whether a message contained one of these
+                                   * texts */
     int script; /* file from which the child reads its filter; -1: none */
 };
 
@@ -64,10 +67,13 @@ enum ffmpeg_subtitles { SUBTITLES_NONE, SUBTITLES_TEXT, SUBTITLES_IMAGES };
 
 /* Properties of a video as words of ffmpeg; "" if unknown */
 struct ffmpeg_video {
-    char codec[FFMPEG_WORD], profile[FFMPEG_WORD]; /* hevc, Main 10 ... */
-    char pixels[FFMPEG_WORD];                      /* yuv420p ... */
-    char fields[FFMPEG_WORD]; /* progressive, tt, bb, tb, bt */
-    char rate[FFMPEG_WORD], mean_rate[FFMPEG_WORD]; /* frames per second, N/D */
+    /* names of the video codec and its profile, such as hevc and Main 10 */
+    char codec[FFMPEG_WORD], profile[FFMPEG_WORD];
+    char pixels[FFMPEG_WORD]; /* yuv420p ... */
+    char fields[FFMPEG_WORD]; /* field order in words of ffprobe: progressive,
+                               * tt, bb, tb or bt */
+    /* nominal and mean frame rate, frames per second, as N/D */
+    char rate[FFMPEG_WORD], mean_rate[FFMPEG_WORD];
     char timecode[FFMPEG_WORD]; /* time code of the first frame */
     char range[FFMPEG_WORD], space[FFMPEG_WORD], transfer[FFMPEG_WORD],
         primaries[FFMPEG_WORD];
@@ -119,7 +125,7 @@ void child_forward_messages(struct child *child);
 
 /* Closes the pipe and waits until the child has ended. Returns its exit status,
  * or 128 plus the signal that killed it; 0 if there is no child. */
-int child_wait(struct child *child);
+int child_wait_for_exit(struct child *child);
 
 /* Kills the child, if there is one, and waits for its exit status. */
 void child_kill(struct child *child);
@@ -139,9 +145,9 @@ long ffmpeg_count_frames(const char *name);
 /* Sets the colour properties of HEADER by the tags of VIDEO. For tags that
  * glint does not know HEADER is unchanged, and REPORT lists them: ", matrix
  * ictcp". */
-void ffmpeg_set_colours(const struct ffmpeg_video *video,
-                        struct glint_y4m_header *header,
-                        char report[FFMPEG_REPORT]);
+void ffmpeg_set_y4m_colour_tags(const struct ffmpeg_video *video,
+                                struct glint_y4m_header *header,
+                                char report[FFMPEG_REPORT]);
 
 /* Reads the times of NAME's frames. Returns true if they deviate from a
  * constant VIDEO->rate. The caller frees times->at. */

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { NAME_CHARS = 48, ABOUT = 22 /* column of the description */ };
+enum { NAME_CHARS = 48, ABOUT = 22 /* column at which descriptions begin */ };
 
 /* Most common options, printed for commands whose help is longer than a
  * screen. */
@@ -24,7 +24,7 @@ static const struct {
     {"styles", " output width lens light-at strength gain quality "},
 };
 
-void help_print_all(const struct help *help)
+void help_print_complete(const struct help *help)
 {
     for (int i = 0; i < HELP_PARTS; i++)
         if (help->part[i])
@@ -112,7 +112,7 @@ void help_print_screen(const struct help *help)
     for (int i = 0; i < HELP_PARTS; i++)
         lines += help->part[i] ? count_help_lines(help->part[i]) : 0;
     if (!options || lines <= HELP_SCREEN) {
-        help_print_all(help);
+        help_print_complete(help);
         return;
     }
     for (int i = 0; i < HELP_PARTS; i++)

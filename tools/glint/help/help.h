@@ -20,10 +20,10 @@ struct help {
     const char *part[HELP_PARTS];
 };
 
-/* Print HELP. help_print_all() prints all of it; help_print_screen() prints
- * only the synopsis and the most common options if it is longer than
+/* Print HELP. help_print_complete() prints all of it; help_print_screen()
+ * prints only the synopsis and the most common options if it is longer than
  * HELP_SCREEN. */
-void help_print_all(const struct help *help);
+void help_print_complete(const struct help *help);
 void help_print_screen(const struct help *help);
 
 /* Prints a line for each of OPTIONS, an array for getopt_long(): the name,

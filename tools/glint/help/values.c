@@ -8,8 +8,8 @@
 #include "glint/options.h"
 
 static const struct {
-    const char
-        *command; /* command to which the row applies; NULL: all commands */
+    /* command to which the row applies; NULL: all commands */
+    const char *command;
     const char *option, *takes;
 } table[] = {
     /* A row for one command must precede the row of the same option for any
@@ -76,7 +76,8 @@ static const struct {
     {NULL, "frames", "FIRST-LAST, such as 0-99"},
     {NULL, "input", "a number, 0 to 255"},
     {NULL, "io", "auto, mmap, userptr or read"},
-    {NULL, "kernels", "c, sse41, avx2, neon or auto, as this processor has it"},
+    {NULL, "kernels",
+     "auto, c, or what this processor has of sse41, avx2 and neon"},
     {NULL, "jpeg-quality", "a whole number, 1 to 100"},
     {NULL, "layers-type", "half or float"},
     {NULL, "matrix", "auto, 601 or 709"},

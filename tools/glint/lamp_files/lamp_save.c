@@ -4,7 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
-static void write_text(struct lamp_save *s, const char *text, int n)
+static void write_text_to_lamp_file(struct lamp_save *s, const char *text,
+                                    int n)
 {
     if (s->status == GLINT_OK)
         s->status = glint_output_write(&s->out, text, (size_t)n, &s->error);
@@ -21,7 +22,7 @@ enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
     status = glint_output_open(&save->out, path, GLINT_OUTPUT_TEXT, error);
     save->is_open = status == GLINT_OK;
     if (save->is_open)
-        write_text(save, heading, (int)sizeof heading - 1);
+        write_text_to_lamp_file(save, heading, (int)sizeof heading - 1);
     return status;
 }
 
@@ -31,13 +32,14 @@ void lamp_save_write_row(struct lamp_save *save, const struct lamp_row *r)
 
     if (!(fabs(r->x) <= 1e6 && fabs(r->y) <= 1e6))
         return;
-    write_text(save, line,
-               snprintf(line, sizeof line,
-                        "%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%lu,%."
-                        "17g,%.17g,%.17g,%.17g\n",
-                        r->frame, r->x, r->y, r->power, r->rgb[0], r->rgb[1],
-                        r->rgb[2], r->size, (unsigned long)r->id, r->shape,
-                        r->turn, r->level, r->seen));
+    write_text_to_lamp_file(
+        save, line,
+        snprintf(line, sizeof line,
+                 "%d,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%lu,%."
+                 "17g,%.17g,%.17g,%.17g\n",
+                 r->frame, r->x, r->y, r->power, r->rgb[0], r->rgb[1],
+                 r->rgb[2], r->size, (unsigned long)r->id, r->shape, r->turn,
+                 r->level, r->seen));
 }
 
 enum glint_status lamp_save_finish(struct lamp_save *save,

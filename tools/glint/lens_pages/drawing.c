@@ -77,7 +77,7 @@ static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
 }
 
 /* Returns the x at which ray (U, 0) starts, mm. */
-static double ray_start_mm(const struct fan *fan, double u)
+static double compute_ray_start_mm(const struct fan *fan, double u)
 {
     const struct glint_pupil *p = &fan->pupil;
 
@@ -89,8 +89,9 @@ static double ray_start_mm(const struct fan *fan, double u)
 static bool trace_fan_ray(const struct fan *fan, double u, double v,
                           struct glint_ray *ray, double (*hits)[2])
 {
-    return glint_trace(&fan->path, ray_start_mm(fan, u), v * fan->pupil.y1_mm,
-                       fan->direction, ray, hits) == GLINT_RAY_OK &&
+    return glint_trace(&fan->path, compute_ray_start_mm(fan, u),
+                       v * fan->pupil.y1_mm, fan->direction, ray,
+                       hits) == GLINT_RAY_OK &&
            ray->rel_radius <= 1 &&
            hypot(ray->stop_x_mm, ray->stop_y_mm) <=
                fan->stop_radius_mm * (1 + 1e-9);
@@ -194,12 +195,12 @@ static void gather_field_spots(struct spots *s,
 static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
                                                          "#c0392b"};
 
-static double horizontal_px(const struct figure *f, double z)
+static double convert_z_to_px(const struct figure *f, double z)
 {
     return f->left + f->scale * z;
 }
 
-static double vertical_px(const struct figure *f, double x)
+static double convert_height_to_px(const struct figure *f, double x)
 {
     return f->middle - f->scale * x;
 }
@@ -215,7 +216,7 @@ static double round_up_to_1_2_5(double value)
 
 /* Returns the distance from the centre at which light at THETA_DEG is
  * imaged, mm, or a negative value if no light arrives. */
-static double image_height_mm(const struct figure *f, double theta_deg)
+static double compute_image_height_mm(const struct figure *f, double theta_deg)
 {
     double hits[GLINT_MAX_EVENTS + 1][2];
     struct fan fan;
@@ -238,7 +239,7 @@ static double find_angle_of_image_height(const struct figure *f,
 
     for (int i = 0; i < 18; i++) {
         const double middle = 0.5 * (low + high);
-        const double found = image_height_mm(f, middle);
+        const double found = compute_image_height_mm(f, middle);
 
         if (found >= 0 && found < height_mm)
             low = middle;
@@ -249,7 +250,7 @@ static double find_angle_of_image_height(const struct figure *f,
 }
 
 /* Returns the angle of FIELD, 0 .. DRAWING_FIELDS - 1, in degrees. */
-static double field_angle_deg(const struct figure *f, int field)
+static double get_field_angle_deg(const struct figure *f, int field)
 {
     static const double share[DRAWING_FIELDS] = {0, 0.7, 1};
 
@@ -377,8 +378,8 @@ static void write_surface_profile(const struct figure *f, int k, int sense)
 
     for (int i = -PROFILE; i <= PROFILE; i++) {
         find_section_point(f, k, sense * semi * i / PROFILE, at);
-        fprintf(f->file, "%.2f,%.2f ", horizontal_px(f, at[2]),
-                vertical_px(f, at[0]));
+        fprintf(f->file, "%.2f,%.2f ", convert_z_to_px(f, at[2]),
+                convert_height_to_px(f, at[0]));
     }
 }
 
@@ -393,13 +394,13 @@ static void write_glass_edge(const struct figure *f, int k, int side)
     find_section_point(f, k + 1, side * s[1].semi_mm, b);
     out = side * fmax(side * a[0], side * b[0]);
     if (side > 0)
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", horizontal_px(f, a[2]),
-                vertical_px(f, out), horizontal_px(f, b[2]),
-                vertical_px(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f ", convert_z_to_px(f, a[2]),
+                convert_height_to_px(f, out), convert_z_to_px(f, b[2]),
+                convert_height_to_px(f, out));
     else
-        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", horizontal_px(f, b[2]),
-                vertical_px(f, out), horizontal_px(f, a[2]),
-                vertical_px(f, out));
+        fprintf(f->file, "%.2f,%.2f %.2f,%.2f", convert_z_to_px(f, b[2]),
+                convert_height_to_px(f, out), convert_z_to_px(f, a[2]),
+                convert_height_to_px(f, out));
 }
 
 /* Draws the glass behind surface K, darker for a higher index. */
@@ -442,9 +443,9 @@ static void draw_lens_barrel(const struct figure *f, int first, int last)
                 "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.1f\" "
                 "fill=\"url(#hatch-%s)\" stroke=\"#777\" "
                 "stroke-width=\"0.5\"/>\n",
-                horizontal_px(f, a),
-                side ? vertical_px(f, semi[1]) - wall
-                     : vertical_px(f, -semi[0]),
+                convert_z_to_px(f, a),
+                side ? convert_height_to_px(f, semi[1]) - wall
+                     : convert_height_to_px(f, -semi[0]),
                 f->scale * (b - a), wall, lens->name);
 }
 
@@ -473,9 +474,11 @@ static void draw_aperture_stop(const struct figure *f, double radius)
         fprintf(f->file,
                 "<path d=\"M%.2f %.2f V%.2f M%.2f %.2f h6\" stroke=\"#111\" "
                 "stroke-width=\"2.2\" fill=\"none\"/>\n",
-                horizontal_px(f, f->stop_z), vertical_px(f, side * radius),
-                vertical_px(f, side * end), horizontal_px(f, f->stop_z) - 3,
-                vertical_px(f, side * radius));
+                convert_z_to_px(f, f->stop_z),
+                convert_height_to_px(f, side * radius),
+                convert_height_to_px(f, side * end),
+                convert_z_to_px(f, f->stop_z) - 3,
+                convert_height_to_px(f, side * radius));
 }
 
 /* Writes the number of surface K above its rim. */
@@ -487,7 +490,7 @@ static void draw_surface_number(const struct figure *f, int k)
     fprintf(f->file,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#a2640c\">%d</text>\n",
-            horizontal_px(f, at[2]), vertical_px(f, at[0]) - 7, k);
+            convert_z_to_px(f, at[2]), convert_height_to_px(f, at[0]) - 7, k);
 }
 
 static void draw_axis_and_sensor(const struct figure *f)
@@ -499,9 +502,9 @@ static void draw_axis_and_sensor(const struct figure *f)
             "stroke-dasharray=\"12 3 2 3\"/>\n"
             "<path d=\"M%.2f %.2f V%.2f\" stroke=\"#111\" "
             "stroke-width=\"2\"/>\n",
-            horizontal_px(f, f->z0), vertical_px(f, 0), horizontal_px(f, f->z1),
-            horizontal_px(f, f->sensor_z), vertical_px(f, film),
-            vertical_px(f, -film));
+            convert_z_to_px(f, f->z0), convert_height_to_px(f, 0),
+            convert_z_to_px(f, f->z1), convert_z_to_px(f, f->sensor_z),
+            convert_height_to_px(f, film), convert_height_to_px(f, -film));
 }
 
 enum { SPOT_PX = 170 };
@@ -512,22 +515,22 @@ static const char *const spot_colour[SPOT_COLOURS] = {"#2a52d0", "#2f9a3c",
                                                       "#d0342a"};
 
 /* Returns the height of the spot diagrams with legend and gap, pixels. */
-static double spot_diagrams_height_px(const struct figure *f)
+static double compute_spot_diagrams_height_px(const struct figure *f)
 {
     return f->drawing->spots ? BELOW_PX + SPOT_PX + LEGEND_PX : 0;
 }
 
-static double spot_diagrams_top_px(const struct figure *f)
+static double compute_spot_diagrams_top_px(const struct figure *f)
 {
     return f->middle + 0.5 * f->height_px + BELOW_PX;
 }
 
-static double length_unit_factor(double mm)
+static double get_length_unit_factor(double mm)
 {
     return mm < 1 ? 1e3 : 1;
 }
 
-static const char *length_unit_name(double mm)
+static const char *get_length_unit_name(double mm)
 {
     return mm < 1 ? "µm" : "mm";
 }
@@ -549,7 +552,7 @@ static void draw_spot_diagram(const struct figure *f, const struct spots *s,
     const double step =
         (f->drawing->width_px - 2 * FIGURE_MARGIN_PX) / DRAWING_FIELDS;
     const double cx = FIGURE_MARGIN_PX + step * (field + 0.5);
-    const double cy = spot_diagrams_top_px(f) + 0.5 * SPOT_PX;
+    const double cy = compute_spot_diagrams_top_px(f) + 0.5 * SPOT_PX;
     const double half_mm = round_up_to_1_2_5(s->radius_mm);
     const double scale = 0.5 * SPOT_PX / half_mm;
 
@@ -569,16 +572,16 @@ static void draw_spot_diagram(const struct figure *f, const struct spots *s,
             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" "
             "fill=\"#444\">side %.4g %s</text>\n",
             cx, cy - 0.5 * SPOT_PX - 7, field_colour[field], theta,
-            length_unit_factor(s->rms_mm) * s->rms_mm,
-            length_unit_name(s->rms_mm), cx, cy + 0.5 * SPOT_PX + 15,
-            length_unit_factor(half_mm) * 2 * half_mm,
-            length_unit_name(half_mm));
+            get_length_unit_factor(s->rms_mm) * s->rms_mm,
+            get_length_unit_name(s->rms_mm), cx, cy + 0.5 * SPOT_PX + 15,
+            get_length_unit_factor(half_mm) * 2 * half_mm,
+            get_length_unit_name(half_mm));
 }
 
 /* Draws the legend of colours, bottom right below the spot diagrams. */
 static void draw_colour_legend(const struct figure *f)
 {
-    const double y = spot_diagrams_top_px(f) + SPOT_PX + 34;
+    const double y = compute_spot_diagrams_top_px(f) + SPOT_PX + 34;
     const double end = f->drawing->width_px - FIGURE_MARGIN_PX;
 
     for (int c = 0; c < SPOT_COLOURS; c++) {
@@ -597,7 +600,7 @@ static void draw_all_spot_diagrams(const struct figure *f)
     struct spots s;
 
     for (int i = 0; i < DRAWING_FIELDS; i++) {
-        const double theta = field_angle_deg(f, i);
+        const double theta = get_field_angle_deg(f, i);
 
         gather_field_spots(&s, f->drawing->lens, f->drawing->plane_deg, theta);
         draw_spot_diagram(f, &s, i, theta);
@@ -605,8 +608,8 @@ static void draw_all_spot_diagrams(const struct figure *f)
     draw_colour_legend(f);
 }
 
-void lens_drawing_defaults(struct lens_drawing *d,
-                           const struct glint_prescription *lens)
+void lens_drawing_set_defaults(struct lens_drawing *d,
+                               const struct glint_prescription *lens)
 {
     *d = (struct lens_drawing){.lens = lens,
                                .ghost = -1,
@@ -632,7 +635,8 @@ static void draw_ray_path(struct figure *f, const struct fan *fan, double x,
     fprintf(f->file,
             "<path fill=\"none\" stroke=\"%s\" stroke-width=\"0.7\" "
             "stroke-linejoin=\"round\" d=\"M%.2f %.2f ",
-            colour, horizontal_px(f, back), vertical_px(f, x + slope * back));
+            colour, convert_z_to_px(f, back),
+            convert_height_to_px(f, x + slope * back));
     for (int e = 0; e < fan->path.n_events; e++) {
         const bool stop = fan->path.event[e].kind == GLINT_STOP;
         double at[2];
@@ -643,11 +647,11 @@ static void draw_ray_path(struct figure *f, const struct fan *fan, double x,
             f->drawing->lens->stop_thickness_mm < 0)
             continue;
         find_surface_hit(f, &fan->path.event[e], hits[e], at);
-        fprintf(f->file, "L%.2f %.2f ", horizontal_px(f, at[0]),
-                vertical_px(f, at[1]));
+        fprintf(f->file, "L%.2f %.2f ", convert_z_to_px(f, at[0]),
+                convert_height_to_px(f, at[1]));
     }
-    fprintf(f->file, "L%.2f %.2f\"/>\n", horizontal_px(f, f->sensor_z),
-            vertical_px(f, ray->sensor_x_mm / f->widen));
+    fprintf(f->file, "L%.2f %.2f\"/>\n", convert_z_to_px(f, f->sensor_z),
+            convert_height_to_px(f, ray->sensor_x_mm / f->widen));
     f->shown++;
 }
 
@@ -665,7 +669,8 @@ static void draw_ray_fan(struct figure *f, const struct fan *fan,
         const double u = edge[0] + share * (edge[1] - edge[0]);
 
         if (trace_fan_ray(fan, u, 0, &ray, hits))
-            draw_ray_path(f, fan, ray_start_mm(fan, u), &ray, hits, colour);
+            draw_ray_path(f, fan, compute_ray_start_mm(fan, u), &ray, hits,
+                          colour);
     }
 }
 
@@ -675,7 +680,7 @@ static void draw_field_rays(struct figure *f)
 
     for (int i = DRAWING_FIELDS - 1; i >= 0; i--)
         if (init_ray_fan(&fan, f->drawing->lens, NULL, FIGURE_NM,
-                         f->drawing->plane_deg, field_angle_deg(f, i)))
+                         f->drawing->plane_deg, get_field_angle_deg(f, i)))
             draw_ray_fan(f, &fan, field_colour[i]);
 }
 
@@ -755,7 +760,7 @@ static void open_svg_file(const struct figure *f)
 {
     const double width = f->drawing->width_px;
     const double height = f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX +
-                          spot_diagrams_height_px(f);
+                          compute_spot_diagrams_height_px(f);
 
     fprintf(f->file,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%.0f\" "
@@ -768,7 +773,7 @@ static void open_svg_file(const struct figure *f)
             "width=\"%.1f\" height=\"%.1f\"/></clipPath></defs>\n"
             "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
             width, height, width, height, f->drawing->lens->name,
-            f->drawing->lens->name, horizontal_px(f, f->z0),
+            f->drawing->lens->name, convert_z_to_px(f, f->z0),
             f->middle - 0.5 * f->height_px, f->scale * (f->z1 - f->z0),
             f->height_px);
 }

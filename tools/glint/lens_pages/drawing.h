@@ -28,8 +28,8 @@ struct lens_drawing {
     double width_px;
 };
 
-void lens_drawing_defaults(struct lens_drawing *drawing,
-                           const struct glint_prescription *lens);
+void lens_drawing_set_defaults(struct lens_drawing *drawing,
+                               const struct glint_prescription *lens);
 
 /* Writes the figure to FILE. Returns the number of rays in it. */
 int lens_drawing_write(const struct lens_drawing *drawing, FILE *file);

@@ -53,7 +53,8 @@ static bool read_table_row(const char *line, const char *name,
            read_table_cell(&line, measured->ms, sizeof measured->ms);
 }
 
-enum glint_status measured_read_row(const char *name, struct measured *measured)
+enum glint_status page_read_measured_times(const char *name,
+                                           struct measured *measured)
 {
     static const char file_name[] = "/figures.md";
     char path[PATH_CHARS], line[LINE_CHARS];
@@ -88,7 +89,7 @@ static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
 /* Returns the angle, degrees, at the fraction AT of the half diagonal by the
  * pinhole projection (f tan), which positions lamps in images. */
-static double field_angle_deg(const struct opened_lens *lens, double at)
+static double compute_field_angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =
         0.5 * hypot(lens->table.film_width_mm, lens->table.film_height_mm);
@@ -157,7 +158,8 @@ static int draw_lens_thumbnails(const struct tool *tool,
     if (image.rgb && star)
         status = glint_engine_create(&engine, &cfg, &error);
     for (int i = 0; i < ANGLES && status == GLINT_OK; i++)
-        status = draw_thumbnail_flare(engine, field_angle_deg(lens, share[i]),
+        status = draw_thumbnail_flare(engine,
+                                      compute_field_angle_deg(lens, share[i]),
                                       &image, star, file);
     glint_engine_destroy(engine);
     free(star);
@@ -165,8 +167,9 @@ static int draw_lens_thumbnails(const struct tool *tool,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-int thumbnails_write(const struct tool *tool, const struct settings *settings,
-                     const char *name, FILE *file, size_t *model_bytes)
+int page_write_thumbnails(const struct tool *tool,
+                          const struct settings *settings, const char *name,
+                          FILE *file, size_t *model_bytes)
 {
     struct opened_lens *const lens = calloc(1, sizeof *lens);
     int code;
@@ -200,17 +203,18 @@ static const char style[] =
     ".less{color:#666;font-size:.87em}";
 
 static const char head[] =
-    "<header><p>Sections have rays from the middle of the picture, blue, 0.7 "
-    "of the "
-    "way to its corner, green, and nearly all of it, red. Flares are of a "
-    "lamp a quarter, half and four fifths of the way. <code>glint overlay "
-    "photo.jpg -o out.jpg --lens NAME</code> looks through one.</p>\n"
+    "<header><p>Sections show rays of three points of the picture: its centre "
+    "(blue), 0.7 of the way to the corner (green) and nearly the corner (red). "
+    "Flares show a lamp at a quarter, half and four fifths of the way to the "
+    "corner. <code>glint overlay photo.jpg -o out.jpg --lens NAME</code> draws "
+    "the flare of a lens.</p>\n"
     "<p hidden id=\"tools\"><input id=\"find\" type=\"search\" "
-    "placeholder=\"words: zoom, zeiss, 1935, streak\"> <select id=\"by\">"
-    "<option value=\"\">by name<option value=\"focal\">by focal length"
-    "<option value=\"angle\">by angle<option value=\"f\">by f-number"
-    "<option value=\"ghosts\">by ghosts</select> <output id=\"n\"></output>"
-    "</p></header>\n<main>\n";
+    "placeholder=\"words: zoom, zeiss, 1935, streak\"> <select "
+    "id=\"by\"><option value=\"\">by name<option value=\"focal\">by focal "
+    "length<option value=\"angle\">by angle<option value=\"f\">by "
+    "f-number<option value=\"ghosts\">by ghosts</select> <output "
+    "id=\"n\"></output></p></header>\n"
+    "<main>\n";
 
 /* Script of the page. The search matches the text of a card except the glass
  * names in its section. */
@@ -271,7 +275,7 @@ void page_begin_card(FILE *file, const struct page_card *card)
         fputs("</p>\n", file);
     }
     print_lens_numbers(file, card);
-    lens_drawing_defaults(&drawing, card->lens);
+    lens_drawing_set_defaults(&drawing, card->lens);
     drawing.spots = drawing.title = false;
     drawing.width_px = SECTION_PX;
     lens_drawing_write(&drawing, file);

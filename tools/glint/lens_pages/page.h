@@ -29,16 +29,17 @@ struct page_card {
 
 /* Reads the row of lens NAME; without one, f_number is "". Returns
  * GLINT_E_MEMORY if there is no memory to read it. */
-enum glint_status measured_read_row(const char *name,
-                                    struct measured *measured);
+enum glint_status page_read_measured_times(const char *name,
+                                           struct measured *measured);
 
 /* Writes to FILE three <img>: the flare of a lamp at 0.25, 0.5 and 0.8 of
  * the distance to the film's corner. SETTINGS must be the defaults. NAME is
  * the lens; rays are exact if its model is not baked. MODEL_BYTES receives
  * the size of the model, 0 if there is none. Returns an exit code, after
  * printing the reason on failure. */
-int thumbnails_write(const struct tool *tool, const struct settings *settings,
-                     const char *name, FILE *file, size_t *model_bytes);
+int page_write_thumbnails(const struct tool *tool,
+                          const struct settings *settings, const char *name,
+                          FILE *file, size_t *model_bytes);
 
 void page_write_head(FILE *file);
 

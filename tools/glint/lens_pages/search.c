@@ -58,7 +58,7 @@ static void suggest_words_of_text(struct suggest *suggest, const char *text)
     char small[SUGGEST_CHARS];
     size_t n = 0;
 
-    suggest_consider(suggest, text, strlen(text));
+    suggest_add_candidate(suggest, text, strlen(text));
     for (;; text++) {
         const int c = tolower((unsigned char)*text);
 
@@ -66,7 +66,7 @@ static void suggest_words_of_text(struct suggest *suggest, const char *text)
             small[n++] = (char)c;
         else if (!isalnum(c)) {
             if (n > 3)
-                suggest_consider(suggest, small, n);
+                suggest_add_candidate(suggest, small, n);
             n = 0;
         }
         if (!c)
@@ -74,7 +74,7 @@ static void suggest_words_of_text(struct suggest *suggest, const char *text)
     }
 }
 
-static bool search_lens_words(void *ctx, const char *name)
+static bool search_words_in_lens(void *ctx, const char *name)
 {
     struct search *s = ctx;
 
@@ -114,7 +114,7 @@ int lens_report_unknown_words(const struct tool *tool, char **words, int n)
             *c = (char)tolower((unsigned char)*c);
         for (int k = 0; k < N_PLACES; k++)
             suggest_begin(&s.near[k], s.small);
-        lens_files_visit_all(search_lens_words, &s);
+        lens_files_visit_all(search_words_in_lens, &s);
     }
     free(s.lens);
     best = find_similar_word(&s);
@@ -140,11 +140,11 @@ static bool compare_lens_name(void *ctx, const char *name)
     struct wanted *w = ctx;
 
     w->found = strcmp(name, w->name) == 0;
-    suggest_consider(&w->near, name, strlen(name));
+    suggest_add_candidate(&w->near, name, strlen(name));
     return !w->found;
 }
 
-int lens_check_names(const char *const *names, int n)
+int lens_check_requested_names(const char *const *names, int n)
 {
     for (int i = 0; i < n; i++) {
         struct wanted w = {.name = names[i]};

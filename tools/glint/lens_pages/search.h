@@ -16,6 +16,6 @@ int lens_report_unknown_words(const struct tool *tool, char **words, int n);
 
 /* Rejects the first of N NAMES that is not a lens of the library, and prints a
  * similar name. Returns an exit code. */
-int lens_check_names(const char *const *names, int n);
+int lens_check_requested_names(const char *const *names, int n);
 
 #endif

@@ -40,7 +40,8 @@ struct live_output {
     enum glint_panel_fit fit;
     struct glint_sink *sink; /* open sink; NULL if closed */
     union {
-        struct glint_sink sink; /* first member of every variant */
+        struct glint_sink sink; /* base of all types of output: the first member
+                                 * of each of them */
         struct glint_fbdev fb;
         struct glint_y4m_sink y4m;
         struct glint_v4l2_sink v4l2;
@@ -63,14 +64,15 @@ enum glint_status live_output_open(struct live_output *output,
                                    int fps_den, struct glint_error *error);
 
 /* Describe an open output. live_output_describe() writes a description to TEXT,
- * "" if the output's name suffices, and returns TEXT. live_output_find_note()
- * returns the description of a problem with the output, or NULL. */
+ * "" if the output's name suffices, and returns TEXT.
+ * live_output_get_console_note() returns the description of a problem with the
+ * output, or NULL. */
 const char *live_output_describe(const struct live_output *output, char *text,
                                  size_t size);
-const char *live_output_find_note(const struct live_output *output);
+const char *live_output_get_console_note(const struct live_output *output);
 
 /* Returns the number of frames that OUTPUT dropped because it was busy. */
-long live_output_count_dropped(const struct live_output *output);
+long live_output_count_dropped_frames(const struct live_output *output);
 
 /* Closes OUTPUT, unless it is closed already, and renames its file, if any, to
  * its path. */

@@ -5,7 +5,8 @@
 
 #include "glint/quality.h"
 
-#define TIGHT 0.9 /* fraction of a period; above it quality drops */
+/* busy fraction of a frame period above which quality is reduced */
+#define TIGHT 0.9
 /* busy fraction of a frame period below which the quality may increase after
  * some time */
 #define SPARE      0.55
@@ -78,13 +79,13 @@ bool live_adapt_add_frame(struct live_adapt *a, double busy_ms,
     return a->below_s >= a->hold_s && change_quality_step(a, -1);
 }
 
-double live_adapt_scene_quality(const struct live_adapt *a)
+double live_adapt_get_max_scene_quality(const struct live_adapt *a)
 {
     return a->step > 0 ? step_of[a->step].quality : 1;
 }
 
-struct glint_dials live_adapt_set_dials(const struct live_adapt *a,
-                                        struct glint_dials asked)
+struct glint_dials live_adapt_coarsen_parameters(const struct live_adapt *a,
+                                                 struct glint_dials asked)
 {
     struct glint_dials d = asked;
 

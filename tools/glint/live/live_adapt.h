@@ -38,10 +38,10 @@ bool live_adapt_add_frame(struct live_adapt *adapt, double busy_ms,
                           double period_ms, int n_missed);
 
 /* Returns the quality parameters ASKED, coarsened to ADAPT's step. */
-struct glint_dials live_adapt_set_dials(const struct live_adapt *adapt,
-                                        struct glint_dials asked);
+struct glint_dials live_adapt_coarsen_parameters(const struct live_adapt *adapt,
+                                                 struct glint_dials asked);
 
 /* Returns the max --quality for drawing a scene at this step. */
-double live_adapt_scene_quality(const struct live_adapt *adapt);
+double live_adapt_get_max_scene_quality(const struct live_adapt *adapt);
 
 #endif

@@ -17,8 +17,8 @@ static void ignore_returned_frame(struct glint_source *source,
     (void)source, (void)frame;
 }
 
-static void get_timed_format(const struct glint_source *source,
-                             struct glint_source_format *format)
+static void get_timed_source_format(const struct glint_source *source,
+                                    struct glint_source_format *format)
 {
     *format = ((const struct live_timed *)source)->format;
 }
@@ -61,7 +61,7 @@ static void init_timed_source(struct live_timed *timed,
                                           .has_signal = true,
                                           .start = start_frame_timer,
                                           .done = ignore_returned_frame,
-                                          .describe = get_timed_format};
+                                          .describe = get_timed_source_format};
     timed->format = *format;
     timed->name = wish->device;
     timed->timer = -1;
@@ -83,7 +83,7 @@ static void init_timed_source(struct live_timed *timed,
 
 /* Returns the number of frames due now. The first is due at once; without a
  * timer one is due at every call. */
-static uint64_t count_due_frames(struct live_timed *timed)
+static uint64_t count_frames_due_by_now(struct live_timed *timed)
 {
     uint64_t n = 0;
 
@@ -97,7 +97,7 @@ static uint64_t count_due_frames(struct live_timed *timed)
 static uint64_t begin_timed_frame(struct live_timed *timed,
                                   struct glint_source_frame *frame)
 {
-    const uint64_t n = count_due_frames(timed);
+    const uint64_t n = count_frames_due_by_now(timed);
 
     *frame = (struct glint_source_frame){.is_drawable = true};
     if (n > 0)
@@ -128,7 +128,7 @@ static void stop_frame_timer(struct live_timed *timed)
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
 
 /* Returns a 32-bit hash of X. */
-static uint32_t hash_bits(uint32_t x)
+static uint32_t hash_32_bits(uint32_t x)
 {
     x = (x ^ x >> 16) * 0x7feb352du;
     x = (x ^ x >> 15) * 0x846ca68bu;
@@ -137,12 +137,12 @@ static uint32_t hash_bits(uint32_t x)
 
 /* Draws house number HOUSE from the bottom up. Some windows are lit, none so
  * bright that it would count as a lamp. */
-static void draw_house(struct live_timed *s, int house)
+static void draw_house_of_test_street(struct live_timed *s, int house)
 {
     const int w = s->image.width, h = s->image.height;
     const int left = house * w / HOUSES, right = (house + 1) * w / HOUSES;
     const int tall =
-        h / 5 + (int)(hash_bits((uint32_t)house + 7) % 100) * h / 400;
+        h / 5 + (int)(hash_32_bits((uint32_t)house + 7) % 100) * h / 400;
     const int pane = 2 + h / 120;
 
     for (int y = h - tall; y < h; y++)
@@ -150,7 +150,7 @@ static void draw_house(struct live_timed *s, int house)
             const int column = (x - left) / (2 * pane),
                       row = (y - h + tall) / (3 * pane);
             const uint32_t bits =
-                hash_bits((uint32_t)(house * 997 + column * 31 + row * 7));
+                hash_32_bits((uint32_t)(house * 997 + column * 31 + row * 7));
             const int is_pane = (x - left) % (2 * pane) < pane &&
                                 (y - h + tall) % (3 * pane) < 2 * pane;
 
@@ -167,7 +167,7 @@ static void draw_test_street(struct live_timed *s)
         memset(s->still + (size_t)y * (size_t)w, DARKEST + 14 * y / h,
                (size_t)w);
     for (int house = 0; house < HOUSES; house++)
-        draw_house(s, house);
+        draw_house_of_test_street(s, house);
 }
 
 /* Copies the static street to the frame and adds noise of -1 .. 2 codes that
@@ -175,7 +175,7 @@ static void draw_test_street(struct live_timed *s)
 static void draw_frame_background(struct live_timed *s, int64_t n)
 {
     const int w = s->image.width;
-    uint32_t bits = hash_bits(s->seed * 2654435761u + (uint32_t)n) | 1;
+    uint32_t bits = hash_32_bits(s->seed * 2654435761u + (uint32_t)n) | 1;
 
     for (int y = 0; y < s->image.height; y++) {
         uint8_t *row = s->image.plane[0] + y * s->image.stride_bytes[0];
@@ -192,7 +192,8 @@ static void draw_frame_background(struct live_timed *s, int64_t n)
 
 /* Adds a disc of RADIUS pixels at (CX, CY), with a halo that falls with the
  * square of the distance. */
-static void add_lamp(struct live_timed *s, double cx, double cy, double radius)
+static void add_lamp_to_test_frame(struct live_timed *s, double cx, double cy,
+                                   double radius)
 {
     const int reach = (int)(12 * radius) + 1;
 
@@ -230,16 +231,16 @@ static void draw_test_frame(struct live_timed *s, int64_t n)
              y++)
             memset(i->plane[p] + y * i->stride_bytes[p], p == 1 ? 134 : 125,
                    glint_image_row_bytes(i->format, p, i->width));
-    add_lamp(s, i->width * (0.5 + 0.32 * cos(angle)),
-             i->height * (0.38 + 0.25 * sin(angle)),
-             fmax(1.5, i->height / 120.0));
+    add_lamp_to_test_frame(s, i->width * (0.5 + 0.32 * cos(angle)),
+                           i->height * (0.38 + 0.25 * sin(angle)),
+                           fmax(1.5, i->height / 120.0));
 }
 
 /* ------------------------------------------------------------------- source */
 
-static enum glint_status next_test_frame(struct glint_source *source,
-                                         struct glint_source_frame *frame,
-                                         struct glint_error *error)
+static enum glint_status read_next_test_frame(struct glint_source *source,
+                                              struct glint_source_frame *frame,
+                                              struct glint_error *error)
 {
     struct live_timed *s = (struct live_timed *)source;
     const uint64_t n = begin_timed_frame(s, frame);
@@ -316,16 +317,16 @@ static enum glint_status open_test_image(struct live_timed *test,
                                   image.height);
     init_timed_source(test, &(struct glint_source_format){.image = image}, wish,
                       is_black ? "black" : "a lamp over a night street");
-    test->source.next = next_test_frame;
+    test->source.next = read_next_test_frame;
     test->source.close = close_test_image;
     return GLINT_OK;
 }
 
 /* Reads the last frame due, or the last frame of the video if it ends earlier.
  * Skipped frames count as late. */
-static enum glint_status next_video_frame(struct glint_source *source,
-                                          struct glint_source_frame *frame,
-                                          struct glint_error *error)
+static enum glint_status read_next_video_frame(struct glint_source *source,
+                                               struct glint_source_frame *frame,
+                                               struct glint_error *error)
 {
     struct live_timed *v = (struct live_timed *)source;
     const uint64_t n = begin_timed_frame(v, frame);
@@ -380,7 +381,7 @@ static enum glint_status open_video_input(struct live_timed *video,
                                       .fps_num = h->fps_num,
                                       .fps_den = h->fps_den},
         wish, "a video");
-    video->source.next = next_video_frame;
+    video->source.next = read_next_video_frame;
     video->source.close = close_video_input;
     if (strcmp(wish->device, "-") == 0)
         video->source.fd = video->reader.in.fd;

@@ -18,7 +18,7 @@ static const char *const stage_names[LIVE_N_STAGES] = {
 
 /* ---------------------------------------------------------------- counting */
 
-static void start_frame_sums(struct live_sums *sums, int64_t now_us)
+static void reset_frame_sums(struct live_sums *sums, int64_t now_us)
 {
     memset(sums, 0, sizeof *sums);
     sums->began_us = now_us;
@@ -26,8 +26,8 @@ static void start_frame_sums(struct live_sums *sums, int64_t now_us)
 
 void live_stats_start(struct live_stats *stats, int64_t now_us)
 {
-    start_frame_sums(&stats->second, now_us);
-    start_frame_sums(&stats->total, now_us);
+    reset_frame_sums(&stats->second, now_us);
+    reset_frame_sums(&stats->total, now_us);
 }
 
 bool live_stats_is_second_over(const struct live_stats *stats, int64_t now_us)
@@ -37,12 +37,12 @@ bool live_stats_is_second_over(const struct live_stats *stats, int64_t now_us)
 
 void live_stats_begin_second(struct live_stats *stats, int64_t now_us)
 {
-    start_frame_sums(&stats->second, now_us);
+    reset_frame_sums(&stats->second, now_us);
 }
 
 /* Counts a latency of US microseconds. If a bin is full, all bins are
  * halved, which preserves percentiles; nonzero bins stay nonzero. */
-static void count_latency(struct live_sums *s, int64_t us)
+static void add_latency_to_histogram(struct live_sums *s, int64_t us)
 {
     const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
     uint32_t *const bin = &s->bin[at < LIVE_BINS ? at : LIVE_BINS];
@@ -60,7 +60,7 @@ static void add_frame_to_sums(struct live_sums *s,
     s->frames++;
     for (int i = 0; i < LIVE_N_STAGES; i++)
         s->stage_us[i] += (uint64_t)(t->stage_us[i] > 0 ? t->stage_us[i] : 0);
-    count_latency(s, t->shown_us - t->captured_us);
+    add_latency_to_histogram(s, t->shown_us - t->captured_us);
     s->most_lights = t->lights > s->most_lights ? t->lights : s->most_lights;
     s->most_ghosts = t->ghosts > s->most_ghosts ? t->ghosts : s->most_ghosts;
     s->most_bytes = t->bytes > s->most_bytes ? t->bytes : s->most_bytes;
@@ -104,14 +104,14 @@ double live_stats_latency_ms(const struct live_sums *sums, int percent)
            1e3;
 }
 
-static double seconds_since(int64_t began_us, int64_t now_us)
+static double compute_seconds_since(int64_t began_us, int64_t now_us)
 {
     return 1e-6 * (double)(now_us - began_us);
 }
 
 static double compute_fps(const struct live_sums *s, int64_t now_us)
 {
-    const double seconds = seconds_since(s->began_us, now_us);
+    const double seconds = compute_seconds_since(s->began_us, now_us);
 
     return seconds > 0 ? (double)s->frames / seconds : 0;
 }
@@ -176,8 +176,8 @@ char *live_stats_write_json(const struct live_stats *stats, int64_t now_us,
     append(&w,
            "{\"t\":%.3f,\"fps\":%.2f,\"frames\":%" PRIu64 ",\"drops\":%" PRIu64
            ",\"late\":%" PRIu64 ",\"corrupt\":%" PRIu64 ",\"latency_ms_p50\":",
-           seconds_since(stats->total.began_us, now_us), compute_fps(s, now_us),
-           s->frames, s->drops, s->late, s->corrupt);
+           compute_seconds_since(stats->total.began_us, now_us),
+           compute_fps(s, now_us), s->frames, s->drops, s->late, s->corrupt);
     append_latency_ms(&w, s, 50);
     append(&w, ",\"latency_ms_p99\":");
     append_latency_ms(&w, s, 99);
@@ -264,7 +264,7 @@ static bool is_terminal_line_overwritten(const struct live_log *log)
     return log->report == LIVE_REPORT_LINE && isatty(STDERR_FILENO);
 }
 
-void live_log_print(const struct live_log *log, const char *text)
+void live_log_print_message(const struct live_log *log, const char *text)
 {
     if (!log->tool->quiet)
         fprintf(stderr, "%sglint live: %s\n",
@@ -282,8 +282,8 @@ int live_log_print_error(const struct live_log *log, enum glint_status status,
     return tool_fail(log->tool, status, text);
 }
 
-void live_log_warn_memory(struct live_log *log,
-                          const struct glint_flare_stats *of)
+void live_log_warn_of_memory_limit(struct live_log *log,
+                                   const struct glint_flare_stats *of)
 {
     char text[160];
 
@@ -296,7 +296,7 @@ void live_log_warn_memory(struct live_log *log,
              "of %d edges are left out",
              of->dropped_bundles, of->need_bundles,
              of->need_primitives - of->primitives, of->need_primitives);
-    live_log_print(log, text);
+    live_log_print_message(log, text);
 }
 
 static void print_statistics(const struct live_log *log, bool total)
@@ -342,11 +342,11 @@ void live_log_print_summary(struct live_log *log, bool is_well, int n_shown,
         n_shown, n_refused, (unsigned long long)t->drops,
         (unsigned long long)t->late, (unsigned long long)t->corrupt,
         live_stats_latency_ms(t, 50), live_stats_latency_ms(t, 99));
-    live_log_print(log, text);
+    live_log_print_message(log, text);
     if (log->n_short) {
         snprintf(text, sizeof text,
                  "%d frames are incomplete because --memory is too small",
                  log->n_short);
-        live_log_print(log, text);
+        live_log_print_message(log, text);
     }
 }

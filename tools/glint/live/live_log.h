@@ -36,7 +36,7 @@ enum live_stage {
 enum {
     LIVE_BINS = 10000,    /* number of latency bins */
     LIVE_BIN_US = 100,    /* width of a bin, microseconds */
-    LIVE_STATS_TEXT = 672 /* max bytes of any line */
+    LIVE_STATS_TEXT = 672 /* max bytes of a line of statistics, with its end */
 };
 
 /* Times of one frame, or only counts of lost frames. */
@@ -126,12 +126,12 @@ int live_log_print_error(const struct live_log *log, enum glint_status status,
                          const struct glint_error *error, const char *instead);
 
 /* Prints TEXT on a line of its own, unless -q is given. */
-void live_log_print(const struct live_log *log, const char *text);
+void live_log_print_message(const struct live_log *log, const char *text);
 
 /* Counts a frame that, by its statistics OF, was drawn incompletely because
  * of the memory limit. Reports the first such frame. */
-void live_log_warn_memory(struct live_log *log,
-                          const struct glint_flare_stats *of);
+void live_log_warn_of_memory_limit(struct live_log *log,
+                                   const struct glint_flare_stats *of);
 
 /* Prints the statistics of the last second if it has ended or IS_ASKED, and
  * begins the next second. */

@@ -26,8 +26,8 @@ struct live {
     /* number of restarts of the input when FORMAT was read */
     int n_restarts;
     struct live_output output;
-    struct live_copy
-        copy; /* buffer for copies of frames whose own memory is slow to read */
+    /* buffer for copies of frames whose own memory is slow to read */
+    struct live_copy copy;
 
     struct live_adapt adapt;
     /* requested quality parameters, before adaptation */
@@ -59,9 +59,9 @@ static enum glint_status start_live_input(struct live *l,
 
     if (status != GLINT_OK)
         return status;
-    live_log_print(&l->log, l->format.text);
+    live_log_print_message(&l->log, l->format.text);
     if (l->tool->verbose && l->format.detail)
-        live_log_print(&l->log, l->format.detail);
+        live_log_print_message(&l->log, l->format.detail);
     return GLINT_OK;
 }
 
@@ -70,9 +70,10 @@ static void print_output_description(const struct live *l)
     char text[320];
 
     if (*live_output_describe(&l->output, text, sizeof text))
-        live_log_print(&l->log, text);
-    if (l->tool->verbose && live_output_find_note(&l->output))
-        live_log_print(&l->log, live_output_find_note(&l->output));
+        live_log_print_message(&l->log, text);
+    if (l->tool->verbose && live_output_get_console_note(&l->output))
+        live_log_print_message(&l->log,
+                               live_output_get_console_note(&l->output));
 }
 
 static enum glint_status open_camera(struct live *l, struct glint_error *error)
@@ -106,10 +107,11 @@ static int open_live_output(struct live *l, const struct glint_image *image)
         l->retry_us = glint_get_time_us() + 1000 * RETRY_MS;
         return EXIT_OK;
     }
-    return live_log_print_error(&l->log, status, &error,
-                                l->output.kind == LIVE_OUTPUT_FB
-                                    ? "-o window, or -o y4m:- into a player"
-                                    : NULL);
+    return live_log_print_error(
+        &l->log, status, &error,
+        l->output.kind == LIVE_OUTPUT_FB
+            ? "use -o window, or pipe -o y4m:- into a player"
+            : NULL);
 }
 
 /* Applies the current quality step to flare and scene. Returns an exit code. */
@@ -117,11 +119,12 @@ static int apply_quality_step(struct live *l)
 {
     struct drawing *drawing = &l->o->drawing;
     const enum glint_status status = over_scene_set_quality(
-        &drawing->files.scene, live_adapt_scene_quality(&l->adapt));
+        &drawing->files.scene, live_adapt_get_max_scene_quality(&l->adapt));
 
     if (drawing->run.engine)
-        glint_engine_set_dials(drawing->run.engine,
-                               live_adapt_set_dials(&l->adapt, l->asked));
+        glint_engine_set_dials(
+            drawing->run.engine,
+            live_adapt_coarsen_parameters(&l->adapt, l->asked));
     return status == GLINT_OK ? EXIT_OK : tool_fail(l->tool, status, NULL);
 }
 
@@ -168,10 +171,10 @@ static void save_snapshot_image(struct live *l, const struct glint_image *image)
              status == GLINT_OK ? ""
              : *error.text      ? error.text
                                 : glint_status_text(status));
-    live_log_print(&l->log, text);
+    live_log_print_message(&l->log, text);
 }
 
-static double frame_period_ms(const struct live *l)
+static double get_frame_period_ms(const struct live *l)
 {
     const struct glint_source_format *f = &l->format;
 
@@ -191,9 +194,9 @@ static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
     const int before = l->adapt.step;
     char text[96];
 
-    if (!is_quality_adaptive(l->o) || frame_period_ms(l) == 0 ||
+    if (!is_quality_adaptive(l->o) || get_frame_period_ms(l) == 0 ||
         !live_adapt_add_frame(&l->adapt, 1e-3 * (double)busy_us,
-                              frame_period_ms(l), n_missed))
+                              get_frame_period_ms(l), n_missed))
         return;
     apply_quality_step(l);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
@@ -201,7 +204,7 @@ static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
                                     : "raised",
              l->adapt.step, LIVE_MAX_STEP,
              l->adapt.step == LIVE_MAX_STEP ? ", the lowest" : "");
-    live_log_print(&l->log, text);
+    live_log_print_message(&l->log, text);
 }
 
 static int64_t convert_s_to_us(double ms)
@@ -235,7 +238,7 @@ static void record_frame_statistics(struct live *l,
         t.ghosts = drawing->run.report.ghosts;
         t.bytes = drawing->run.report.peak_bytes +
                   drawing->run.report.star_bytes +
-                  over_scene_memory_bytes(&drawing->files.scene);
+                  over_scene_count_memory_bytes(&drawing->files.scene);
         t.reused = drawing->run.report.stats.reused != 0;
         t.quality = 1 - (double)l->adapt.step / LIVE_MAX_STEP;
     }
@@ -247,7 +250,7 @@ static void record_frame_statistics(struct live *l,
 /* Prints that device WHAT was lost. With --reconnect the run waits for the
  * device, and the panel shows the last image. Returns -1 to continue, or an
  * exit code. */
-static int handle_device_loss(struct live *l, const char *what,
+static int report_device_loss(struct live *l, const char *what,
                               enum glint_status status, const char *why)
 {
     char text[320];
@@ -255,7 +258,7 @@ static int handle_device_loss(struct live *l, const char *what,
     if (!l->o->reconnect || status != GLINT_E_DEVICE)
         return tool_fail(l->tool, status, why);
     snprintf(text, sizeof text, "%s; waiting for the %s", why, what);
-    live_log_print(&l->log, text);
+    live_log_print_message(&l->log, text);
     return -1;
 }
 
@@ -263,7 +266,7 @@ static int handle_camera_loss(struct live *l, enum glint_status status,
                               const char *why)
 {
     live_input_close(&l->in);
-    return handle_device_loss(l, "camera", status, why);
+    return report_device_loss(l, "camera", status, why);
 }
 
 static int handle_output_loss(struct live *l, enum glint_status status,
@@ -273,7 +276,7 @@ static int handle_output_loss(struct live *l, enum glint_status status,
 
     live_output_close(&l->output, &unsaid);
     l->retry_us = glint_get_time_us() + 1000 * RETRY_MS;
-    return handle_device_loss(l, "output", status, why);
+    return report_device_loss(l, "output", status, why);
 }
 
 /* Tries to reopen the camera. Returns -1 to continue, or an exit code. */
@@ -290,7 +293,7 @@ static int retry_camera(struct live *l)
             return -1;
     }
     if (strcmp(error.text, l->why.text) != 0)
-        live_log_print(&l->log, error.text);
+        live_log_print_message(&l->log, error.text);
     l->why = error;
     live_signals_wait(-1, RETRY_MS);
     return -1;
@@ -298,7 +301,7 @@ static int retry_camera(struct live *l)
 
 /* Returns the microseconds since the previous frame, at most 1e9; 40000 for
  * the first frame or if no time has passed. */
-static int32_t elapsed_us(struct live *l, int64_t time_us)
+static int32_t compute_elapsed_us(struct live *l, int64_t time_us)
 {
     const int64_t before_us = l->time_us;
     const int64_t elapsed = time_us - before_us;
@@ -311,8 +314,9 @@ static int32_t elapsed_us(struct live *l, int64_t time_us)
 
 /* Draws and shows FRAME, which was requested at TAKEN_US. Returns -1 to
  * continue, or an exit code. */
-static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
-                         int64_t taken_us)
+static int draw_and_show_frame(struct live *l,
+                               const struct glint_source_frame *frame,
+                               int64_t taken_us)
 {
     struct drawing *drawing = &l->o->drawing;
     const struct glint_image *image = &frame->image;
@@ -329,11 +333,12 @@ static int draw_and_show(struct live *l, const struct glint_source_frame *frame,
     if (code != EXIT_OK)
         return code;
     at_us[1] = glint_get_time_us();
-    status = drawing_draw_flare(drawing, image, elapsed_us(l, frame->time_us));
+    status = drawing_draw_flare(drawing, image,
+                                compute_elapsed_us(l, frame->time_us));
     if (status != GLINT_OK)
         return tool_fail(l->tool, status, NULL);
-    live_log_warn_memory(&l->log, &drawing->run.report.stats);
-    if (live_signals_is_raised(LIVE_SNAPSHOT))
+    live_log_warn_of_memory_limit(&l->log, &drawing->run.report.stats);
+    if (live_signals_has_arrived(LIVE_SNAPSHOT))
         save_snapshot_image(l, image);
     code = open_live_output(l, image);
     if (code != EXIT_OK)
@@ -356,7 +361,7 @@ static void report_stop_signal(struct live *l)
     const bool has = l->in.source->has_signal;
 
     if (has != l->had_signal)
-        live_log_print(
+        live_log_print_message(
             &l->log,
             has ? "the camera has a signal again"
                 : "the camera reports no signal; its frames may be blank");
@@ -398,7 +403,7 @@ static int process_next_frame(struct live *l)
     if (l->o->skip > 0)
         l->o->skip--;
     else
-        code = draw_and_show(l, &frame, taken_us);
+        code = draw_and_show_frame(l, &frame, taken_us);
     source->done(source, &frame);
     return code;
 }
@@ -423,20 +428,20 @@ static void reload_config_and_lens(struct live *l)
     struct live_options *fresh = calloc(1, sizeof *fresh);
 
     if (!fresh) {
-        live_log_print(&l->log, "not reloaded: out of memory");
+        live_log_print_message(&l->log, "not reloaded: out of memory");
         return;
     }
     l->tool->no_bake = true;
     if (l->reread(l->ctx, l->tool, fresh) < 0 &&
         check_config_names_lens(l, fresh) &&
         drawing_open(l->tool, &fresh->drawing) == EXIT_OK) {
-        drawing_replace(&l->o->drawing, &fresh->drawing);
+        drawing_replace_settings_and_lens(&l->o->drawing, &fresh->drawing);
         live_adapt_init(&l->adapt);
-        live_log_print(&l->log, "reloaded");
+        live_log_print_message(&l->log, "reloaded");
     } else {
         drawing_close(&fresh->drawing);
-        live_log_print(&l->log,
-                       "not reloaded: the previous configuration stays in use");
+        live_log_print_message(
+            &l->log, "not reloaded: the previous configuration stays in use");
     }
     free(fresh);
 }
@@ -445,19 +450,20 @@ static int run_frame_loop(struct live *l)
 {
     int code = -1;
 
-    while (code < 0 && !live_signals_is_raised(LIVE_STOP) &&
+    while (code < 0 && !live_signals_has_arrived(LIVE_STOP) &&
            (l->o->count == 0 || l->n_shown < l->o->count)) {
-        if (live_signals_is_raised(LIVE_RELOAD))
+        if (live_signals_has_arrived(LIVE_RELOAD))
             reload_config_and_lens(l);
         if (!l->in.source) {
             code = retry_camera(l);
             live_log_print_second(&l->log,
-                                  live_signals_is_raised(LIVE_REPORT_NOW));
+                                  live_signals_has_arrived(LIVE_REPORT_NOW));
             continue;
         }
         live_signals_wait(l->in.source->fd, WAIT_MS);
         code = process_next_frame(l);
-        live_log_print_second(&l->log, live_signals_is_raised(LIVE_REPORT_NOW));
+        live_log_print_second(&l->log,
+                              live_signals_has_arrived(LIVE_REPORT_NOW));
     }
     return code < 0 ? EXIT_OK : code;
 }
@@ -479,7 +485,8 @@ static int start_live_run(struct live *l)
     code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
-    live_signals_install(); /* before this call a signal ends the run at once */
+    live_signals_install(); /* Until this call a signal kills the process at
+                             * once. */
     code = set_up_drawing_and_output(l);
     if (code != EXIT_OK)
         return code;
@@ -503,7 +510,10 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
     live_adapt_init(&l->adapt);
     code = live_output_parse(&l->output, o->output)
                ? EXIT_OK
-               : tool_usage(tool, "-o: '%s' is not an output", o->output);
+               : tool_usage(tool,
+                            "-o: '%s' is not an output; expected fb, window, "
+                            "FILE.y4m, y4m:-, v4l2:DEVICE or null",
+                            o->output);
     l->output.fit = o->fit;
     live_log_init(&l->log, tool, o->report,
                   l->output.kind == LIVE_OUTPUT_Y4M &&
@@ -516,7 +526,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
         if (code == EXIT_OK)
             code = drawing_finish_lamp_file(tool, &o->drawing);
         live_log_print_summary(&l->log, code == EXIT_OK, l->n_shown,
-                               live_output_count_dropped(&l->output));
+                               live_output_count_dropped_frames(&l->output));
     }
     live_input_close(&l->in);
     status = live_output_close(&l->output, &error);

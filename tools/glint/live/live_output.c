@@ -75,13 +75,13 @@ const char *live_output_describe(const struct live_output *o, char *text,
     return text;
 }
 
-const char *live_output_find_note(const struct live_output *o)
+const char *live_output_get_console_note(const struct live_output *o)
 {
     return o->kind == LIVE_OUTPUT_FB && o->as.fb.has_note ? o->as.fb.note.text
                                                           : NULL;
 }
 
-long live_output_count_dropped(const struct live_output *o)
+long live_output_count_dropped_frames(const struct live_output *o)
 {
     return !o->sink                      ? 0
            : o->kind == LIVE_OUTPUT_Y4M  ? o->as.y4m.n_dropped

@@ -1,7 +1,6 @@
-/* SPDX-License-Identifier: MIT
- *
- * live_picture.h - copies of live frames: in memory, for drawing if the frames'
- * own memory is slow or shared, and in files. */
+/* SPDX-License-Identifier: MIT live_picture.h - copies live frames: into
+ * memory, if the memory of the frames is slow or shared, and into files
+ * (snapshots). */
 #ifndef GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 #define GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 

@@ -44,7 +44,7 @@ void live_signals_install(void)
     signal(SIGPIPE, SIG_IGN);
 }
 
-bool live_signals_is_raised(enum live_signal which)
+bool live_signals_has_arrived(enum live_signal which)
 {
     const bool was = asked[which];
 

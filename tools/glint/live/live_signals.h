@@ -21,10 +21,10 @@ void live_signals_install(void);
 
 /* Returns whether signal WHICH arrived since the last call. LIVE_STOP stays
  * true. */
-bool live_signals_is_raised(enum live_signal which);
+bool live_signals_has_arrived(enum live_signal which);
 
 /* Waits until FD (unless -1) is readable, has an event or an error, until a
- * signal arrives that live_signals_is_raised() has not returned yet (except
+ * signal arrives that live_signals_has_arrived() has not returned yet (except
  * LIVE_SNAPSHOT, which needs a frame), or until MS milliseconds have passed. */
 void live_signals_wait(int fd, int ms);
 

@@ -38,8 +38,8 @@ int bake_line_parse(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text);
 
-/* Returns whether a report may be printed to standard output, as the output
- * file does not go there. */
+/* Returns whether a report may be printed to standard output: not if the baked
+ * file is written there. */
 bool bake_line_prints_report(const struct tool *tool);
 
 #endif

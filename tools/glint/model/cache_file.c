@@ -57,7 +57,7 @@ void cache_file_make_folders(char *path)
 
 /* Returns whether only this user, its group and root could have written the
  * file or folder with the status ST. */
-static bool is_file_trusted(const struct stat *st)
+static bool is_writable_only_by_trusted_users(const struct stat *st)
 {
     return (st->st_uid == geteuid() || st->st_uid == 0) &&
            !(st->st_mode & S_IWOTH);
@@ -76,7 +76,7 @@ static bool is_folder_trusted(const char *path)
         return false;
     memcpy(folder, path, n);
     folder[n] = '\0';
-    return stat(folder, &st) == 0 && is_file_trusted(&st);
+    return stat(folder, &st) == 0 && is_writable_only_by_trusted_users(&st);
 }
 
 uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
@@ -92,7 +92,7 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     if (in.fd < 0)
         return NULL;
     if (fstat(in.fd, &st) < 0 || !S_ISREG(st.st_mode) ||
-        !is_file_trusted(&st) || !is_folder_trusted(path) ||
+        !is_writable_only_by_trusted_users(&st) || !is_folder_trusted(path) ||
         glint_input_read_rest(&in, &data, bytes, max, &error) != GLINT_OK) {
         free(data);
         data = NULL;
@@ -114,7 +114,7 @@ static enum glint_status remove_untrusted_file(const char *path,
         return glint_error_report(error, GLINT_E_OUTPUT, path,
                                   "is not a regular file; remove it");
     /* No error is reported: replacing the file fails later as well. */
-    if (!is_file_trusted(&st))
+    if (!is_writable_only_by_trusted_users(&st))
         unlink(path);
     return GLINT_OK;
 }

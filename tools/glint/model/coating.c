@@ -8,7 +8,7 @@ int coating_parse_option(const struct tool *tool, struct coating *c,
 {
     static const char *const words[] = {"table", "mixed", NULL};
     struct glint_error error = {""};
-    const int word = tool_find_word(text, words);
+    const int word = tool_find_word_index(text, words);
 
     c->given = true;
     c->kind = word < 0 ? COATING_DEALT : (enum coating_kind)word;
@@ -71,8 +71,8 @@ void coating_apply(const struct coating *c, struct glint_prescription *lens)
         glint_prescription_coat(lens, standard, n);
 }
 
-int coating_reject_for_model(const struct tool *tool, const struct coating *c,
-                             const char *path)
+int coating_reject_option_for_model(const struct tool *tool,
+                                    const struct coating *c, const char *path)
 {
     return c->given ? tool_usage(tool,
                                  "%s is a model, baked with its coatings: "

@@ -10,8 +10,8 @@
 enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_DEALT };
 
 struct coating {
-    enum coating_kind
-        kind; /* source of the films; default: the table's own coatings */
+    /* where the films come from; by default from the table */
+    enum coating_kind kind;
     /* whether --coating is on the command line, even with the default value */
     bool given;
     int n_coatings;
@@ -50,7 +50,8 @@ void coating_apply(const struct coating *coating,
 /* Returns EXIT_OK if --coating was not given; else prints a usage error,
  * since the model PATH was baked with its own coatings, and returns the exit
  * code. */
-int coating_reject_for_model(const struct tool *tool,
-                             const struct coating *coating, const char *path);
+int coating_reject_option_for_model(const struct tool *tool,
+                                    const struct coating *coating,
+                                    const char *path);
 
 #endif

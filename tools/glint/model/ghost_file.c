@@ -91,7 +91,7 @@ static const char *parse_ghost_words(struct reading *r, int ghost, char *rest)
     char *word;
 
     while (!cause && (word = read_next_word(&rest)))
-        switch (tool_find_word(word, words)) {
+        switch (tool_find_word_index(word, words)) {
         case 0:
             r->mute[ghost] = true;
             break;

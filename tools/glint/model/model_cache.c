@@ -49,9 +49,10 @@ static uint8_t *read_installed_model(const char *path, size_t *bytes)
 
 /* Reads the model PATH by READ and opens it. Returns false if it is damaged
  * or has another key. */
-static bool load_model_file(const char *path, uint64_t key,
-                            uint8_t *(*read)(const char *path, size_t *bytes),
-                            struct model_file *model)
+static bool load_model_with_key(const char *path, uint64_t key,
+                                uint8_t *(*read)(const char *path,
+                                                 size_t *bytes),
+                                struct model_file *model)
 {
     uint8_t *data;
     const char *reason;
@@ -78,7 +79,7 @@ static bool load_installed_model(const char *lens, uint64_t key,
 
     for (int i = 0; lens_find_folder(i, "models", path, sizeof path); i++)
         if (model_cache_append_name(path, sizeof path, lens, key) &&
-            load_model_file(path, key, read_installed_model, model))
+            load_model_with_key(path, key, read_installed_model, model))
             return true;
     return false;
 }
@@ -91,7 +92,7 @@ bool model_is_cached(const struct glint_prescription *lens,
     char path[CACHE_PATH_BYTES];
     const bool is = load_installed_model(lens->name, key, &model) ||
                     (make_model_path(path, sizeof path, lens->name, key) &&
-                     load_model_file(path, key, read_cached_model, &model));
+                     load_model_with_key(path, key, read_cached_model, &model));
 
     model_file_close(&model);
     return is;
@@ -235,13 +236,13 @@ int model_open_cached(const struct tool *tool,
         return tool->no_bake
                    ? report_bake_refused(tool, lens)
                    : bake_model(tool, lens, file, options, NULL, model);
-    if (load_model_file(path, key, read_cached_model, model))
+    if (load_model_with_key(path, key, read_cached_model, model))
         return EXIT_OK;
     if (tool->no_bake)
         return report_bake_refused(tool, lens);
     /* Another process may be baking the same model. */
     lock = cache_file_lock(path, report_bake_wait, &wait);
-    if (!load_model_file(path, key, read_cached_model, model))
+    if (!load_model_with_key(path, key, read_cached_model, model))
         code = bake_model(tool, lens, file, options, path, model);
     cache_file_unlock(path, lock);
     return code;

@@ -12,12 +12,12 @@
 
 #include "model/model_file.h"
 
-/* Opens as MODEL the model of LENS baked with OPTIONS: the installed model, the
- * cached one, or a new one, which is baked and cached. FILE: the lens as named
- * on the command line. A lens file outside glint's lens folders is rejected if
- * its bake exceeds MODEL_CACHE_WORK; glint bake has no such limit. Overwrites
- * workers, progress and allow of OPTIONS. Returns an exit code, after printing
- * the reason on failure. */
+/* Sets MODEL to the model of LENS baked with OPTIONS: the installed one, the
+ * cached one, or a new one, which is baked and added to the cache. FILE: the
+ * lens as named on the command line. A lens file outside glint's lens folders
+ * is rejected if its bake exceeds MODEL_CACHE_WORK; glint bake has no such
+ * limit. Overwrites workers, progress and allow of OPTIONS. Returns an exit
+ * code, after printing the reason on failure. */
 int model_open_cached(const struct tool *tool,
                       const struct glint_prescription *lens, const char *file,
                       struct glint_bake_options options,

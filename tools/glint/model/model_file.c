@@ -88,10 +88,11 @@ int tool_open_model(const struct tool *tool, const char *path,
     return status == GLINT_E_MEMORY ? EXIT_RUNTIME : EXIT_LENS;
 }
 
-static double focal_length_at(struct glint_zoom_lens *z, int32_t along_q30)
+static double compute_focal_length_at_position(struct glint_zoom_lens *z,
+                                               int32_t along_q30)
 {
     glint_zoom_set(z, along_q30);
-    return model_compute_real(z->header.focal_mm);
+    return model_convert_real_to_double(z->header.focal_mm);
 }
 
 int model_file_count_positions(const struct glint_zoom_lens *zoom)
@@ -111,8 +112,8 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
     const double slack = 1.002;
     struct glint_zoom_lens *const z = model->zoom;
     const int32_t before_q30 = z->now_q30;
-    const double first = focal_length_at(z, 0),
-                 last = focal_length_at(z, whole_q30);
+    const double first = compute_focal_length_at_position(z, 0),
+                 last = compute_focal_length_at_position(z, whole_q30);
     int32_t low = 0, high = whole_q30;
 
     glint_zoom_set(z, before_q30);
@@ -130,7 +131,8 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
     while (high - low > 1) {
         const int32_t middle = low + (high - low) / 2;
 
-        if ((focal_length_at(z, middle) < zoom) == (last > first))
+        if ((compute_focal_length_at_position(z, middle) < zoom) ==
+            (last > first))
             low = middle;
         else
             high = middle;
@@ -147,7 +149,7 @@ void model_file_close(struct model_file *model)
     *model = (struct model_file){.data = NULL};
 }
 
-double model_compute_real(struct glint_real x)
+double model_convert_real_to_double(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }

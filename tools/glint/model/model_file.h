@@ -50,6 +50,6 @@ int model_file_count_positions(const struct glint_zoom_lens *zoom);
 void model_file_close(struct model_file *model);
 
 /* Returns the value of X. */
-double model_compute_real(struct glint_real x);
+double model_convert_real_to_double(struct glint_real x);
 
 #endif

@@ -12,7 +12,7 @@
 /* --------------------------------------------------------------------- JSON
  */
 
-/* Prints "errors", an object with a member for each output. */
+/* Writes the JSON member "errors": an object with the errors of each output. */
 static void write_errors_json(struct json_writer *json,
                               const struct model_summary *sum)
 {
@@ -30,14 +30,16 @@ static void write_errors_json(struct json_writer *json,
     json_write(json, "}");
 }
 
-/* Prints "misses", a list of the ghosts that miss their targets. */
-static void write_misses_json(struct json_writer *json,
-                              const struct glint_lens *lens)
+/* Writes the JSON member "misses": a list of the ghosts that miss an error
+ * target. */
+static void write_missed_targets_json(struct json_writer *json,
+                                      const struct glint_lens *lens)
 {
     json_write(json, "misses: [");
     for (uint32_t k = 0; k < model_count_ghosts(lens); k++) {
         const struct glint_model_ghost *g = &lens->ghost[k];
-        const struct model_miss miss = model_find_misses(lens, k);
+        const struct model_miss miss =
+            model_find_zones_with_missed_targets(lens, k);
 
         if (miss.zones)
             json_write(json,
@@ -55,26 +57,26 @@ static void write_header_json(struct json_writer *json,
 {
     const struct glint_model_header *h = model->lens.header;
     const struct model_summary sum =
-        model_summarise(&model->lens, model_full_span(&model->lens));
+        model_compute_summary(&model->lens, model_get_full_span(&model->lens));
 
     json_write(json,
                "{name: %s, focal_length_mm: %.6f, back_focal_length_mm: %.6f, "
                "entrance_pupil_radius_mm: %.6f, stop_radius_mm: %.6f, "
                "f_number: %g, film_mm: [%g, %g], surfaces: %u, ghosts: %u, "
                "parts: %u, ghost_pairs: [",
-               h->name, model_compute_real(h->focal_mm),
-               model_compute_real(h->back_focal_mm),
-               model_compute_real(h->entrance_radius_mm),
-               model_compute_real(h->stop_radius_mm),
-               model_compute_real(h->f_number),
-               model_compute_real(h->film_width_mm),
-               model_compute_real(h->film_height_mm), h->n_surfaces,
+               h->name, model_convert_real_to_double(h->focal_mm),
+               model_convert_real_to_double(h->back_focal_mm),
+               model_convert_real_to_double(h->entrance_radius_mm),
+               model_convert_real_to_double(h->stop_radius_mm),
+               model_convert_real_to_double(h->f_number),
+               model_convert_real_to_double(h->film_width_mm),
+               model_convert_real_to_double(h->film_height_mm), h->n_surfaces,
                model_count_ghosts(&model->lens), h->n_ghosts);
     for (uint32_t k = 0; k < model_count_ghosts(&model->lens); k++)
         json_write(json, "[%u, %u]", model->lens.ghost[k].i,
                    model->lens.ghost[k].j);
     json_write(json, "], bytes: %zu, basis: %s", model->bytes,
-               model_basis_name(&model->lens));
+               model_get_basis_name(&model->lens));
     if (glint_basis_is_lens(h->basis))
         json_write(json, "mirrors_x: %c, mirrors_y: %c",
                    (h->basis & GLINT_MIRRORS_X) != 0,
@@ -82,12 +84,13 @@ static void write_header_json(struct json_writer *json,
     json_write(json,
                "band_nm: [%.3f, %.3f], max_angle_deg: %.6f, field_mm: %.6f, "
                "systems: %u, mean_terms: %.4f",
-               model_wavelength_nm(h->wave_hi_q24),
-               model_wavelength_nm(h->wave_lo_q24),
-               model_angle_deg(h->sine_hi_q30), model_compute_real(h->field_mm),
-               h->n_systems, model_compute_mean_terms(&sum));
+               model_convert_wave_to_nm(h->wave_hi_q24),
+               model_convert_wave_to_nm(h->wave_lo_q24),
+               model_convert_sine_to_deg(h->sine_hi_q30),
+               model_convert_real_to_double(h->field_mm), h->n_systems,
+               model_compute_mean_terms(&sum));
     write_errors_json(json, &sum);
-    write_misses_json(json, &model->lens);
+    write_missed_targets_json(json, &model->lens);
 }
 
 static void write_system_json(struct json_writer *json,
@@ -96,15 +99,16 @@ static void write_system_json(struct json_writer *json,
 {
     const struct glint_model_system *s = &lens->system[system];
     const struct model_span span = {system, 1};
-    const struct model_summary sum = model_summarise(lens, span);
+    const struct model_summary sum = model_compute_summary(lens, span);
 
     json_write(json,
                "{ghost: %u, angle_deg: [%.6f, %.6f], band_nm: [%.3f, %.3f], "
                "energy_roots: %d, terms: %.0f, bytes: %zu",
-               model_find_first_entry(lens, ghost),
-               model_angle_deg(s->sine_lo_q30), model_angle_deg(s->sine_hi_q30),
-               model_wavelength_nm(s->wave_hi_q24),
-               model_wavelength_nm(s->wave_lo_q24),
+               model_find_ghost_of_entry(lens, ghost),
+               model_convert_sine_to_deg(s->sine_lo_q30),
+               model_convert_sine_to_deg(s->sine_hi_q30),
+               model_convert_wave_to_nm(s->wave_hi_q24),
+               model_convert_wave_to_nm(s->wave_lo_q24),
                model_outputs_of(lens, s)[GLINT_OUT_ENERGY].roots,
                model_count_terms(&sum), model_count_span_bytes(lens, span));
     write_errors_json(json, &sum);
@@ -141,17 +145,17 @@ static void write_ghost_json(struct json_writer *json,
 {
     const struct glint_model_ghost *g = &lens->ghost[entry];
     const struct model_span span = model_measure_ghost_span(lens, entry);
-    const struct model_summary sum = model_summarise(lens, span);
+    const struct model_summary sum = model_compute_summary(lens, span);
     double range_deg[2];
 
     model_find_span_angles(lens, span, range_deg);
     json_write(json,
                "{ghost: %u, part: %c, pair: [%u, %u], angle_deg: [%.6f, %.6f], "
                "zones: %u, bytes: %zu, met: %c",
-               model_find_first_entry(lens, entry),
+               model_find_ghost_of_entry(lens, entry),
                entry >= model_count_ghosts(lens), g->i, g->j, range_deg[0],
                range_deg[1], span.n, model_count_span_bytes(lens, span),
-               !model_has_misses(&sum));
+               !model_misses_error_target(&sum));
     write_errors_json(json, &sum);
     json_write(json, "}");
 }
@@ -162,7 +166,7 @@ static void write_bake_json(const struct glint_lens *lens, double seconds,
 {
     const struct glint_model_header *h = lens->header;
     const struct model_summary sum =
-        model_summarise(lens, model_full_span(lens));
+        model_compute_summary(lens, model_get_full_span(lens));
     struct json_writer json = {.to = stdout};
 
     json_write(&json,
@@ -176,7 +180,7 @@ static void write_bake_json(const struct glint_lens *lens, double seconds,
         json_write(&json, "worst_db: %.2f, worst_deg: %.4f", check->psnr_db,
                    check->angle_deg);
     write_errors_json(&json, &sum);
-    write_misses_json(&json, lens);
+    write_missed_targets_json(&json, lens);
     json_write(&json, "by_ghost: [");
     for (uint32_t k = 0; k < h->n_ghosts; k++)
         write_ghost_json(&json, lens, k);
@@ -187,7 +191,7 @@ static void print_model_header(const struct model_file *model)
 {
     const struct glint_model_header *h = model->lens.header;
     const struct model_summary sum =
-        model_summarise(&model->lens, model_full_span(&model->lens));
+        model_compute_summary(&model->lens, model_get_full_span(&model->lens));
 
     static const char *const lights[] = {
         "all", "those with x >= 0; the others are mirrored",
@@ -195,30 +199,32 @@ static void print_model_header(const struct model_file *model)
         "those with x and y >= 0; the others are mirrored"};
 
     printf("%s\nbaked model, %zu bytes, %s basis, key %08lx%08lx\n\n", h->name,
-           model->bytes, model_basis_name(&model->lens),
+           model->bytes, model_get_basis_name(&model->lens),
            (unsigned long)h->key[1], (unsigned long)h->key[0]);
     if (glint_basis_is_lens(h->basis))
         printf("directions baked    %s\n", lights[h->basis & 3U]);
-    printf("focal length        %10.3f mm\n", model_compute_real(h->focal_mm));
+    printf("focal length        %10.3f mm\n",
+           model_convert_real_to_double(h->focal_mm));
     printf("back focal length   %10.3f mm\n",
-           model_compute_real(h->back_focal_mm));
+           model_convert_real_to_double(h->back_focal_mm));
     printf("entrance pupil      %10.3f mm radius\n",
-           model_compute_real(h->entrance_radius_mm));
-    printf("stop                %10.4f mm radius at f/%g, its widest\n",
-           model_compute_real(h->stop_radius_mm),
-           model_compute_real(h->f_number));
+           model_convert_real_to_double(h->entrance_radius_mm));
+    printf("stop                %10.4f mm radius at f/%g, the widest of the "
+           "model\n",
+           model_convert_real_to_double(h->stop_radius_mm),
+           model_convert_real_to_double(h->f_number));
     printf("front               %10.3f mm radius\n",
-           model_compute_real(h->front_mm));
+           model_convert_real_to_double(h->front_mm));
     printf("film                %6gx%g mm\n",
-           model_compute_real(h->film_width_mm),
-           model_compute_real(h->film_height_mm));
+           model_convert_real_to_double(h->film_width_mm),
+           model_convert_real_to_double(h->film_height_mm));
     printf("field               %10.3f mm from the centre of the sensor\n",
-           model_compute_real(h->field_mm));
+           model_convert_real_to_double(h->field_mm));
     printf("band                %6.0f to %.0f nm\n",
-           model_wavelength_nm(h->wave_hi_q24),
-           model_wavelength_nm(h->wave_lo_q24));
+           model_convert_wave_to_nm(h->wave_hi_q24),
+           model_convert_wave_to_nm(h->wave_lo_q24));
     printf("largest angle       %10.3f degrees\n",
-           model_angle_deg(h->sine_hi_q30));
+           model_convert_sine_to_deg(h->sine_hi_q30));
     printf("surfaces            %6lu\n", (unsigned long)h->n_surfaces);
     printf("ghosts              %6lu in %lu parts, %lu zones, "
            "%.1f terms an output\n",
@@ -247,7 +253,7 @@ static void print_model_errors(const struct model_summary *sum)
     }
 }
 
-static void print_table_title(const char *more)
+static void print_ghost_table_title(const char *more)
 {
     printf("ghost  surfaces   zones       degrees         terms      bytes%s\n",
            more);
@@ -267,13 +273,13 @@ static void print_ghost_row(const struct glint_lens *lens, uint32_t entry,
     snprintf(pair, sizeof pair, "%lu-%lu", (unsigned long)g->i,
              (unsigned long)g->j);
     printf("%5lu%c %-8s %7lu  %7.3f .. %-7.3f %7.0f  %9zu",
-           (unsigned long)model_find_first_entry(lens, entry),
+           (unsigned long)model_find_ghost_of_entry(lens, entry),
            entry < model_count_ghosts(lens) ? ' ' : '+', pair,
            (unsigned long)g->n_systems, range_deg[0], range_deg[1],
            model_count_terms(sum), model_count_span_bytes(lens, span));
 }
 
-static void print_unseen_ghosts(const struct glint_lens *lens)
+static void print_ghosts_without_zones(const struct glint_lens *lens)
 {
     bool any = false;
 
@@ -293,17 +299,17 @@ static void print_unseen_ghosts(const struct glint_lens *lens)
 static void print_ghost_table(const struct glint_lens *lens)
 {
     printf("\n");
-    print_table_title("");
+    print_ghost_table_title("");
     for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
         const struct model_summary sum =
-            model_summarise(lens, model_measure_ghost_span(lens, k));
+            model_compute_summary(lens, model_measure_ghost_span(lens, k));
 
         if (lens->ghost[k].n_systems == 0)
             continue;
         print_ghost_row(lens, k, &sum);
         printf("\n");
     }
-    print_unseen_ghosts(lens);
+    print_ghosts_without_zones(lens);
 }
 
 static void print_system_table(const struct glint_lens *lens)
@@ -315,18 +321,18 @@ static void print_system_table(const struct glint_lens *lens)
             const uint32_t n = lens->ghost[g].first_system + k;
             const struct glint_model_system *s = &lens->system[n];
             const struct model_summary sum =
-                model_summarise(lens, (struct model_span){n, 1});
+                model_compute_summary(lens, (struct model_span){n, 1});
             const struct model_errors *x = &sum.of[GLINT_OUT_SENSOR_X];
 
             printf("%6lu %6lu  %7.3f .. %-7.3f  %4.0f .. %-4.0f %6.0f  "
                    "%9.3g %9.3g %9.3g\n",
                    (unsigned long)n,
-                   (unsigned long)model_find_first_entry(lens, g),
-                   model_angle_deg(s->sine_lo_q30),
-                   model_angle_deg(s->sine_hi_q30),
-                   model_wavelength_nm(s->wave_hi_q24),
-                   model_wavelength_nm(s->wave_lo_q24), model_count_terms(&sum),
-                   sqrt(x->mean2), x->p99, x->max);
+                   (unsigned long)model_find_ghost_of_entry(lens, g),
+                   model_convert_sine_to_deg(s->sine_lo_q30),
+                   model_convert_sine_to_deg(s->sine_hi_q30),
+                   model_convert_wave_to_nm(s->wave_hi_q24),
+                   model_convert_wave_to_nm(s->wave_lo_q24),
+                   model_count_terms(&sum), sqrt(x->mean2), x->p99, x->max);
         }
 }
 
@@ -334,7 +340,7 @@ static void print_model_info(const struct tool *tool,
                              const struct model_file *model)
 {
     const struct model_summary sum =
-        model_summarise(&model->lens, model_full_span(&model->lens));
+        model_compute_summary(&model->lens, model_get_full_span(&model->lens));
 
     print_model_header(model);
     print_ghost_table(&model->lens);
@@ -343,8 +349,9 @@ static void print_model_info(const struct tool *tool,
         print_system_table(&model->lens);
 }
 
-/* Ends the line of a ghost with the outputs that miss their targets. */
-static void print_ghost_misses(const struct model_summary *sum)
+/* Ends the table line of a ghost with the names of the outputs that miss their
+ * error targets. */
+static void print_missed_targets_of_ghost(const struct model_summary *sum)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (sum->of[kind].p99 > model_output_targets[kind])
@@ -375,15 +382,16 @@ static void print_fit_table(const struct glint_lens *lens, bool all)
 
     for (uint32_t k = 0; k < lens->header->n_ghosts; k++) {
         const struct model_summary sum =
-            model_summarise(lens, model_measure_ghost_span(lens, k));
+            model_compute_summary(lens, model_measure_ghost_span(lens, k));
 
-        if (lens->ghost[k].n_systems == 0 || (!all && !model_has_misses(&sum)))
+        if (lens->ghost[k].n_systems == 0 ||
+            (!all && !model_misses_error_target(&sum)))
             continue;
         if (!titled)
-            print_table_title(all ? "" : "  misses the target by p99");
+            print_ghost_table_title(all ? "" : "  misses the error target");
         titled = true;
         print_ghost_row(lens, k, &sum);
-        (all ? print_output_details : print_ghost_misses)(&sum);
+        (all ? print_output_details : print_missed_targets_of_ghost)(&sum);
     }
 }
 
@@ -393,10 +401,10 @@ static void print_bake_statistics(const struct tool *tool,
 {
     const struct glint_model_header *h = lens->header;
     const struct model_summary sum =
-        model_summarise(lens, model_full_span(lens));
+        model_compute_summary(lens, model_get_full_span(lens));
 
     print_fit_table(lens, tool->verbose > 0);
-    print_unseen_ghosts(lens);
+    print_ghosts_without_zones(lens);
     print_model_errors(&sum);
     printf("\n%s: %lu bytes, %lu ghosts in %lu parts, %lu zones, "
            "%.1f terms an output, %.1f s\n",
@@ -406,12 +414,13 @@ static void print_bake_statistics(const struct tool *tool,
            seconds);
     printf("%u of %lu ghosts miss the error target in some zone; %d of %d rays "
            "pass that should be cut; %d zones exceed the tolerance\n",
-           model_count_missed_ghosts(lens),
+           model_count_ghosts_with_missed_targets(lens),
            (unsigned long)model_count_ghosts(lens), report->intruders,
            report->rays, report->unmet);
 }
 
-/* Prints the worst picture, and what to do if it is not accurate. */
+/* Prints the lowest PSNR of the compared pictures, and a remedy if it is below
+ * PICTURE_CHECK_DB. */
 static void print_picture_check(const struct picture_check *check)
 {
     if (check->n == 0)
@@ -434,7 +443,8 @@ void model_report_print_info(const struct tool *tool,
 {
     struct model_file shown = *model;
 
-    /* A zoom lens between its positions has no polynomial systems to report. */
+    /* Between baked zoom positions there are no polynomial systems to report.
+     * */
     if (shown.zoom)
         shown.lens = shown.zoom->model[0];
     (tool->json ? write_info_json : print_model_info)(tool, &shown);

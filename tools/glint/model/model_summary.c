@@ -13,24 +13,24 @@ const char *const model_output_units[GLINT_OUT_KINDS] = {
 const double model_output_targets[GLINT_OUT_KINDS] = {
     0.25, 0.25, 0.0024, 0.0024, 0.05, 0.005, 0.005, 0.005, 0.005, 0.005};
 
-const char *model_basis_name(const struct glint_lens *lens)
+const char *model_get_basis_name(const struct glint_lens *lens)
 {
     return glint_basis_is_lens(lens->header->basis) ? "lens" : "auto";
 }
 
 /* --------------------------------------------------------------- quantities */
 
-double model_angle_deg(int32_t sine_q30)
+double model_convert_sine_to_deg(int32_t sine_q30)
 {
     return asin(fmin(1, ldexp(sine_q30, -30))) * (180 / GLINT_PI);
 }
 
-double model_wavelength_nm(int32_t wave_q24)
+double model_convert_wave_to_nm(int32_t wave_q24)
 {
     return 1e3 / sqrt(ldexp(wave_q24, -24));
 }
 
-struct model_span model_full_span(const struct glint_lens *lens)
+struct model_span model_get_full_span(const struct glint_lens *lens)
 {
     return (struct model_span){0, lens->header->n_systems};
 }
@@ -90,35 +90,37 @@ void model_find_span_angles(const struct glint_lens *lens,
         lo_q30 = s->sine_lo_q30 < lo_q30 ? s->sine_lo_q30 : lo_q30;
         hi_q30 = s->sine_hi_q30 > hi_q30 ? s->sine_hi_q30 : hi_q30;
     }
-    range_deg[0] = span.n ? model_angle_deg(lo_q30) : 0;
-    range_deg[1] = model_angle_deg(hi_q30);
+    range_deg[0] = span.n ? model_convert_sine_to_deg(lo_q30) : 0;
+    range_deg[1] = model_convert_sine_to_deg(hi_q30);
 }
 
-static double decode_error(uint16_t stored)
+static double convert_stored_error_to_double(uint16_t stored)
 {
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-static void add_errors(struct model_errors *e,
-                       const struct glint_model_output *o, double unit)
+static void add_system_errors_to_summary(struct model_errors *e,
+                                         const struct glint_model_output *o,
+                                         double unit)
 {
-    const double rms = decode_error(o->rms);
+    const double rms = convert_stored_error_to_double(o->rms);
     const double step = ldexp(unit, o->exponent);
 
     e->n++;
     e->terms += (o->n_terms - e->terms) / e->n;
     e->mean2 += (rms * rms - e->mean2) / e->n;
-    e->p50 += (decode_error(o->p50) - e->p50) / e->n;
-    e->p99 = fmax(e->p99, decode_error(o->p99));
-    e->max = fmax(e->max, decode_error(o->max));
+    e->p50 += (convert_stored_error_to_double(o->p50) - e->p50) / e->n;
+    e->p99 = fmax(e->p99, convert_stored_error_to_double(o->p99));
+    e->max = fmax(e->max, convert_stored_error_to_double(o->max));
     e->bound = fmax(e->bound, o->bound * step);
     e->rounding = fmax(e->rounding, ldexp(o->rounding_q8 * step, -8));
 }
 
-struct model_summary model_summarise(const struct glint_lens *lens,
-                                     struct model_span span)
+struct model_summary model_compute_summary(const struct glint_lens *lens,
+                                           struct model_span span)
 {
-    const double px = 1920 / model_compute_real(lens->header->film_width_mm);
+    const double px =
+        1920 / model_convert_real_to_double(lens->header->film_width_mm);
     struct model_summary sum = {{{0}}};
 
     for (uint32_t k = span.first; k < span.first + span.n; k++) {
@@ -126,8 +128,9 @@ struct model_summary model_summarise(const struct glint_lens *lens,
         const struct glint_model_output *o = model_outputs_of(lens, s);
 
         for (uint32_t m = 0; m < s->n_outputs; m++)
-            add_errors(&sum.of[o[m].kind], &o[m],
-                       o[m].kind <= GLINT_OUT_SENSOR_Y ? px : 1);
+            add_system_errors_to_summary(&sum.of[o[m].kind], &o[m],
+                                         o[m].kind <= GLINT_OUT_SENSOR_Y ? px
+                                                                         : 1);
     }
     return sum;
 }
@@ -150,7 +153,7 @@ double model_compute_mean_terms(const struct model_summary *sum)
     return n ? model_count_terms(sum) / n : 0;
 }
 
-bool model_has_misses(const struct model_summary *sum)
+bool model_misses_error_target(const struct model_summary *sum)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
         if (sum->of[kind].p99 > model_output_targets[kind])
@@ -163,7 +166,8 @@ uint32_t model_count_ghosts(const struct glint_lens *lens)
     return lens->header->n_ghosts - lens->header->n_parts;
 }
 
-uint32_t model_find_first_entry(const struct glint_lens *lens, uint32_t entry)
+uint32_t model_find_ghost_of_entry(const struct glint_lens *lens,
+                                   uint32_t entry)
 {
     const struct glint_model_ghost *g = &lens->ghost[entry];
     uint32_t k = 0;
@@ -173,22 +177,23 @@ uint32_t model_find_first_entry(const struct glint_lens *lens, uint32_t entry)
     return k;
 }
 
-static bool is_part_of(const struct glint_lens *lens, uint32_t entry,
-                       uint32_t ghost)
+static bool is_model_entry_of_ghost(const struct glint_lens *lens,
+                                    uint32_t entry, uint32_t ghost)
 {
     return lens->ghost[entry].i == lens->ghost[ghost].i &&
            lens->ghost[entry].j == lens->ghost[ghost].j;
 }
 
 /* Adds system SYSTEM to MISS if one of its outputs misses its target. */
-static void add_miss(const struct glint_lens *lens, uint32_t system,
-                     struct model_miss *miss)
+static void add_zone_with_missed_target(const struct glint_lens *lens,
+                                        uint32_t system,
+                                        struct model_miss *miss)
 {
     const struct model_span span = {system, 1};
-    const struct model_summary sum = model_summarise(lens, span);
+    const struct model_summary sum = model_compute_summary(lens, span);
     double range_deg[2];
 
-    if (!model_has_misses(&sum))
+    if (!model_misses_error_target(&sum))
         return;
     model_find_span_angles(lens, span, range_deg);
     miss->angle_deg[0] =
@@ -206,25 +211,27 @@ static void add_miss(const struct glint_lens *lens, uint32_t system,
     }
 }
 
-struct model_miss model_find_misses(const struct glint_lens *lens,
-                                    uint32_t ghost)
+struct model_miss
+model_find_zones_with_missed_targets(const struct glint_lens *lens,
+                                     uint32_t ghost)
 {
     struct model_miss miss = {.zones = 0};
 
     for (uint32_t entry = ghost; entry < lens->header->n_ghosts; entry++) {
         const struct model_span span = model_measure_ghost_span(lens, entry);
 
-        for (uint32_t k = 0; is_part_of(lens, entry, ghost) && k < span.n; k++)
-            add_miss(lens, span.first + k, &miss);
+        for (uint32_t k = 0;
+             is_model_entry_of_ghost(lens, entry, ghost) && k < span.n; k++)
+            add_zone_with_missed_target(lens, span.first + k, &miss);
     }
     return miss;
 }
 
-unsigned model_count_missed_ghosts(const struct glint_lens *lens)
+unsigned model_count_ghosts_with_missed_targets(const struct glint_lens *lens)
 {
     unsigned n = 0;
 
     for (uint32_t k = 0; k < model_count_ghosts(lens); k++)
-        n += model_find_misses(lens, k).zones > 0;
+        n += model_find_zones_with_missed_targets(lens, k).zones > 0;
     return n;
 }

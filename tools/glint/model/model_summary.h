@@ -16,17 +16,19 @@ extern const char *const model_output_units[GLINT_OUT_KINDS];
  * outputs: errors of similar visibility. */
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
-const char *model_basis_name(const struct glint_lens *lens);
-double model_angle_deg(int32_t sine_q30);
-double model_wavelength_nm(
-    int32_t wave_q24); /* converts 1 / square micrometres to nanometres */
+const char *model_get_basis_name(const struct glint_lens *lens);
+double model_convert_sine_to_deg(int32_t sine_q30);
 
-/* The polynomial systems first .. first + n - 1. */
+/* Returns the wavelength in nm. WAVE_Q24: its inverse square, 1 / um^2. */
+double model_convert_wave_to_nm(int32_t wave_q24);
+
+/* A range of a model's polynomial systems, those with the numbers first ..
+ * first + n - 1. */
 struct model_span {
     uint32_t first, n;
 };
 
-struct model_span model_full_span(const struct glint_lens *lens);
+struct model_span model_get_full_span(const struct glint_lens *lens);
 struct model_span model_measure_ghost_span(const struct glint_lens *lens,
                                            uint32_t ghost);
 
@@ -48,24 +50,25 @@ struct model_errors {
     uint32_t n;
     double terms, mean2, p50; /* means over the systems: polynomial terms,
                                  squared error, 50th percentile */
-    double p99, max, bound,
-        rounding; /* maxima over the systems, in the output's unit */
+    /* maxima over the systems, in the output's unit */
+    double p99, max, bound, rounding;
 };
 
 struct model_summary {
     struct model_errors of[GLINT_OUT_KINDS];
 };
 
-struct model_summary model_summarise(const struct glint_lens *lens,
-                                     struct model_span span);
-/* number of polynomial terms, summed over all outputs */
+struct model_summary model_compute_summary(const struct glint_lens *lens,
+                                           struct model_span span);
+
+/* Returns the number of polynomial terms, summed over all outputs. */
 double model_count_terms(const struct model_summary *sum);
-double
-/* mean number of polynomial terms per output */
-model_compute_mean_terms(const struct model_summary *sum);
+
+/* Returns the mean number of polynomial terms per output. */
+double model_compute_mean_terms(const struct model_summary *sum);
 
 /* Returns whether any output misses its target. */
-bool model_has_misses(const struct model_summary *sum);
+bool model_misses_error_target(const struct model_summary *sum);
 
 /* Returns the number of ghosts; ghosts whose pupil has several parts count
  * once. */
@@ -73,22 +76,26 @@ uint32_t model_count_ghosts(const struct glint_lens *lens);
 
 /* Returns the number of the ghost to which ENTRY belongs; an entry is a
  * ghost or a part of a ghost's pupil. */
-uint32_t model_find_first_entry(const struct glint_lens *lens, uint32_t entry);
+uint32_t model_find_ghost_of_entry(const struct glint_lens *lens,
+                                   uint32_t entry);
 
 /* The zones in which a ghost misses its targets. A zone is a range of
  * angles. */
 struct model_miss {
-    uint32_t zones;      /* number of zones and parts that miss; 0: no miss */
+    uint32_t zones;      /* number of zones and pupil parts in which the ghost
+                          * misses a target */
     double angle_deg[2]; /* min and max angle of these zones */
     int output;          /* output with the largest error / target */
-    double p99, over;    /* error of that output, and error / target */
+    double p99, over;    /* 99th percentile of that output's error, and its
+                          * ratio to the target */
 };
 
 /* Returns where GHOST, with all parts of its pupil, misses targets. */
-struct model_miss model_find_misses(const struct glint_lens *lens,
-                                    uint32_t ghost);
+struct model_miss
+model_find_zones_with_missed_targets(const struct glint_lens *lens,
+                                     uint32_t ghost);
 
 /* Returns the number of ghosts with any part that misses a target. */
-unsigned model_count_missed_ghosts(const struct glint_lens *lens);
+unsigned model_count_ghosts_with_missed_targets(const struct glint_lens *lens);
 
 #endif

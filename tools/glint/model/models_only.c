@@ -18,7 +18,7 @@ int tool_read_lens(const struct tool *tool, const char *argument,
     (void)lens;
     if (!tool_is_file_name(argument))
         snprintf(error.text, sizeof error.text,
-                 "%.120s is not a file name: that of a model has a slash or "
+                 "%.120s is not the name of a model file, which has a slash or "
                  "ends in .glint",
                  argument);
     else if (access(argument, R_OK) == 0)

@@ -55,7 +55,7 @@ enum glint_status tool_make_input_path(const char *text, const char *name,
     return GLINT_E_ARGUMENT;
 }
 
-void tool_copy_scene_name(const char *path, char name[64])
+void tool_copy_base_name(const char *path, char name[64])
 {
     const char *const slash = strrchr(path, '/');
     const char *const start = slash ? slash + 1 : path;

@@ -20,7 +20,7 @@ enum glint_status tool_make_input_path(const char *text, const char *name,
                                        struct glint_error *error);
 
 /* Sets NAME to the name of the file PATH without folder and extension. */
-void tool_copy_scene_name(const char *path, char name[64]);
+void tool_copy_base_name(const char *path, char name[64]);
 
 /* FNV-1a hash: start with TOOL_KEY_BEGIN; tool_hash_into_key() adds
  * DATA[BYTES]. */

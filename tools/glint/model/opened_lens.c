@@ -63,8 +63,8 @@ enum glint_status opened_lens_set_zoom(struct opened_lens *lens,
                 ? "a lens table is baked for one zoom position; zooming needs "
                   "a model of 'glint bake LENS --positions N'"
             : lens->table.n_surfaces
-                ? "does not zoom: its table has one position"
-                : "does not zoom: its model is of one position");
+                ? "does not zoom: its table has one zoom position"
+                : "does not zoom: its model has one zoom position");
     status = model_file_set_zoom(&lens->model, zoom, error);
     return status == GLINT_OK ? opened_lens_set_stop(lens, settings, error)
                               : status;
@@ -98,7 +98,8 @@ static void warn_of_small_field(const struct tool *tool,
 {
     const double diagonal =
         hypot(camera->sensor_width_mm, camera->sensor_height_mm);
-    const double field = model_compute_real(lens->model.lens.header->field_mm);
+    const double field =
+        model_convert_real_to_double(lens->model.lens.header->field_mm);
 
     if (!tool->quiet && 0.5 * diagonal > field)
         fprintf(stderr,
@@ -132,7 +133,7 @@ static int open_model_file(const struct tool *tool, struct opened_lens *lens,
     if (settings->options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "%s is a model: exact rays need the lens table",
                           path);
-    code = coating_reject_for_model(tool, &settings->coating, path);
+    code = coating_reject_option_for_model(tool, &settings->coating, path);
     if (code == EXIT_OK)
         code = tool_open_model(tool, path, &lens->model);
     if (code == EXIT_OK)
@@ -141,9 +142,11 @@ static int open_model_file(const struct tool *tool, struct opened_lens *lens,
         return code;
     h = lens->model.lens.header;
     snprintf(lens->table.name, sizeof lens->table.name, "%s", h->name);
-    lens->table.film_width_mm = model_compute_real(h->film_width_mm);
-    lens->table.film_height_mm = model_compute_real(h->film_height_mm);
-    lens->table.stop_is_circle = false; /* models do not store it */
+    lens->table.film_width_mm = model_convert_real_to_double(h->film_width_mm);
+    lens->table.film_height_mm =
+        model_convert_real_to_double(h->film_height_mm);
+    lens->table.stop_is_circle = false; /* a model does not store whether the
+                                         * stop is a circle */
     warn_of_small_field(tool, lens, &settings->camera);
     return EXIT_OK;
 }
@@ -161,7 +164,7 @@ static int set_up_opened_lens(const struct tool *tool, struct opened_lens *lens,
                                  lens->table.name, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (settings_get_only_ghost(s) >=
+    if (settings_get_selected_ghost(s) >=
         lens->setup.n_ghosts - lens->setup.n_parts)
         return tool_usage(tool, "%s has %d ghosts; number %d does not exist",
                           lens->table.name,
@@ -235,7 +238,7 @@ void opened_lens_close(struct opened_lens *lens)
     *lens = (struct opened_lens){.tints = NULL};
 }
 
-void opened_lens_follow_move(struct opened_lens *lens)
+void opened_lens_update_table_pointer(struct opened_lens *lens)
 {
     if (lens->setup.lens)
         lens->setup.lens = &lens->table;
@@ -243,9 +246,9 @@ void opened_lens_follow_move(struct opened_lens *lens)
 
 /* ------------------------------------------------------------------ drawing */
 
-struct glint_view opened_lens_view(const struct opened_lens *lens,
-                                   const struct settings *settings, int width,
-                                   int height)
+struct glint_view opened_lens_compute_view(const struct opened_lens *lens,
+                                           const struct settings *settings,
+                                           int width, int height)
 {
     const struct glint_engine_camera *const c = &settings->camera;
     const bool has_sensor = c->sensor_width_mm > 0;

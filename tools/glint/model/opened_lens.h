@@ -15,7 +15,7 @@
 #include "model/stop_mask.h"
 
 /* An opened lens. All zero bytes: closed. SETUP points to TABLE: see
- * opened_lens_follow_move(). */
+ * opened_lens_update_table_pointer(). */
 struct opened_lens {
     /* lens table; for a model only its name and film are set */
     struct glint_prescription table;
@@ -42,7 +42,7 @@ void opened_lens_close(struct opened_lens *lens);
 
 /* Updates the pointer from the setup of LENS to its table, after LENS was
  * copied to a new address. */
-void opened_lens_follow_move(struct opened_lens *lens);
+void opened_lens_update_table_pointer(struct opened_lens *lens);
 
 /* Sets up LENS with the stop of SETTINGS. Returns GLINT_E_ARGUMENT if the
  * model was not baked for so wide a stop; ERROR states the limit. */
@@ -69,9 +69,9 @@ struct glint_engine_camera
 opened_lens_make_camera(const struct opened_lens *lens,
                         const struct settings *settings);
 
-struct glint_view opened_lens_view(const struct opened_lens *lens,
-                                   const struct settings *settings, int width,
-                                   int height);
+struct glint_view opened_lens_compute_view(const struct opened_lens *lens,
+                                           const struct settings *settings,
+                                           int width, int height);
 
 /* Sets CFG to the configuration of an engine for images of WIDTH x HEIGHT
  * through LENS. */

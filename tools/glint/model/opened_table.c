@@ -155,7 +155,8 @@ int opened_table_open(const struct tool *tool, struct opened_lens *lens,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &lens->table);
-    /* A model supports all stops narrower than its own. */
+    /* A model can be drawn with any stop narrower than the one it was baked
+     * with. */
     if (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number)
         code = set_table_f_number(tool, lens, settings);
     if (code != EXIT_OK)

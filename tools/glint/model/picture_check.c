@@ -32,7 +32,8 @@ enum glint_status picture_pair_open(struct picture_pair *pair,
     cfg.sets = 0;
     cfg.camera.setup = setup;
     cfg.camera.sensor_width_mm = view->sensor_width_mm;
-    cfg.camera.sensor_height_mm = /* larger than needed for that width */
+    cfg.camera.sensor_height_mm = /* twice what the picture needs, so that the
+                                   * width determines the scale */
         2 * view->sensor_width_mm * view->height / view->width;
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
@@ -67,9 +68,10 @@ struct job {
     int n;
 };
 
-static enum glint_status render_both(const struct picture_pair *pair,
-                                     double angle_deg,
-                                     struct glint_float_image image[2])
+static enum glint_status
+render_model_and_exact_pictures(const struct picture_pair *pair,
+                                double angle_deg,
+                                struct glint_float_image image[2])
 {
     const struct glint_lamp lamp = {.theta_deg = angle_deg,
                                     .phi_deg = AZIMUTH_DEG,
@@ -86,7 +88,7 @@ static enum glint_status render_both(const struct picture_pair *pair,
 }
 
 /* Compares the pictures of light I. */
-static void compare_light(void *ctx, int i, int worker)
+static void compare_pictures_of_light(void *ctx, int i, int worker)
 {
     struct job *const job = ctx;
     struct light *const light = &job->light[i];
@@ -104,7 +106,8 @@ static void compare_light(void *ctx, int i, int worker)
         light->status = picture_pair_open(&pair, job->setup, job->model,
                                           &job->view, &light->error);
     if (light->status == GLINT_OK)
-        light->status = render_both(&pair, light->angle_deg, image);
+        light->status =
+            render_model_and_exact_pictures(&pair, light->angle_deg, image);
     if (light->status == GLINT_OK &&
         !glint_measure_compare(&image[0], &image[1], false, &light->measure))
         light->status = GLINT_E_MEMORY;
@@ -113,8 +116,8 @@ static void compare_light(void *ctx, int i, int worker)
     free(image[1].rgb);
 }
 
-/* Lists the lights up to MOST degrees off the axis. */
-static void list_lights(struct job *job, double most)
+/* Sets the job's lights: at most MOST degrees off the axis. */
+static void list_test_lights(struct job *job, double most)
 {
     for (int i = 0; i < NEAR; i++)
         if (near_deg[i] < most)
@@ -123,10 +126,10 @@ static void list_lights(struct job *job, double most)
         job->light[job->n++].angle_deg = most * i / STEPS;
 }
 
-/* Sets CHECK to the worst light of JOB. */
-static enum glint_status choose_worst(const struct job *job,
-                                      struct picture_check *check,
-                                      struct glint_error *error)
+/* Sets CHECK to the light of JOB whose pictures have the lowest PSNR. */
+static enum glint_status
+find_light_with_lowest_psnr(const struct job *job, struct picture_check *check,
+                            struct glint_error *error)
 {
     *check = (struct picture_check){.psnr_db = HUGE_VAL};
     for (int i = 0; i < job->n; i++) {
@@ -178,15 +181,17 @@ enum glint_status picture_check_run(const struct tool *tool,
     struct glint_optics optics;
 
     glint_optics_of(lens, &optics);
-    list_lights(&job, fmin(baked->max_deg, 180 / GLINT_PI *
-                                               atan(0.5 * part * diagonal_mm /
-                                                    optics.focal_mm)));
+    list_test_lights(
+        &job, fmin(baked->max_deg,
+                   180 / GLINT_PI *
+                       atan(0.5 * part * diagonal_mm / optics.focal_mm)));
     if (setup)
         status = glint_setup_init(setup, lens, 0, 0, wave_nm,
                                   sizeof wave_nm / sizeof *wave_nm, error);
     if (status == GLINT_OK) {
-        glint_workers_run(tool->workers, job.n, compare_light, &job);
-        status = choose_worst(&job, check, error);
+        glint_workers_run(tool->workers, job.n, compare_pictures_of_light,
+                          &job);
+        status = find_light_with_lowest_psnr(&job, check, error);
     }
     free(setup);
     return status;

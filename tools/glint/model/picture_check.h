@@ -29,10 +29,10 @@ void picture_pair_close(struct picture_pair *pair);
 
 /* The largest difference between model and exact rays. */
 struct picture_check {
-    double psnr_db;   /* of sRGB codes, exposed as by glint compare; 999: all
-                         pictures are identical */
-    double angle_deg; /* angle of the light off the axis */
-    int n;            /* compared pictures; 0: none */
+    double psnr_db;   /* PSNR of the sRGB codes, dB; exposed as by glint
+                       * compare; 999: all pictures are identical */
+    double angle_deg; /* angle of the light off the axis, degrees */
+    int n;            /* number of lights whose pictures were compared */
 };
 
 /* Draws the ghosts of up to ten single lights on the axis, near it and up to

@@ -87,7 +87,7 @@ void settings_set_quality(struct settings *settings, double quality)
     settings_set_number(settings, "quality", quality);
 }
 
-bool settings_has_grid(const struct settings *settings)
+bool settings_has_grid_option(const struct settings *settings)
 {
     const struct glint_options *const o = &settings->options;
 
@@ -112,7 +112,8 @@ bool settings_has_veil(const struct settings *settings)
            settings->camera.front_dirt.dust > 0 || settings->options.front_mask;
 }
 
-enum settings_unbaked settings_choose_unbaked(const struct settings *settings)
+enum settings_unbaked
+settings_choose_method_without_model(const struct settings *settings)
 {
     const struct glint_options *const o = &settings->options;
     const bool is_chosen = GLINT_OPTION_GIVEN(o, rays) || o->memory ||
@@ -122,14 +123,14 @@ enum settings_unbaked settings_choose_unbaked(const struct settings *settings)
     return is_chosen ? SETTINGS_BAKE : SETTINGS_TRACE;
 }
 
-int settings_get_only_ghost(const struct settings *settings)
+int settings_get_selected_ghost(const struct settings *settings)
 {
     return GLINT_OPTION_GIVEN(&settings->options, ghost)
                ? settings->options.ghost
                : -1;
 }
 
-double settings_brightness_scale(const struct settings *settings)
+double settings_compute_brightness_scale(const struct settings *settings)
 {
     return settings->options.gain * exp2(settings->options.exposure);
 }
@@ -159,8 +160,8 @@ void settings_write_json(struct json_writer *json,
                    r->dials.dim_codes, r->blurred, r->unveiled);
 }
 
-void settings_describe_lights(const struct glint_engine_report *r,
-                              char text[64])
+void settings_write_light_counts(const struct glint_engine_report *r,
+                                 char text[64])
 {
     if (r->drawn_lights < r->lights - r->beyond_lights)
         snprintf(text, 64, "%d lights, %d after merging", r->lights,
@@ -169,8 +170,8 @@ void settings_describe_lights(const struct glint_engine_report *r,
         snprintf(text, 64, "%d lights", r->lights);
 }
 
-void settings_warn_lights(const struct tool *tool,
-                          const struct glint_engine_report *r)
+void settings_print_light_warnings(const struct tool *tool,
+                                   const struct glint_engine_report *r)
 {
     if (r->tight)
         fprintf(

@@ -92,34 +92,35 @@ bool settings_set_number(struct settings *settings, const char *name,
 void settings_set_quality(struct settings *settings, double quality);
 
 /* Returns whether --grid, --quality or --error was given. */
-bool settings_has_grid(const struct settings *settings);
+bool settings_has_grid_option(const struct settings *settings);
 
 /* Returns the index of the only ghost that is drawn, or -1 if all are drawn. */
-int settings_get_only_ghost(const struct settings *settings);
+int settings_get_selected_ghost(const struct settings *settings);
 
 /* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
 
 /* Returns how a command that draws a single picture opens a table without a
  * model: with exact rays, unless an option requests or needs a model. */
-enum settings_unbaked settings_choose_unbaked(const struct settings *settings);
+enum settings_unbaked
+settings_choose_method_without_model(const struct settings *settings);
 
 /* Returns the factor on the flare's light, gain * 2^EV. */
-double settings_brightness_scale(const struct settings *settings);
+double settings_compute_brightness_scale(const struct settings *settings);
 
 /* Writes the report of a frame as members of a JSON object. */
 void settings_write_json(struct json_writer *json,
                          const struct glint_engine_report *report);
 
 /* Writes the numbers of lights found and drawn as text. */
-void settings_describe_lights(const struct glint_engine_report *report,
-                              char text[64]);
+void settings_write_light_counts(const struct glint_engine_report *report,
+                                 char text[64]);
 
 /* Prints warnings to standard error: lights outside the model's angles, and
  * lights that were merged because there are too many; even with -q: ray
  * bundles are missing or the frame is drawn coarser; with -v: cells without
  * light. */
-void settings_warn_lights(const struct tool *tool,
-                          const struct glint_engine_report *report);
+void settings_print_light_warnings(const struct tool *tool,
+                                   const struct glint_engine_report *report);
 
 #endif

@@ -15,7 +15,7 @@
 
 static bool suggest_lens_name(void *suggest, const char *name)
 {
-    suggest_consider(suggest, name, strlen(name));
+    suggest_add_candidate(suggest, name, strlen(name));
     return true;
 }
 
@@ -23,7 +23,7 @@ static bool suggest_lens_name(void *suggest, const char *name)
 struct lens_matches {
     const char *word;
     int n;
-    char text[400]; /* ", NAME, NAME or NAME" */
+    char text[400]; /* list of the names found: ", NAME, NAME or NAME" */
     size_t last;    /* offset of the last comma in TEXT */
 };
 

@@ -36,7 +36,7 @@ int cmd_bake_motion(struct tool *tool, int argc, char **argv)
     code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
                           file.bytes);
     if (code == EXIT_OK && bake_line_prints_report(tool))
-        motion_file_print(tool, &file);
+        motion_file_print_contents(tool, &file);
     motion_file_close(&file);
     return code;
 }

@@ -52,7 +52,7 @@ static enum glint_status bake_motion_recording(const char *path,
     if (baker)
         status = glint_input_open(&reading.in, path, error);
     if (status == GLINT_OK) {
-        tool_copy_scene_name(path, name);
+        tool_copy_base_name(path, name);
         status = glint_recording_read(baker, path, read_motion_bytes, &reading,
                                       error);
         glint_input_close(&reading.in);
@@ -112,9 +112,9 @@ int motion_file_open(const struct tool *tool, const char *path,
     if (r->bad_frames && !tool->quiet)
         fprintf(
             stderr,
-            "glint %s: %s: in %ld frames foods deviate from their positions by "
-            "more than a thousandth of the extent, %.4g; most in frame %ld, by "
-            "%.4g: they moved, or a reset was not recorded\n",
+            "glint %s: %s: in %ld frames food items deviate from their "
+            "positions by more than a thousandth of the extent, %.4g; most in "
+            "frame %ld, by %.4g: they moved, or a reset was not recorded\n",
             tool->name, path, r->bad_frames, r->span, r->residual_frame,
             r->residual);
     if (r->held_intensities && !tool->quiet)

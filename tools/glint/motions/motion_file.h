@@ -31,7 +31,8 @@ int motion_file_open(const struct tool *tool, const char *path,
 void motion_file_close(struct motion_file *file);
 
 /* Prints the contents of FILE; with --json, as one object. */
-void motion_file_print(const struct tool *tool, struct motion_file *file);
+void motion_file_print_contents(const struct tool *tool,
+                                struct motion_file *file);
 
 /* Writes the pose of each frame, in the units of the recording, to a CSV file:
  * frame,x,y,z,qw,qx,qy,qz. Returns an exit code. */

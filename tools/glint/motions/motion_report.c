@@ -9,7 +9,7 @@
 #include "options/json_writer.h"
 
 struct counts {
-    /* size of each section, bytes */
+    /* bytes of each section of the baked motion */
     size_t header, sensors, events, index, poses, intensities;
     double step; /* resolution of positions, units */
 };
@@ -29,7 +29,7 @@ static struct counts count_motion_contents(const struct motion_file *file)
         .step = ldexp(1, -h->unit_log2)};
 }
 
-static double rotation_angle_deg(const struct glint_motion_header *h)
+static double compute_rotation_angle_deg(const struct glint_motion_header *h)
 {
     return 360 / GLINT_PI * acos(ldexp(h->cos_half_q30, -30));
 }
@@ -48,7 +48,7 @@ static void print_motion_json(const struct motion_file *file,
                "high: [%.9g, %.9g, %.9g], residual: %.6g, residual_frame: %u",
                h->name, h->n_frames, h->n_foods, h->n_sensors,
                h->n_events - h->n_foods, n->step * h->size,
-               rotation_angle_deg(h), n->step, n->step * h->low[0],
+               compute_rotation_angle_deg(h), n->step, n->step * h->low[0],
                n->step * h->low[1], n->step * h->low[2], n->step * h->high[0],
                n->step * h->high[1], n->step * h->high[2],
                n->step * h->residual, h->residual_frame);
@@ -75,7 +75,7 @@ static void print_motion_text(const struct motion_file *file,
 
     printf("%s, a motion of %u frames\n\n", h->name, h->n_frames);
     printf("body         size %.4g, %u sensors that see %.4g degrees\n",
-           n->step * h->size, h->n_sensors, rotation_angle_deg(h));
+           n->step * h->size, h->n_sensors, compute_rotation_angle_deg(h));
     printf("foods        %u, %u resets%s\n", h->n_foods,
            h->n_events - h->n_foods,
            h->intensities ? ", with intensities" : "");
@@ -91,8 +91,8 @@ static void print_motion_text(const struct motion_file *file,
     if (file->is_baked_now)
         printf("path         %.6g long\n", r->path);
     if (file->is_baked_now && r->has_senses)
-        printf("rv and tv    integrate to a position %.4g off at the end, %.4g "
-               "at most\n",
+        printf("rv and tv    integrate to positions that are off by %.4g at "
+               "the end, %.4g at most\n",
                r->senses_off, r->senses_most);
     printf("bytes        %zu\n  header       %8zu\n  sensors      %8zu\n"
            "  events       %8zu\n  index        %8zu\n  poses        %8zu\n",
@@ -101,7 +101,8 @@ static void print_motion_text(const struct motion_file *file,
         printf("  intensities  %8zu\n", n->intensities);
 }
 
-void motion_file_print(const struct tool *tool, struct motion_file *file)
+void motion_file_print_contents(const struct tool *tool,
+                                struct motion_file *file)
 {
     const struct counts n = count_motion_contents(file);
 

@@ -15,14 +15,14 @@ struct bar {
     uint32_t last; /* number of the last frame, at least 1 */
 };
 
-static int frame_position_px(const struct bar *b, uint32_t frame)
+static int compute_frame_position_px(const struct bar *b, uint32_t frame)
 {
     return b->x0 + (int)((int64_t)(b->x1 - b->x0) * frame / b->last);
 }
 
 static void draw_frame_tick(const struct bar *b, uint32_t frame)
 {
-    const int x = frame_position_px(b, frame), high = b->y1 - b->y0;
+    const int x = compute_frame_position_px(b, frame), high = b->y1 - b->y0;
 
     paint_fill_rectangle(&b->paint, x, b->y0 - high, x + b->paint.line, b->y0);
 }
@@ -69,11 +69,11 @@ void draw_time_line(const struct glint_image *image,
     paint_set_colour(&b.paint, 255, 150, 40);
     draw_food_changes(&b, motion);
     paint_set_colour(&b.paint, 240, 240, 240);
-    paint_fill_rectangle(&b.paint, b.x0, b.y0, frame_position_px(&b, now),
-                         b.y1);
-    paint_fill_rectangle(&b.paint, frame_position_px(&b, now) - high / 2,
-                         b.y0 - high, frame_position_px(&b, now) + high / 2 + 1,
-                         b.y1 + high);
+    paint_fill_rectangle(&b.paint, b.x0, b.y0,
+                         compute_frame_position_px(&b, now), b.y1);
+    paint_fill_rectangle(
+        &b.paint, compute_frame_position_px(&b, now) - high / 2, b.y0 - high,
+        compute_frame_position_px(&b, now) + high / 2 + 1, b.y1 + high);
     snprintf(text, sizeof text, "%u/%u", now, n - 1);
     paint_text(&b.paint, b.x1 - paint_text_width(&b.paint, text),
                b.y0 - 2 * high - 6 * b.paint.line, text);

@@ -21,7 +21,7 @@ static bool parse_instruction_sets(struct tool *tool, const char *value)
     static const unsigned sets[] = {0, GLINT_SET_SSE41,
                                     GLINT_SET_SSE41 | GLINT_SET_AVX2,
                                     GLINT_SET_NEON, ~0U};
-    const int word = tool_find_word(value, words);
+    const int word = tool_find_word_index(value, words);
 
     if (word < 0 || (word < 4 && (sets[word] & ~glint_system_sets())))
         return false;
@@ -31,8 +31,8 @@ static bool parse_instruction_sets(struct tool *tool, const char *value)
 }
 
 static char **line;
-static const struct option
-    *taken; /* option table of the command, for --options */
+/* option table of the command, for --options */
+static const struct option *taken;
 
 void tool_set_command_line(char **argv)
 {
@@ -64,7 +64,7 @@ static void suggest_option(const struct tool *tool)
     if (find_last_option(name)) {
         suggest_begin(&s, name);
         for (const struct option *o = taken; o && o->name; o++)
-            suggest_consider(&s, o->name, strlen(o->name));
+            suggest_add_candidate(&s, o->name, strlen(o->name));
         if (suggest_find_best(&s) && s.distance > 0)
             fprintf(stderr, "Did you mean --%s? ", s.best);
     }
@@ -153,7 +153,7 @@ int tool_apply_option(struct tool *tool, int option, const char *value)
         help_print_screen(&help);
         return EXIT_OK;
     case TOOL_HELP_ALL:
-        help_print_all(&help);
+        help_print_complete(&help);
         return EXIT_OK;
     case TOOL_OPTIONS:
         if (!value)

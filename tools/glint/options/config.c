@@ -46,8 +46,8 @@ static void set_error_location(struct pass *p, int line)
 
 /* Sets the error message to FORMAT, with ABOUT in place of its %s, and ends the
  * pass. Returns 0, which means failure to inih. */
-static int report_pass_error(struct pass *p, const char *format,
-                             const char *about)
+static int report_config_error(struct pass *p, const char *format,
+                               const char *about)
 {
     char cause[160];
 
@@ -105,9 +105,10 @@ static char *read_line_for_inih(char *dst, int size, void *stream)
     if (n > 0 && *line == '[')
         p->section_line = p->line;
     if (!is_text_option(line, n))
-        return report_pass_error(p, "holds a control character%s", ""), NULL;
+        return report_config_error(p, "holds a control character%s", ""), NULL;
     if (n > CONFIG_LINE || n + 2 > (size_t)size)
-        return report_pass_error(p, "has a line that is too long%s", ""), NULL;
+        return report_config_error(p, "has a line that is too long%s", ""),
+               NULL;
     memcpy(dst, line, n);
     memcpy(dst + n, "\n", 2);
     return dst;
@@ -124,13 +125,13 @@ static void record_section(struct pass *p, const char *section)
         return;
     snprintf(p->section, sizeof p->section, "%s", section);
     if (p->taking || p->config->tool->quiet ||
-        tool_find_word(section, known) >= 0)
+        tool_find_word_index(section, known) >= 0)
         return;
     set_error_location(p, p->section_line);
-    fprintf(stderr,
-            "glint %s: %s: the section [%s] is unknown; its lines are used all "
-            "the same\n",
-            p->config->tool->name, p->where, section);
+    fprintf(
+        stderr,
+        "glint %s: %s: the section [%s] is unknown, but its lines are used\n",
+        p->config->tool->name, p->where, section);
 }
 
 /* Returns the option NAME, or NULL if files must not contain it: help and
@@ -141,7 +142,7 @@ static const struct option *find_option(const struct config *config,
     static const char *const line_only[] = {"help", "version", "config", NULL};
     const struct option *o = config->options;
 
-    if (tool_find_word(name, line_only) >= 0)
+    if (tool_find_word_index(name, line_only) >= 0)
         return NULL;
     while (o->name && strcmp(o->name, name) != 0)
         o++;
@@ -154,13 +155,13 @@ static int check_config_entry(struct pass *p, const struct option *option,
     const ptrdiff_t index = option - p->config->options;
 
     if (option->has_arg == required_argument && !*value)
-        return report_pass_error(p, "%s needs a value", option->name);
+        return report_config_error(p, "%s needs a value", option->name);
     if (option->has_arg != no_argument)
         return 1;
     if (strcmp(value, "yes") != 0 && strcmp(value, "no") != 0)
-        return report_pass_error(p, "%s accepts yes or no", option->name);
+        return report_config_error(p, "%s accepts yes or no", option->name);
     if (index < MAX_OPTIONS && p->stated[index])
-        return report_pass_error(p, "%s is stated twice", option->name);
+        return report_config_error(p, "%s is stated twice", option->name);
     if (index < MAX_OPTIONS)
         p->stated[index] = true;
     return 1;
@@ -185,8 +186,8 @@ static int apply_config_entry(struct pass *p, const struct option *option,
     p->value += bytes;
     if (code ==
         EXIT_OK) /* an option that ends the command, such as --list-devices */
-        return report_pass_error(p, "%s is an option of the command line only",
-                                 option->name);
+        return report_config_error(
+            p, "%s is an option of the command line only", option->name);
     if (code > 0)
         p->code = code;
     return code < 0;
@@ -203,7 +204,7 @@ static int handle_config_entry(void *ctx, const char *section, const char *name,
     record_section(p, section);
     option = find_option(p->config, name);
     if (!option)
-        return report_pass_error(
+        return report_config_error(
             p, "%s is not an option of configuration files", name);
     return p->taking ? apply_config_entry(p, option, value)
                      : check_config_entry(p, option, value);
@@ -211,7 +212,8 @@ static int handle_config_entry(void *ctx, const char *section, const char *name,
 
 /* ------------------------------------------------------------------- passes */
 
-static void run_parser_pass(struct pass *p, const char *text, size_t bytes)
+static void run_config_parser_pass(struct pass *p, const char *text,
+                                   size_t bytes)
 {
     int malformed;
 
@@ -222,7 +224,7 @@ static void run_parser_pass(struct pass *p, const char *text, size_t bytes)
     malformed = ini_parse_stream(read_line_for_inih, p, handle_config_entry, p);
     if (malformed > 0 && (p->code == EXIT_OK || malformed < p->line)) {
         p->line = malformed;
-        report_pass_error(p, "is neither [section] nor name = value%s", "");
+        report_config_error(p, "is neither [section] nor name = value%s", "");
     }
 }
 
@@ -238,7 +240,7 @@ int config_parse(struct config *config, const char *name, const char *text,
         text += 3;
         bytes -= 3;
     }
-    run_parser_pass(&p, text, bytes);
+    run_config_parser_pass(&p, text, bytes);
     if (p.code != EXIT_OK)
         return p.code;
     /* All values fit into BYTES, as each is shorter than its line. */
@@ -248,7 +250,7 @@ int config_parse(struct config *config, const char *name, const char *text,
         return EXIT_RUNTIME;
     }
     p.taking = true;
-    run_parser_pass(&p, text, bytes);
+    run_config_parser_pass(&p, text, bytes);
     return p.code;
 }
 

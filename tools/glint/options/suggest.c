@@ -17,7 +17,8 @@ static int min_of_three(int a, int b, int c)
 static int compute_edit_distance(const char *a, const char *b)
 {
     const int n = (int)strlen(a), m = (int)strlen(b);
-    int rows[3][SUGGEST_CHARS]; /* rows i - 2, i - 1 and i */
+    int rows[3][SUGGEST_CHARS]; /* rows i - 2, i - 1 and i of the matrix of edit
+                                 * distances */
 
     if (n >= SUGGEST_CHARS || m >= SUGGEST_CHARS)
         return SUGGEST_CHARS;
@@ -43,7 +44,7 @@ void suggest_begin(struct suggest *s, const char *word)
     *s = (struct suggest){.word = word, .distance = SUGGEST_CHARS};
 }
 
-void suggest_consider(struct suggest *s, const char *candidate, size_t n)
+void suggest_add_candidate(struct suggest *s, const char *candidate, size_t n)
 {
     char text[SUGGEST_CHARS];
     int distance;

@@ -4,9 +4,9 @@
  *
  *     struct suggest s;
  *     suggest_begin(&s, "ovrelay");
- *     suggest_consider(&s, "overlay", 7);                    each known word
- *     if (suggest_find_best(&s))
- *         printf("did you mean %s?", suggest_find_best(&s));
+ *     suggest_add_candidate(&s, "overlay", 7);                    each known
+ * word if (suggest_find_best(&s)) printf("did you mean %s?",
+ * suggest_find_best(&s));
  */
 #ifndef GLINT_TOOLS_OPTIONS_SUGGEST_H
 #define GLINT_TOOLS_OPTIONS_SUGGEST_H
@@ -26,7 +26,8 @@ void suggest_begin(struct suggest *suggest, const char *word);
 
 /* Compares CANDIDATE[N] with the mistyped word. A candidate that contains the
  * word has at most distance 1 if the word has 3 letters or more. */
-void suggest_consider(struct suggest *suggest, const char *candidate, size_t n);
+void suggest_add_candidate(struct suggest *suggest, const char *candidate,
+                           size_t n);
 
 /* Returns the nearest candidate if its distance is at most a third of its
  * letters, or 1; else NULL. */

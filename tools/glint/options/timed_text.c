@@ -72,7 +72,7 @@ enum glint_status text_lines_open_pipe(struct text_lines *lines,
                                         strerror(errno));
 }
 
-void text_lines_begin_turn(struct text_lines *lines)
+void text_lines_reset_read_limit(struct text_lines *lines)
 {
     lines->left = READINGS;
 }
@@ -133,7 +133,7 @@ static char *read_next_pipe_line(struct text_lines *l)
     }
 }
 
-char *text_lines_read_raw(struct text_lines *lines)
+char *text_lines_read_untrimmed(struct text_lines *lines)
 {
     char *const line = lines->rest, *end;
 
@@ -164,7 +164,7 @@ char *text_lines_read_next(struct text_lines *lines)
 {
     char *line;
 
-    while ((line = text_lines_read_raw(lines))) {
+    while ((line = text_lines_read_untrimmed(lines))) {
         line = trim_blanks(line);
         if (*line && *line != '#')
             return line;
@@ -248,7 +248,8 @@ static const char *report_missing_column(struct text_lines *lines,
                                          const struct text_column *column,
                                          int n)
 {
-    int at = snprintf(lines->cause, sizeof lines->cause, "a key is none of");
+    int at = snprintf(lines->cause, sizeof lines->cause,
+                      "unknown key; expected one of");
 
     for (int i = 0; i < n; i++)
         at += snprintf(lines->cause + at, sizeof lines->cause - (size_t)at,
@@ -277,7 +278,7 @@ const char *text_parse_json_object(struct text_lines *lines, char *line,
             return report_missing_column(lines, column, n);
         value = skip_blanks(end + 1);
         if (*value != ':')
-            return "expected : after a key";
+            return "a colon is missing after a key";
         value = skip_blanks(value + 1);
         end = *value == '"' ? strchr(value + 1, '"') : NULL;
         at = end ? end + 1 : value + strspn(value, numerals);

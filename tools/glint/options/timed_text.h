@@ -9,8 +9,8 @@
  * or from a pipe, without waiting for data:
  *
  *     text_lines_open_pipe(&lines, path, &error);
- *     text_lines_begin_turn(&lines);                             each picture
- *     while ((line = text_lines_read_next(&lines)))
+ *     text_lines_reset_read_limit(&lines);                             each
+ * picture while ((line = text_lines_read_next(&lines)))
  *         ...
  *     text_lines_close(&lines);
  */
@@ -59,19 +59,19 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
 bool text_is_named_pipe(const char *path);
 
 /* Opens the FIFO PATH, or the standard input if PATH is "-".
- * text_lines_begin_turn() begins a turn, in which at most 64 KiB are read. Zero
- * bytes become '?'. Error: GLINT_E_IO. */
+ * text_lines_reset_read_limit() begins a turn, in which at most 64 KiB are
+ * read. Zero bytes become '?'. Error: GLINT_E_IO. */
 enum glint_status text_lines_open_pipe(struct text_lines *lines,
                                        const char *path,
                                        struct glint_error *error);
-void text_lines_begin_turn(struct text_lines *lines);
+void text_lines_reset_read_limit(struct text_lines *lines);
 
 /* Return the next line, which the caller may change, or NULL at the end of
- * the file or turn. text_lines_read_raw() returns every line unchanged;
+ * the file or turn. text_lines_read_untrimmed() returns every line unchanged;
  * text_lines_read_next() trims lines and skips those that are empty or begin
  * with
  * #. */
-char *text_lines_read_raw(struct text_lines *lines);
+char *text_lines_read_untrimmed(struct text_lines *lines);
 char *text_lines_read_next(struct text_lines *lines);
 
 /* Calls TAKE with each line until the end or the first failure, then closes

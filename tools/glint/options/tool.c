@@ -197,7 +197,7 @@ bool tool_parse_size(const char *text, int *width, int *height)
            tool_parse_integer(x + 1, 1, GLINT_MAX_SIDE, height);
 }
 
-int tool_find_word(const char *text, const char *const *words)
+int tool_find_word_index(const char *text, const char *const *words)
 {
     for (int i = 0; words[i]; i++)
         if (strcmp(text, words[i]) == 0)
@@ -254,7 +254,8 @@ int tool_check_ending(struct tool *tool, const char *path, const char *ending,
 {
     return !*glint_get_extension(path) || glint_has_extension(path, ending)
                ? EXIT_OK
-               : tool_usage(tool, "%s is a %s, not '%s'", what, ending, path);
+               : tool_usage(tool, "%s must be a %s, not '%s'", what, ending,
+                            path);
 }
 
 /* ----------------------------------------------------------------- progress */

@@ -38,13 +38,13 @@ struct tool {
     int verbose;
     int n_threads;
     int seed; /* random seed for synth, and for the noise of live -d test */
-    unsigned
-        sets_off; /* instruction sets that kernels must not use, one bit each */
+    /* instruction sets that kernels must not use, one bit each */
+    unsigned sets_off;
     const char *kernels; /* argument of --kernels, or NULL */
-    struct glint_workers
-        *workers;        /* thread pool, created by tool_start_threads() */
-    const char *written; /* output file, which no scene may read, or
-                            NULL */
+    /* thread pool, created by tool_start_threads() */
+    struct glint_workers *workers;
+    const char *written;       /* output file, which no scene may read, or
+                                  NULL */
     struct glint_error *cause; /* receives messages of tool_error(); may be
                                   NULL */
     const char *where; /* "FILE:LINE" of the option being parsed, or NULL for
@@ -106,7 +106,7 @@ bool tool_parse_integer(const char *text, int low, int high, int *value);
 bool tool_parse_size(const char *text, int *width, int *height);
 
 /* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
-int tool_find_word(const char *text, const char *const *words);
+int tool_find_word_index(const char *text, const char *const *words);
 
 /* Returns the time of a monotonic clock, s. */
 double tool_clock_s(void);

@@ -12,32 +12,34 @@ static void add_file_path(struct apart_file *files, int *n, const char *option,
         files[(*n)++] = (struct apart_file){option, path};
 }
 
-void apart_add_input(struct apart *files, const char *option, const char *path)
+void file_conflicts_add_input(struct apart *files, const char *option,
+                              const char *path)
 {
     add_file_path(files->read, &files->n_read, option, path);
 }
 
-void apart_add_output(struct apart *files, const char *option, const char *path)
+void file_conflicts_add_output(struct apart *files, const char *option,
+                               const char *path)
 {
     add_file_path(files->written, &files->n_written, option, path);
 }
 
-void apart_add_drawing_files(struct apart *files,
-                             const struct drawing_line *line)
+void file_conflicts_add_drawing_files(struct apart *files,
+                                      const struct drawing_line *line)
 {
     const struct glint_options *const o = &line->settings.options;
 
-    apart_add_input(files, "--lens", o->lens);
-    apart_add_input(files, "--lights", o->lights);
-    apart_add_input(files, "--mask", o->mask);
+    file_conflicts_add_input(files, "--lens", o->lens);
+    file_conflicts_add_input(files, "--lights", o->lights);
+    file_conflicts_add_input(files, "--mask", o->mask);
     if (!line->keys_text)
-        apart_add_input(files, "--keys", o->keys);
-    apart_add_input(files, "--scene", o->scene);
-    apart_add_input(files, "--pose", o->pose);
-    apart_add_input(files, "--control", o->control);
-    apart_add_input(files, "--ghosts", o->ghosts);
-    apart_add_input(files, "--stop-mask", o->stop_mask);
-    apart_add_output(files, "--save-lights", o->save_lights);
+        file_conflicts_add_input(files, "--keys", o->keys);
+    file_conflicts_add_input(files, "--scene", o->scene);
+    file_conflicts_add_input(files, "--pose", o->pose);
+    file_conflicts_add_input(files, "--control", o->control);
+    file_conflicts_add_input(files, "--ghosts", o->ghosts);
+    file_conflicts_add_input(files, "--stop-mask", o->stop_mask);
+    file_conflicts_add_output(files, "--save-lights", o->save_lights);
 }
 
 /* Returns whether writing OUTPUT would overwrite INPUT. Numbered patterns are
@@ -74,7 +76,8 @@ static int report_overwritten_input(const struct tool *tool,
                       output->option, name, input->option);
 }
 
-int apart_check_outputs(const struct tool *tool, const struct apart *files)
+int file_conflicts_check_outputs(const struct tool *tool,
+                                 const struct apart *files)
 {
     for (int i = 0; i < files->n_written; i++) {
         const struct apart_file *const to = &files->written[i];

@@ -4,10 +4,10 @@
  * another output.
  *
  *     struct apart files = {.n_read = 0};
- *     apart_add_drawing_files(&files, &drawing.line);  files of its options
- *     apart_add_input(&files, NULL, "in.png");         the input
- *     apart_add_output(&files, "-o", "out.png");
- *     code = apart_check_outputs(&tool, &files);
+ *     file_conflicts_add_drawing_files(&files, &drawing.line);  files of its
+ * options file_conflicts_add_input(&files, NULL, "in.png");         the input
+ *     file_conflicts_add_output(&files, "-o", "out.png");
+ *     code = file_conflicts_check_outputs(&tool, &files);
  *
  * Patterns of numbered files are compared as text. */
 #ifndef GLINT_TOOLS_OVERLAY_APART_H
@@ -27,16 +27,18 @@ struct apart {
 
 /* Add PATH, the value of OPTION (NULL: the input), to the files that are read
  * or written, at most APART_FILES of each. Do nothing if PATH is NULL. */
-void apart_add_input(struct apart *files, const char *option, const char *path);
-void apart_add_output(struct apart *files, const char *option,
-                      const char *path);
+void file_conflicts_add_input(struct apart *files, const char *option,
+                              const char *path);
+void file_conflicts_add_output(struct apart *files, const char *option,
+                               const char *path);
 
 /* Adds all input and output files named by the options of LINE. */
-void apart_add_drawing_files(struct apart *files,
-                             const struct drawing_line *line);
+void file_conflicts_add_drawing_files(struct apart *files,
+                                      const struct drawing_line *line);
 
 /* Rejects an output that is also an input, which would be overwritten, or also
  * another output. Returns an exit code. */
-int apart_check_outputs(const struct tool *tool, const struct apart *files);
+int file_conflicts_check_outputs(const struct tool *tool,
+                                 const struct apart *files);
 
 #endif

@@ -29,7 +29,7 @@ static void lower_preview_quality(struct settings *s)
     struct glint_options *const o = &s->options;
     const double tolerance = s->tolerance;
 
-    if (settings_has_grid(s) || o->budget > 0)
+    if (settings_has_grid_option(s) || o->budget > 0)
         return;
     settings_set_quality(s, preview_quality);
     GLINT_OPTION_GIVEN(o, quality) = false;
@@ -40,8 +40,8 @@ static void lower_preview_quality(struct settings *s)
 
 /* Zooms the lens to ZOOM, mm or 0 .. 1. On GLINT_E_ARGUMENT the zoom does not
  * change. */
-static enum glint_status zoom_lens_to(struct drawing *d, double zoom,
-                                      struct glint_error *error)
+static enum glint_status set_lens_zoom(struct drawing *d, double zoom,
+                                       struct glint_error *error)
 {
     struct settings *const s = &d->line.settings;
     const enum glint_status status =
@@ -63,18 +63,18 @@ static enum glint_status set_option_by_control(void *ctx, const char *name,
 {
     struct drawing *const d = ctx;
     struct settings *const s = &d->line.settings;
-    const int column = keys_find_column(name);
+    const int column = key_frames_find_column(name);
     const double before = s->options.f_number;
     struct opened_lens *const lens = &d->files.lens;
     struct glint_error unused;
     enum glint_status status;
 
-    if (column >= 0 && keys_has_column(&d->files.keys, column)) {
+    if (column >= 0 && key_frames_have_column(&d->files.keys, column)) {
         snprintf(error->text, sizeof error->text, "key frames set %s", name);
         return GLINT_E_ARGUMENT;
     }
     if (column == KEYS_ZOOM)
-        return zoom_lens_to(d, value, error);
+        return set_lens_zoom(d, value, error);
     if (column != KEYS_F_NUMBER)
         return glint_options_set(&s->options, name, value, error);
     if (s->options.rays == GLINT_RAYS_EXACT) {
@@ -144,7 +144,8 @@ void drawing_close(struct drawing *drawing)
     drawing->run.lamp = NULL;
 }
 
-void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
+void drawing_replace_settings_and_lens(struct drawing *drawing,
+                                       const struct drawing *fresh)
 {
     const struct lamp_save save = drawing->files.save;
     const int n_frames = drawing->run.n_frames;
@@ -159,7 +160,7 @@ void drawing_replace(struct drawing *drawing, const struct drawing *fresh)
         drawing->files.save = save;
         drawing->run.n_frames = n_frames;
     }
-    opened_lens_follow_move(&drawing->files.lens);
+    opened_lens_update_table_pointer(&drawing->files.lens);
 }
 
 int drawing_finish_lamp_file(const struct tool *tool, struct drawing *drawing)
@@ -231,7 +232,7 @@ static int report_sizing_failure(const struct tool *tool,
                                  const struct glint_error *error)
 {
     const size_t mib = (size_t)1 << 20;
-    const size_t scene = over_scene_memory_bytes(&d->files.scene);
+    const size_t scene = over_scene_count_memory_bytes(&d->files.scene);
     char text[400], more[64] = "";
 
     if (status != GLINT_E_MEMORY || !d->line.reserve_bytes)
@@ -247,7 +248,7 @@ static int report_sizing_failure(const struct tool *tool,
 static int allocate_engine(const struct tool *tool, struct drawing *d)
 {
     const struct drawing_line *const line = &d->line;
-    const size_t scene = over_scene_memory_bytes(&d->files.scene);
+    const size_t scene = over_scene_count_memory_bytes(&d->files.scene);
     struct drawing_run *const run = &d->run;
     struct glint_engine_config cfg;
     struct glint_error error = {""};
@@ -256,7 +257,7 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
     opened_lens_configure_engine(tool, &d->files.lens, &line->settings,
                                  run->view.width, run->view.height, &cfg);
     cfg.search.more_lamps = count_max_given_lamps(d);
-    /* the memory that the scene does not use */
+    /* the flare gets the memory that the scene does not use */
     if (line->reserve_bytes && !d->files.lens.is_unbaked)
         cfg.arena_bytes =
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
@@ -306,10 +307,11 @@ int drawing_allocate(const struct tool *tool, struct drawing *drawing,
         (!drawing->files.lens.is_unbaked ||
          drawing->line.settings.unbaked != SETTINGS_SEARCH))
         warn_of_off_screen_lamps(tool, &drawing->line.at, width, height);
-    run->view = drawing->files.has_lens
-                    ? opened_lens_view(&drawing->files.lens,
+    run->view =
+        drawing->files.has_lens
+            ? opened_lens_compute_view(&drawing->files.lens,
                                        &drawing->line.settings, width, height)
-                    : (struct glint_view){width, height, 1, {0, {0}}};
+            : (struct glint_view){width, height, 1, {0, {0}}};
     code = allocate_scene(drawing, width, height);
     if (code == EXIT_OK && drawing->files.has_lens)
         code = allocate_engine(tool, drawing);
@@ -322,30 +324,30 @@ int drawing_allocate(const struct tool *tool, struct drawing *drawing,
 /* Zooms the lens to the value of the key frames at FRAME. If the lens cannot
  * zoom so far, the zoom of the previous frame remains; opening the files has
  * ruled this out. */
-static void zoom_lens_by_keys(struct drawing *d, int frame)
+static void set_zoom_by_keys(struct drawing *d, int frame)
 {
     const double before = d->line.settings.zoom.zoom;
     const double zoom =
-        keys_interpolate_at(&d->files.keys, KEYS_ZOOM, frame, before);
+        key_frames_interpolate_at(&d->files.keys, KEYS_ZOOM, frame, before);
     struct glint_error error;
 
-    if (keys_has_column(&d->files.keys, KEYS_ZOOM) && zoom != before)
-        zoom_lens_to(d, zoom, &error);
+    if (key_frames_have_column(&d->files.keys, KEYS_ZOOM) && zoom != before)
+        set_lens_zoom(d, zoom, &error);
 }
 
 /* Sets the f-number of the lens by the key frames at FRAME. The exposure stays
  * that of the widest stop. */
-static enum glint_status stop_lens_by_keys(struct drawing *d, int frame)
+static enum glint_status set_f_number_by_keys(struct drawing *d, int frame)
 {
     const struct keys *const keys = &d->files.keys;
     struct settings *const s = &d->line.settings;
     struct glint_engine_camera *const stop = &s->camera;
-    const double f_number =
-        keys_interpolate_at(keys, KEYS_F_NUMBER, frame, s->options.f_number);
-    const double turn =
-        keys_interpolate_at(keys, KEYS_TURN, frame, stop->blade_rotation_deg);
-    const double round =
-        keys_interpolate_at(keys, KEYS_ROUND, frame, stop->iris.roundness);
+    const double f_number = key_frames_interpolate_at(
+        keys, KEYS_F_NUMBER, frame, s->options.f_number);
+    const double turn = key_frames_interpolate_at(keys, KEYS_TURN, frame,
+                                                  stop->blade_rotation_deg);
+    const double round = key_frames_interpolate_at(keys, KEYS_ROUND, frame,
+                                                   stop->iris.roundness);
     struct glint_error error;
     enum glint_status status;
 
@@ -367,13 +369,14 @@ static void move_lamp_by_keys(struct lamp_list *list, const struct keys *keys,
 {
     struct lamp_row *row;
 
-    if (!keys_has_column(keys, KEYS_X) || !keys_has_column(keys, KEYS_Y))
+    if (!key_frames_have_column(keys, KEYS_X) ||
+        !key_frames_have_column(keys, KEYS_Y))
         return;
     row = &list->row[list->n - 1];
-    row->x = keys_interpolate_at(keys, KEYS_X, frame, 0);
-    row->y = keys_interpolate_at(keys, KEYS_Y, frame, 0);
-    row->power =
-        exp2(keys_interpolate_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
+    row->x = key_frames_interpolate_at(keys, KEYS_X, frame, 0);
+    row->y = key_frames_interpolate_at(keys, KEYS_Y, frame, 0);
+    row->power = exp2(
+        key_frames_interpolate_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
 }
 
 /* Sets zoom, f-number and brightness of the next frame: first by control lines,
@@ -388,16 +391,19 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
     over_scene_apply_control(&d->files.scene, frame);
     if (!o->keys)
         return GLINT_OK;
-    o->exposure = keys_interpolate_at(keys, KEYS_EXPOSURE, frame, o->exposure);
-    o->gain = keys_interpolate_at(keys, KEYS_GAIN, frame, o->gain);
-    o->strength = keys_interpolate_at(keys, KEYS_STRENGTH, frame, o->strength);
-    if (keys_has_column(keys, KEYS_STARBURST)) {
+    o->exposure =
+        key_frames_interpolate_at(keys, KEYS_EXPOSURE, frame, o->exposure);
+    o->gain = key_frames_interpolate_at(keys, KEYS_GAIN, frame, o->gain);
+    o->strength =
+        key_frames_interpolate_at(keys, KEYS_STRENGTH, frame, o->strength);
+    if (key_frames_have_column(keys, KEYS_STARBURST)) {
         GLINT_OPTION_GIVEN(o, starburst) = true;
-        o->starburst = keys_interpolate_at(keys, KEYS_STARBURST, frame, 1);
+        o->starburst =
+            key_frames_interpolate_at(keys, KEYS_STARBURST, frame, 1);
     }
-    zoom_lens_by_keys(d, frame);
+    set_zoom_by_keys(d, frame);
     move_lamp_by_keys(&d->files.list, keys, frame);
-    return stop_lens_by_keys(d, frame);
+    return set_f_number_by_keys(d, frame);
 }
 
 /* -------------------------------------------------------------------- lamps */
@@ -678,8 +684,9 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
-    /* Brightness was measured, if at all, when the engine was made: what
-     * follows is drawn once. */
+    /* If brightness had to be measured, this was done when the engine was
+     * created. From here on every ray is traced once, so that the progress is
+     * steady. */
     if (run->is_progressing) {
         print_exact_ray_notice(drawing);
         tool_progress_start(&run->progress, drawing->files.scene.tool,
@@ -766,7 +773,7 @@ static void draw_lamp_mark(const struct drawing_run *run, double focal_mm,
         track = run->lamp[i].track;
     track.x_q8 = (int32_t)(row.x * 256);
     track.y_q8 = (int32_t)(row.y * 256);
-    show_lamp_mark_of(image, &track, row.power);
+    show_lamp_mark_with_power(image, &track, row.power);
 }
 
 void drawing_draw_marks(const struct drawing *drawing,
@@ -776,8 +783,8 @@ void drawing_draw_marks(const struct drawing *drawing,
     const struct drawing_run *const run = &drawing->run;
     if (run->engine && line->settings.options.preview)
         /* numbers are omitted if memory is short */
-        preview_draw_numbers(run->engine, run->lamp, run->n_lamps,
-                             drawing_exposure_factor(run), image);
+        preview_draw_ghost_numbers(run->engine, run->lamp, run->n_lamps,
+                                   drawing_get_exposure_factor(run), image);
     if (line->show_time_line)
         over_scene_draw_time_line(&drawing->files.scene, image);
     if (!line->show_lights || !run->engine)
@@ -795,12 +802,12 @@ bool drawing_has_marks(const struct drawing_line *line)
 
 /* ------------------------------------------------------------------ results */
 
-double drawing_exposure_factor(const struct drawing_run *run)
+double drawing_get_exposure_factor(const struct drawing_run *run)
 {
     return glint_engine_exposed(run->engine)->scale;
 }
 
-bool drawing_has_restarted(const struct drawing *drawing)
+bool drawing_has_exposure_restarted(const struct drawing *drawing)
 {
     return !drawing->files.has_lens ||
            glint_engine_exposed(drawing->run.engine)->is_new;

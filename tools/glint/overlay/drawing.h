@@ -23,8 +23,8 @@ struct drawing_run {
     struct glint_engine *engine; /* NULL without a lens, or before
                                     drawing_allocate() */
     struct glint_engine_cache cache;
-    struct tool_progress
-        progress; /* progress of the first frame if rays are exact */
+    /* progress of the first frame if rays are exact */
+    struct tool_progress progress;
     bool is_progressing, is_sized;
     int n_frames;
 
@@ -34,9 +34,10 @@ struct drawing_run {
     double white;
     bool is_measured;
 
-    /* Result of the last frame */
-    struct glint_engine_lamp
-        *lamp; /* array for all lamps: user-defined, detected, from lists */
+    /* The members below describe the last frame. */
+    /* all lamps of the frame: detected ones, those of options and lists, then
+     * those of the scene */
+    struct glint_engine_lamp *lamp;
     int n_lamps, n_own, n_found; /* number of all lamps; the first n_own do not
                                     come from the scene; the first n_found of
                                     them were detected in the picture */
@@ -46,8 +47,8 @@ struct drawing_run {
 };
 
 struct drawing {
-    struct drawing_line line; /* key frames change its settings in every
-                                 frame */
+    struct drawing_line line; /* options of the flare; key frames change
+                               * line.settings in every frame */
     struct drawing_files files;
     struct drawing_run run;
 };
@@ -122,15 +123,16 @@ enum glint_status drawing_detect_lamps_only(struct drawing *drawing,
 
 /* Returns the factor that the exposure applies to the power of lamps. Call it
  * after drawing_set_exposure(). */
-double drawing_exposure_factor(const struct drawing_run *run);
+double drawing_get_exposure_factor(const struct drawing_run *run);
 
 /* Returns whether tracking and exposure restarted in the last frame, for
  * example after a cut. */
-bool drawing_has_restarted(const struct drawing *drawing);
+bool drawing_has_exposure_restarted(const struct drawing *drawing);
 
 /* Closes DRAWING and moves FRESH into it. FRESH must be open, without a call of
  * drawing_allocate(). An open output file of lamps stays open. */
-void drawing_replace(struct drawing *drawing, const struct drawing *fresh);
+void drawing_replace_settings_and_lens(struct drawing *drawing,
+                                       const struct drawing *fresh);
 
 /* Completes the output file of lamps after a successful run. Returns an exit
  * code. */

@@ -11,8 +11,8 @@
 
 /* Requests a model for the smallest f-number of the key frames (SIGN 1), or for
  * the largest (SIGN -1). */
-static void request_min_f_number(struct settings *s, struct drawing_files *f,
-                                 int sign)
+static void request_model_for_stop_keys(struct settings *s,
+                                        struct drawing_files *f, int sign)
 {
     const struct key_value *key = f->keys.key[KEYS_F_NUMBER];
 
@@ -29,16 +29,17 @@ static void request_min_f_number(struct settings *s, struct drawing_files *f,
 static int check_stop_keys(const struct tool *tool, struct settings *s,
                            struct drawing_files *f)
 {
-    const bool is_stopped = keys_has_column(&f->keys, KEYS_F_NUMBER);
-    const bool is_round = keys_has_column(&f->keys, KEYS_ROUND);
+    const bool is_stopped = key_frames_have_column(&f->keys, KEYS_F_NUMBER);
+    const bool is_round = key_frames_have_column(&f->keys, KEYS_ROUND);
 
-    if (!is_stopped && !is_round && !keys_has_column(&f->keys, KEYS_TURN))
+    if (!is_stopped && !is_round &&
+        !key_frames_have_column(&f->keys, KEYS_TURN))
         return EXIT_OK;
     if (s->options.rays == GLINT_RAYS_EXACT)
         return tool_usage(tool, "--keys: changing the stop between frames "
                                 "needs a model, not --rays exact");
     if (is_stopped)
-        request_min_f_number(s, f, 1);
+        request_model_for_stop_keys(s, f, 1);
     return EXIT_OK;
 }
 
@@ -52,12 +53,12 @@ static int open_key_file(const struct tool *tool, struct drawing_line *line,
     if (!o->keys)
         return EXIT_OK;
     status = line->keys_text
-                 ? keys_parse_text(&f->keys, o->keys, line->keys_text,
-                                   strlen(line->keys_text), &error)
-                 : keys_read_file(&f->keys, o->keys, &error);
+                 ? key_frames_parse_text(&f->keys, o->keys, line->keys_text,
+                                         strlen(line->keys_text), &error)
+                 : key_frames_read_file(&f->keys, o->keys, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (keys_has_column(&f->keys, KEYS_EXPOSURE)) {
+    if (key_frames_have_column(&f->keys, KEYS_EXPOSURE)) {
         if (line->dial == ENGINE_OPTION_OF(strength))
             return tool_usage(tool,
                               "--strength sets the exposure; the column "
@@ -77,9 +78,9 @@ static int check_narrowest_stop(const struct tool *tool, struct settings *s,
     struct glint_error error = {""};
     int code = EXIT_OK;
 
-    if (!keys_has_column(&f->keys, KEYS_F_NUMBER))
+    if (!key_frames_have_column(&f->keys, KEYS_F_NUMBER))
         return EXIT_OK;
-    request_min_f_number(s, f, -1);
+    request_model_for_stop_keys(s, f, -1);
     if (opened_lens_set_stop(&f->lens, s, &error) != GLINT_OK)
         code = settings_report_bad_stop(tool, s, error.text);
     s->options.f_number = widest;
@@ -95,7 +96,8 @@ static int check_narrowest_stop(const struct tool *tool, struct settings *s,
  * sets no option. */
 static int find_key_column(const struct control_line *line)
 {
-    return line->verb == CONTROL_OPTION ? keys_find_column(line->name[0]) : -1;
+    return line->verb == CONTROL_OPTION ? key_frames_find_column(line->name[0])
+                                        : -1;
 }
 
 /* Prints the error of control line I. Returns an exit code. */
@@ -107,9 +109,9 @@ static int report_bad_control_line(const struct tool *tool,
     char where[CONTROL_WHERE];
 
     controls_format_location(&scene->control, i, where);
-    control_report_error(&shown, where,
-                         controls_get_line(&scene->control, i)->column, "%s",
-                         cause);
+    control_set_line_error(&shown, where,
+                           controls_get_line(&scene->control, i)->column, "%s",
+                           cause);
     return tool_fail(tool, GLINT_E_FORMAT, shown.text);
 }
 
@@ -196,7 +198,7 @@ static int check_zoom_options(const struct tool *tool,
 
     if (!f->has_lens)
         f->scene.set_option = NULL;
-    if (!keys_has_column(&f->keys, KEYS_ZOOM) || !f->has_lens ||
+    if (!key_frames_have_column(&f->keys, KEYS_ZOOM) || !f->has_lens ||
         tool_is_model(s->options.lens))
         return EXIT_OK;
     code = tool_read_lens(tool, s->options.lens, &f->lens.table);
@@ -234,8 +236,8 @@ static enum glint_status add_key_lamp(struct drawing_files *f)
                                  .level = 1,
                                  .next = -1};
 
-    if (!keys_has_column(&f->keys, KEYS_X) ||
-        !keys_has_column(&f->keys, KEYS_Y))
+    if (!key_frames_have_column(&f->keys, KEYS_X) ||
+        !key_frames_have_column(&f->keys, KEYS_Y))
         return GLINT_OK;
     return lamp_list_add(&f->list, &row);
 }
@@ -275,9 +277,8 @@ static int open_scene_file(const struct tool *tool,
                           "--lens is none; use 'camera fov'",
                           f->scene.file);
     return o->layer != GLINT_LAYER_COMPOSITE
-               ? tool_usage(
-                     tool,
-                     "--layer needs the flare of a lens; --lens none has none")
+               ? tool_usage(tool,
+                            "--layer needs a lens: --lens none draws no flare")
                : EXIT_OK;
 }
 
@@ -327,7 +328,7 @@ int drawing_files_open(const struct tool *tool, struct drawing_line *line,
 
 void drawing_files_close(struct drawing_files *files)
 {
-    keys_free(&files->keys);
+    key_frames_free(&files->keys);
     occlusion_close(&files->occlusion);
     over_scene_close(&files->scene);
     lamp_save_abort(&files->save);

@@ -15,7 +15,8 @@
 #include "overlay/over_scene.h"
 
 struct drawing_files {
-    bool has_lens; /* false with --lens none, which draws the scene only */
+    bool has_lens; /* whether there is a lens; false with --lens none, which
+                    * draws the scene only */
     struct opened_lens lens;
     bool is_listed;        /* --lights disables the detection of lamps */
     struct lamp_list list; /* lamps of --lights, --light-at and key frames */

@@ -72,7 +72,7 @@ void drawing_line_set_defaults(struct drawing_line *line)
 int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,
                              const char *name)
 {
-    const struct style *const style = find_style_of_lens(name);
+    const struct style *const style = find_style_by_name(name);
     int code = -1;
 
     if (!style)

@@ -24,7 +24,7 @@ struct drawing_line {
     struct scene_dials scene_dials; /* quality parameters of the scene, set by
                                        options; size and camera are set later */
     struct lamp_list at;            /* lamps of --light-at */
-    int n_hand;                     /* number of lamps of --light */
+    int n_hand;                     /* number of lamps given by --light */
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
     /* bytes allocated for frames at the start; 0: allocated when needed */
     size_t reserve_bytes;

@@ -9,7 +9,7 @@
 
 #include "posix/error.h"
 
-bool folder_is_folder(const char *path)
+bool folder_is_path_a_folder(const char *path)
 {
     const size_t n = strlen(path);
     struct stat file;
@@ -82,8 +82,9 @@ static int check_folder_inputs(const struct tool *tool, char **input, int n)
 
 /* Rejects an output in FOLDER that would overwrite another input. FILE is
  * scratch memory for N files. */
-static int check_output_is_no_input(const struct tool *tool, const char *folder,
-                                    char **input, struct stat *file, int n)
+static int check_output_overwrites_no_input(const struct tool *tool,
+                                            const char *folder, char **input,
+                                            struct stat *file, int n)
 {
     char path[FOLDER_PATH];
     struct stat out;
@@ -115,7 +116,7 @@ int folder_create(const struct tool *tool, const char *folder, char **input,
     if (code == EXIT_OK && n > 1)
         code = check_stream_options(tool, options);
     if (code == EXIT_OK)
-        code = check_output_is_no_input(tool, folder, input, file, n);
+        code = check_output_overwrites_no_input(tool, folder, input, file, n);
     free(file);
     if (code != EXIT_OK)
         return code;

@@ -11,7 +11,7 @@
 enum { FOLDER_PATH = 4096 };
 
 /* Returns whether PATH is an existing folder or ends in a slash. */
-bool folder_is_folder(const char *path);
+bool folder_is_path_a_folder(const char *path);
 
 /* Sets PATH to FOLDER/NAME with the file name of INPUT. Returns false if PATH
  * is too long. */

@@ -107,9 +107,10 @@ compute_light_seen_in_proxy(const struct glint_lamp_track *track, double white)
     return sum;
 }
 
-static void set_lamp_from_excess(struct glint_engine_lamp *lamp,
-                                 const struct sum *sum,
-                                 const struct glint_view *view, double focal_mm)
+static void set_lamp_from_measured_light(struct glint_engine_lamp *lamp,
+                                         const struct sum *sum,
+                                         const struct glint_view *view,
+                                         double focal_mm)
 {
     struct glint_lamp_track *const track = &lamp->track;
 
@@ -136,7 +137,7 @@ void add_lamp_excess(struct glint_engine_lamp *lamp, int n,
         struct sum sum = compute_light_seen_in_proxy(&lamp[i].track, white);
 
         add_excess_light(&sum, samples, all, n, i, white);
-        set_lamp_from_excess(&lamp[i], &sum, view, focal_mm);
+        set_lamp_from_measured_light(&lamp[i], &sum, view, focal_mm);
     }
     free(all);
 }

@@ -58,8 +58,8 @@ static bool can_file_hold_layers(const struct layers *layers, const char *name)
     return false;
 }
 
-int layers_check_names(const struct tool *tool, const struct layers *layers,
-                       bool is_video)
+int layers_check_file_names(const struct tool *tool,
+                            const struct layers *layers, bool is_video)
 {
     struct glint_error error = {""};
     char name[NAME_ROOM], other[NAME_ROOM];
@@ -96,14 +96,14 @@ int layers_check_outputs(const struct tool *tool, const struct layers *layers,
     char name[NAME_ROOM];
     int code;
 
-    apart_add_output(&all, "--layers", layers->path);
-    code = apart_check_outputs(tool, &all);
+    file_conflicts_add_output(&all, "--layers", layers->path);
+    code = file_conflicts_check_outputs(tool, &all);
     for (int k = 0; k < LAYERS && layers->path && code == EXIT_OK; k++) {
         if (!make_layer_file_name(name, layers->path, names[k], 0))
             break;
         all = *files;
-        apart_add_output(&all, "--layers", name);
-        code = apart_check_outputs(tool, &all);
+        file_conflicts_add_output(&all, "--layers", name);
+        code = file_conflicts_check_outputs(tool, &all);
     }
     return code;
 }
@@ -120,7 +120,7 @@ static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
                                     [STARBURST] = GLINT_ENGINE_STAR,
                                     [VEIL] = GLINT_ENGINE_VEIL};
     const bool is_lit =
-        c->run.n_lamps > 0 && drawing_exposure_factor(&c->run) > 0;
+        c->run.n_lamps > 0 && drawing_get_exposure_factor(&c->run) > 0;
     enum glint_status status = GLINT_OK;
     struct glint_engine_report report;
 

@@ -19,11 +19,11 @@ struct layers {
 
 /* Checks before drawing whether the LAYERS files can be written. IS_VIDEO: the
  * name must have a frame number. Returns an exit code. */
-int layers_check_names(const struct tool *tool, const struct layers *layers,
-                       bool is_video);
+int layers_check_file_names(const struct tool *tool,
+                            const struct layers *layers, bool is_video);
 
-/* Calls apart_check_outputs() for FILES plus the output files of all LAYERS.
- * Returns its exit code. */
+/* Calls file_conflicts_check_outputs() for FILES plus the output files of all
+ * LAYERS. Returns its exit code. */
 int layers_check_outputs(const struct tool *tool, const struct layers *layers,
                          const struct apart *files);
 

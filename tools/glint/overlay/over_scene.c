@@ -12,22 +12,22 @@
 /* ------------------------------------------------------- lines of control
  */
 
-/* Checks whether the command LINE can be executed. The value of a flare option
- * is not checked. */
+/* Checks whether the command of LINE can be executed, but not whether a flare
+ * option accepts its value. */
 static enum glint_status check_control_line(const struct over_scene *over,
                                             const struct control_line *line,
                                             const char *where,
                                             struct glint_error *error)
 {
     if (line->verb == CONTROL_OPTION)
-        return over->set_option
-                   ? GLINT_OK
-                   : control_report_error(error, where, 1,
-                                          "this command changes the flare, but "
-                                          "--lens none has none");
+        return over->set_option ? GLINT_OK
+                                : control_set_line_error(
+                                      error, where, 1,
+                                      "this command changes the flare, but "
+                                      "--lens none draws no flare");
     return over->is_open ? steer_check_line(&over->steer, line, where, error)
-                         : control_report_error(error, where, 1,
-                                                "this command needs --scene");
+                         : control_set_line_error(error, where, 1,
+                                                  "this command needs --scene");
 }
 
 static int open_control_input(struct over_scene *over)
@@ -67,16 +67,16 @@ static enum glint_status execute_control_line(struct over_scene *over,
             over->set_option(over->set_ctx, line->name[0], line->v[0], &cause);
         return status == GLINT_OK
                    ? status
-                   : control_report_error(error, where, line->column, "%.120s",
-                                          cause.text);
+                   : control_set_line_error(error, where, line->column,
+                                            "%.120s", cause.text);
     }
     if (line->verb == CONTROL_OPTION || !over->is_open)
         return line->is_change ? GLINT_OK
                                : check_control_line(over, line, where, error);
-    return playback_execute_line(&over->playback, line)
+    return playback_execute_command(&over->playback, line)
                ? GLINT_OK
-               : steer_execute_line(&over->steer, over->frame.scene, line,
-                                    where, error);
+               : steer_execute_command(&over->steer, over->frame.scene, line,
+                                       where, error);
 }
 
 /* Prints an error of a command, at most one per picture. No error ends the
@@ -159,8 +159,8 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return code;
     over->is_open = true;
     playback_init(&over->playback);
-    if (over->baked.model
-            .motion) { /* whose data was validated with the scene */
+    /* The data of the motion was validated with the scene. */
+    if (over->baked.model.motion) {
         const char *reason;
 
         glint_motion_open(&over->motion, over->baked.model.motion + 1,
@@ -359,7 +359,7 @@ static enum glint_status set_scene_quality_level(struct over_scene *over,
                                                  int level)
 {
     const struct scene_dials dials =
-        scene_budget_set_dials(&over->budget, level);
+        scene_budget_get_parameters(&over->budget, level);
 
     over->budget.level = level;
     return allocate_scene_frame(over, &dials) == EXIT_OK ? GLINT_OK
@@ -369,7 +369,7 @@ static enum glint_status set_scene_quality_level(struct over_scene *over,
 enum glint_status over_scene_set_quality(struct over_scene *over,
                                          double quality)
 {
-    const int level = scene_budget_level_of_quality(quality);
+    const int level = scene_budget_find_level_of_quality(quality);
 
     return over->is_sized && !(over->budget_ms > 0) &&
                    level != over->budget.level
@@ -480,7 +480,7 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
 
     for (int i = 0; i < n; i++) {
         struct glint_lamp lamp = {.power = 0};
-        const double level = glints_make_lamp(g, i, view, focal_mm, &lamp);
+        const double level = glints_get_lamp(g, i, view, focal_mm, &lamp);
 
         lamps[i] = glint_engine_lamp_of(&lamp, LAMP_ID_TEXT + HIGHLIGHT_IDS +
                                                    g->track[i].id % 65536);
@@ -493,7 +493,7 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
 /* -------------------------------------------------------------------- report
  */
 
-size_t over_scene_memory_bytes(const struct over_scene *over)
+size_t over_scene_count_memory_bytes(const struct over_scene *over)
 {
     return over->is_sized ? over->frame.bytes : 0;
 }
@@ -518,7 +518,7 @@ void over_scene_write_json(struct json_writer *json,
     json_write(json, "scene: {");
     scene_account_write_json(json, &over->frame, over->baked.bytes);
     json_write(json, "quality: %.3f, lights: %d",
-               scene_budget_flare_quality(&over->budget), over->lights);
+               scene_budget_get_flare_quality(&over->budget), over->lights);
     scene_write_highlights_json(json, &over->frame);
     json_write(json, "lamps_hidden: %d, poses_bad: %ld, control_bad: %ld}",
                over->lamps_hidden, over->poses.file.n_bad, over->control.n_bad);

@@ -32,9 +32,9 @@ struct scene_moved {
 /* A pose file, and the present pose of each object */
 struct scene_poses {
     struct poses file;
-    struct scene_moved
-        *moved; /* present poses: [objects, then lights, then the camera] */
-    int frame;  /* number of the frame whose poses are applied */
+    /* present poses: [objects, then lights, then the camera] */
+    struct scene_moved *moved;
+    int frame;       /* number of the frame whose poses are applied */
     bool has_warned; /* whether a warning about skipped lines was printed */
 };
 
@@ -62,11 +62,11 @@ struct over_scene {
     struct baked_scene baked;
     struct scene_poses poses;
     struct controls control;
-    struct playback
-        playback; /* playback position of poses and recorded motion */
-    int shown;    /* number of the playback frame that was drawn last */
-    struct glint_motion
-        motion; /* recorded motion of the scene, if it has one */
+    /* playback position of poses and recorded motion */
+    struct playback playback;
+    int shown; /* number of the playback frame that was drawn last */
+    /* recorded motion of the scene, if it has one */
+    struct glint_motion motion;
     struct steer steer;
     struct glints glints;
     struct scene_frame frame;
@@ -139,7 +139,7 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
                               struct glint_engine_lamp *lamps);
 
 /* Returns the bytes of memory for drawing. */
-size_t over_scene_memory_bytes(const struct over_scene *over);
+size_t over_scene_count_memory_bytes(const struct over_scene *over);
 
 /* Prints one line of statistics of the frame drawn last. */
 void over_scene_print_line(const struct over_scene *over, FILE *to);

@@ -24,17 +24,17 @@ struct overlay_figures {
      * maxima over all frames. */
     struct glint_engine_report worst;
     int most_lights;
-    struct overlay_span strength, exposure,
-        gain;     /* ranges of these options over all frames */
+    /* ranges of these options over all frames */
+    struct overlay_span strength, exposure, gain;
     int n_reused; /* frames that reused the traced edges of the previous frame
                    */
-    double find_ms,
-        flare_ms; /* total time of lamp detection and of the flare, ms */
+    /* total time of lamp detection and of the flare, ms */
+    double find_ms, flare_ms;
     double peak, mean_sum; /* light of the flare, 1 = white: max over all
                               frames, and sum of the mean light of each frame */
     size_t peak_bytes;
-    double started,
-        reported; /* clock times, s: start of the run, last progress line */
+    /* times of the start of the run and of the last progress line, s */
+    double started, reported;
 };
 
 struct overlay {
@@ -47,8 +47,8 @@ struct overlay {
     /* First and last frame of a video to draw, from 0, and the number of frames
      * before FIRST in which lamps are only detected */
     int first, last, warm_up;
-    int32_t
-        elapsed_us; /* microseconds between frames; 0: independent pictures */
+    /* microseconds between frames; 0: independent pictures */
+    int32_t elapsed_us;
     int range, matrix; /* enums of --range and --matrix; 0: auto */
     /* format of raw frames; WIDTH 0: the input has headers */
     struct {
@@ -83,9 +83,9 @@ int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
 typedef enum glint_status overlay_draw_fn(void *ctx, struct drawing *drawing,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
-int overlay_draw_with(struct tool *tool, struct overlay *o,
-                      const struct glint_image *image, overlay_draw_fn *draw,
-                      void *ctx);
+int overlay_draw_frame_by_callback(struct tool *tool, struct overlay *o,
+                                   const struct glint_image *image,
+                                   overlay_draw_fn *draw, void *ctx);
 
 /* Prints the progress: one line that is overwritten on a terminal, else a new
  * line every few seconds. */

@@ -21,8 +21,8 @@ struct overlay_file {
 
     const char *from, *to;
     struct glint_kept kept;
-    struct glint_samples
-        work; /* float copy of the input, if the output has floats */
+    /* float copy of the input's pixels, if the output file stores floats */
+    struct glint_samples work;
     /* is_direct: IMAGE is the file's own samples and is drawn on in place.
      * is_copied: the flare is added to WORK, not to the file's samples. */
     bool is_direct, is_copied;
@@ -125,7 +125,7 @@ static int open_picture_file(const struct tool *tool, struct overlay_file *file,
  * colour profile, 8-bit codes: for 99 % of the pixels, and for every pixel */
 enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
 
-static int channel_spread(const uint8_t px[3])
+static int compute_max_channel_difference(const uint8_t px[3])
 {
     const int low = px[0] < px[1] ? px[0] : px[1];
     const int high = px[0] < px[1] ? px[1] : px[0];
@@ -146,7 +146,7 @@ static bool is_image_monochrome(const struct glint_image *image)
         const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
 
         for (int x = 0; x < image->width; x++, px += 3) {
-            const int codes = channel_spread(px);
+            const int codes = compute_max_channel_difference(px);
 
             if (codes > AT_MOST_GREY)
                 return false;
@@ -215,14 +215,14 @@ static enum glint_status draw_on_grey_image(struct overlay_file *f,
 }
 
 /* Replaces N pixels RGB, linear light, by their luminance. */
-static void remove_colour(float *rgb, size_t n)
+static void convert_to_grey(float *rgb, size_t n)
 {
     for (; n > 0; n--, rgb += 3)
         rgb[0] = rgb[1] = rgb[2] =
             0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
 }
 
-static struct glint_samples *samples_to_draw_on(struct overlay_file *f)
+static struct glint_samples *get_samples_to_draw_on(struct overlay_file *f)
 {
     return f->is_copied ? &f->work : &f->kept.samples;
 }
@@ -232,7 +232,7 @@ static bool is_flare_absent(const struct drawing *drawing)
     return !drawing->files.scene.is_open &&
            !glint_engine_has_veil(drawing->run.engine) &&
            (drawing->run.n_lamps == 0 ||
-            !(drawing_exposure_factor(&drawing->run) > 0));
+            !(drawing_get_exposure_factor(&drawing->run) > 0));
 }
 
 /* Copies the pixels of DRAWN that differ from BEFORE, the codes before drawing
@@ -269,7 +269,7 @@ static enum glint_status draw_marks_on_proxy(struct overlay_file *f,
         return GLINT_E_MEMORY;
     memcpy(before, f->image.plane[0], bytes);
     drawing_draw_marks(drawing, &f->image);
-    copy_marks_to_samples(samples_to_draw_on(f), &f->image, before);
+    copy_marks_to_samples(get_samples_to_draw_on(f), &f->image, before);
     free(before);
     return GLINT_OK;
 }
@@ -302,7 +302,7 @@ static enum glint_status draw_scene_on_samples(struct overlay_file *file,
     if (status != GLINT_OK)
         return status;
     if (is_grey)
-        remove_colour(layer.rgb, n);
+        convert_to_grey(layer.rgb, n);
     for (size_t i = 0; i < n; i++) {
         const float *const from = layer.rgb + 3 * i;
         const double rgb[3] = {file->white * (double)from[0],
@@ -310,9 +310,9 @@ static enum glint_status draw_scene_on_samples(struct overlay_file *file,
                                file->white * (double)from[2]};
 
         if (layer.cover_q8[i] || from[0] > 0 || from[1] > 0 || from[2] > 0)
-            composite_scene_pixel(samples_to_draw_on(file), (int)(i % width),
-                                  (int)(i / width), layer.cover_q8[i] / 256.0,
-                                  rgb);
+            composite_scene_pixel(get_samples_to_draw_on(file),
+                                  (int)(i % width), (int)(i / width),
+                                  layer.cover_q8[i] / 256.0, rgb);
     }
     over_scene_layer_free(&layer);
     return GLINT_OK;
@@ -351,14 +351,14 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
     if (is_lit)
         status = drawing_draw_layer(
             &drawing->run,
-            has_more_than_8_bits(samples_to_draw_on(file)) || !is_composite,
+            has_more_than_8_bits(get_samples_to_draw_on(file)) || !is_composite,
             file->layer);
     if (status != GLINT_OK)
         return status;
     if (is_grey)
-        remove_colour(file->layer, n);
+        convert_to_grey(file->layer, n);
     if (is_composite && is_lit)
-        glint_samples_add_light(samples_to_draw_on(file), file->layer);
+        glint_samples_add_light(get_samples_to_draw_on(file), file->layer);
     return is_composite && drawing_has_marks(&drawing->line)
                ? draw_marks_on_proxy(file, drawing)
                : GLINT_OK;
@@ -366,9 +366,10 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
 
 /* Draws on samples other than 8-bit codes: detects lamps in the proxy, measures
  * them in the samples, then adds scene and flare. */
-static enum glint_status draw_on_deep_samples(struct overlay_file *file,
-                                              struct drawing *drawing,
-                                              bool is_grey, int32_t elapsed_us)
+static enum glint_status draw_on_non_8_bit_samples(struct overlay_file *file,
+                                                   struct drawing *drawing,
+                                                   bool is_grey,
+                                                   int32_t elapsed_us)
 {
     enum glint_status status =
         drawing_detect_and_draw_scene(drawing, &file->image, elapsed_us);
@@ -399,14 +400,14 @@ static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
     const bool is_grey =
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !(drawing->files.scene.is_open &&
-          samples_to_draw_on(file)->n_colours == 3) &&
+          get_samples_to_draw_on(file)->n_colours == 3) &&
         is_image_monochrome(image);
 
     drawing->run.is_measured = file->kept.is_float;
     drawing->run.white = file->white;
     warn_of_grey_result(file, drawing);
     if (!file->is_direct)
-        return draw_on_deep_samples(file, drawing, is_grey, elapsed_us);
+        return draw_on_non_8_bit_samples(file, drawing, is_grey, elapsed_us);
     return is_grey ? draw_on_grey_image(file, drawing, elapsed_us)
                    : drawing_draw_flare(drawing, image, elapsed_us);
 }
@@ -523,8 +524,8 @@ int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
-        code =
-            overlay_draw_with(tool, o, &file.image, draw_flare_on_file, &file);
+        code = overlay_draw_frame_by_callback(tool, o, &file.image,
+                                              draw_flare_on_file, &file);
     if (code == EXIT_OK)
         code = save_picture(tool, &file, o);
     close_picture_file(&file);

@@ -14,14 +14,14 @@ static void print_frame_statistics(const struct overlay *o)
 {
     char lights[64];
 
-    settings_describe_lights(&o->drawing.run.report, lights);
+    settings_write_light_counts(&o->drawing.run.report, lights);
     fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
             o->drawing.run.n_frames - 1, lights, o->drawing.run.report.ghosts,
             o->drawing.run.report.stats.primitives);
 }
 
-static void record_max_dropped(struct glint_engine_report *worst,
-                               const struct glint_engine_report *report)
+static void record_max_dropped_counts(struct glint_engine_report *worst,
+                                      const struct glint_engine_report *report)
 {
     const int dropped =
         worst->stats.dropped_bundles > report->stats.dropped_bundles
@@ -58,7 +58,7 @@ static enum glint_status draw_in_place(void *ctx, struct drawing *drawing,
 int overlay_draw_frame(struct tool *tool, struct overlay *o,
                        const struct glint_image *image)
 {
-    return overlay_draw_with(tool, o, image, draw_in_place, NULL);
+    return overlay_draw_frame_by_callback(tool, o, image, draw_in_place, NULL);
 }
 
 int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
@@ -77,12 +77,12 @@ int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
         if (status == GLINT_OK && drawing->files.has_lens)
             status = drawing_set_exposure(drawing, image);
     }
-    o->is_cut = drawing_has_restarted(drawing);
+    o->is_cut = drawing_has_exposure_restarted(drawing);
     drawing->run.n_frames++;
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-static void extend_span(struct overlay_span *of, double x)
+static void extend_value_range(struct overlay_span *of, double x)
 {
     of->min = of->n ? fmin(of->min, x) : x;
     of->max = of->n ? fmax(of->max, x) : x;
@@ -94,15 +94,15 @@ static void record_frame_brightness(struct overlay_figures *f,
                                     const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, exposure))
-        extend_span(&f->exposure, o->exposure);
+        extend_value_range(&f->exposure, o->exposure);
     else
-        extend_span(&f->strength, o->strength);
-    extend_span(&f->gain, o->gain);
+        extend_value_range(&f->strength, o->strength);
+    extend_value_range(&f->gain, o->gain);
 }
 
-int overlay_draw_with(struct tool *tool, struct overlay *o,
-                      const struct glint_image *image, overlay_draw_fn *draw,
-                      void *ctx)
+int overlay_draw_frame_by_callback(struct tool *tool, struct overlay *o,
+                                   const struct glint_image *image,
+                                   overlay_draw_fn *draw, void *ctx)
 {
     struct drawing *drawing = &o->drawing;
     enum glint_status status;
@@ -140,7 +140,7 @@ int overlay_draw_with(struct tool *tool, struct overlay *o,
         o->figures.peak_bytes)
         o->figures.peak_bytes =
             drawing->run.report.peak_bytes + drawing->run.report.star_bytes;
-    record_max_dropped(&o->figures.worst, &drawing->run.report);
+    record_max_dropped_counts(&o->figures.worst, &drawing->run.report);
     if (tool->verbose && !tool->quiet)
         print_frame_statistics(o);
     return EXIT_OK;
@@ -170,8 +170,8 @@ int overlay_check_outputs(const struct tool *tool, const struct overlay *o,
 {
     struct apart files = {.n_read = 0};
 
-    apart_add_input(&files, NULL, from);
-    apart_add_output(&files, "-o", to);
-    apart_add_drawing_files(&files, &o->drawing.line);
+    file_conflicts_add_input(&files, NULL, from);
+    file_conflicts_add_output(&files, "-o", to);
+    file_conflicts_add_drawing_files(&files, &o->drawing.line);
     return layers_check_outputs(tool, &o->layers, &files);
 }

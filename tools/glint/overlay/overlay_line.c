@@ -63,7 +63,7 @@ struct overlay_light overlay_measure_light(struct overlay *o)
     struct glint_response_light drawn;
 
     if (is_single_component_drawn(drawing) && drawing->run.n_lamps > 0 &&
-        drawing_exposure_factor(&drawing->run) > 0) {
+        drawing_get_exposure_factor(&drawing->run) > 0) {
         light.is_known =
             drawing->run.n_frames == 1 && measure_layer_light(drawing, &drawn);
         if (light.is_known) {
@@ -73,30 +73,30 @@ struct overlay_light overlay_measure_light(struct overlay *o)
         return light;
     }
     if (n != 1 || drawing->run.n_lamps == 0 ||
-        drawing_exposure_factor(&drawing->run) <= 0 ||
+        drawing_get_exposure_factor(&drawing->run) <= 0 ||
         glint_engine_exposed(drawing->run.engine)->is_drawn ||
         glint_engine_measure(drawing->run.engine, drawing->run.lamp,
                              drawing->run.n_lamps, &drawn) != GLINT_OK)
         return light;
-    light.peak = drawing_exposure_factor(&drawing->run) / drawing->run.white *
-                 glint_largest_channel(drawn.peak);
-    light.mean = drawing_exposure_factor(&drawing->run) / drawing->run.white *
-                 glint_largest_channel(drawn.mean);
+    light.peak = drawing_get_exposure_factor(&drawing->run) /
+                 drawing->run.white * glint_largest_channel(drawn.peak);
+    light.mean = drawing_get_exposure_factor(&drawing->run) /
+                 drawing->run.white * glint_largest_channel(drawn.mean);
     return light;
 }
 
 /* Returns the power of LAMP in stops over a white pixel. */
-static double lamp_power_in_stops(const struct glint_engine_lamp *lamp)
+static double convert_lamp_power_to_stops(const struct glint_engine_lamp *lamp)
 {
     return log2(fmax(lamp->lamp.power, 1e-30));
 }
 
-static double lens_f_number(const struct opened_lens *lens)
+static double get_lens_f_number(const struct opened_lens *lens)
 {
-    return lens->model.data
-               ? model_compute_real(lens->model.lens.header->f_number) /
-                     lens->setup.opening
-               : lens->table.f_number;
+    return lens->model.data ? model_convert_real_to_double(
+                                  lens->model.lens.header->f_number) /
+                                  lens->setup.opening
+                            : lens->table.f_number;
 }
 
 /* ---------------------------------------------------------------- the line */
@@ -132,13 +132,14 @@ static void print_lights(const struct drawing *drawing, int most, FILE *to)
                         drawing->files.lens.setup.optics.focal_mm, &lamp->lamp,
                         &x, &y);
     fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
-            most == 1 ? "" : "the brightest ", lamp_power_in_stops(lamp),
-            round_without_minus_zero(x), round_without_minus_zero(y));
+            most == 1 ? "" : "the brightest ",
+            convert_lamp_power_to_stops(lamp), round_without_minus_zero(x),
+            round_without_minus_zero(y));
 }
 
 /* Prints NAME and the range of its values; HAS_SIGN: with + or -. */
-static void print_value_span(const struct overlay_span *of, const char *name,
-                             bool has_sign, FILE *to)
+static void print_value_range(const struct overlay_span *of, const char *name,
+                              bool has_sign, FILE *to)
 {
     fprintf(to, has_sign ? "%s %+g" : "%s %g", name, of->min);
     if (of->max > of->min)
@@ -149,16 +150,16 @@ static void print_value_span(const struct overlay_span *of, const char *name,
 static void print_brightness_options(const struct overlay_figures *f, FILE *to)
 {
     if (f->strength.n > 0)
-        print_value_span(&f->strength, "strength", false, to);
+        print_value_range(&f->strength, "strength", false, to);
     if (f->exposure.n > 0) {
-        print_value_span(&f->exposure,
-                         f->strength.n > 0 ? ", in other frames exposure"
-                                           : "exposure",
-                         true, to);
+        print_value_range(&f->exposure,
+                          f->strength.n > 0 ? ", in other frames exposure"
+                                            : "exposure",
+                          true, to);
         fputs(" EV", to);
     }
     if (f->gain.min != 1 || f->gain.max != 1)
-        print_value_span(&f->gain, ", gain", false, to);
+        print_value_range(&f->gain, ", gain", false, to);
 }
 
 /* Prints why the flare of LIGHT is invisible, and an option that makes it
@@ -211,7 +212,8 @@ static void print_faint_flare_remedy(const struct overlay *o,
                     sqrt(well_seen / light->peak));
 }
 
-/* Returns a description of what was drawn without lamps. */
+/* Returns words for the result on a picture without lamps: only the veil, no
+ * flare (but a scene), or nothing was drawn. */
 static const char *describe_picture_without_lamps(const struct drawing *drawing)
 {
     return drawing->run.engine && glint_engine_has_veil(drawing->run.engine)
@@ -266,8 +268,8 @@ static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
                 next.y_q8 / 256.0);
 }
 
-void overlay_print_no_light(const struct drawing *drawing, bool is_copied,
-                            FILE *to)
+void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
+                                 FILE *to)
 {
     const bool is_found =
         !drawing->files.is_listed && drawing->line.n_hand == 0;
@@ -309,7 +311,7 @@ void overlay_print_summary(const struct overlay *o,
     if (drawing->files.scene.is_open)
         fputs(", ", to);
     if (o->figures.most_lights == 0) {
-        overlay_print_no_light(drawing, o->is_copied, to);
+        overlay_print_no_lamp_found(drawing, o->is_copied, to);
         return;
     }
     if (are_all_lamps_hidden(drawing, light)) {
@@ -324,7 +326,7 @@ void overlay_print_summary(const struct overlay *o,
     }
     print_lights(drawing, o->figures.most_lights, to);
     fprintf(to, ", %s f/%.3g, %s, ", drawing->files.lens.table.name,
-            lens_f_number(&drawing->files.lens),
+            get_lens_f_number(&drawing->files.lens),
             drawing->files.lens.model.data ? "baked model" : "exact rays");
     print_brightness_options(&o->figures, to);
     if (light->is_known)
@@ -359,11 +361,11 @@ void overlay_write_json(struct json_writer *json, const struct overlay *o,
         "peak: %.6g, mean: %.6g, found: [",
         drawing->files.lens.table.name,
         drawing->files.lens.model.data ? "model" : "exact",
-        lens_f_number(&drawing->files.lens),
+        get_lens_f_number(&drawing->files.lens),
         GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure)
             ? (double)NAN
             : drawing->line.settings.options.strength,
-        log2(drawing_exposure_factor(&drawing->run)),
+        log2(drawing_get_exposure_factor(&drawing->run)),
         light->is_known ? light->peak : (double)NAN,
         light->is_known ? light->mean : (double)NAN);
     for (int i = 0; i < drawing->run.n_lamps; i++) {
@@ -372,9 +374,10 @@ void overlay_write_json(struct json_writer *json, const struct overlay *o,
         double x, y;
 
         glint_view_to_pixel(&drawing->run.view, focal, l, &x, &y);
-        json_write(
-            json, "{x: %.2f, y: %.2f, stops: %.2f, rgb: [%.4g, %.4g, %.4g]}", x,
-            y, lamp_power_in_stops(known), l->rgb[0], l->rgb[1], l->rgb[2]);
+        json_write(json,
+                   "{x: %.2f, y: %.2f, stops: %.2f, rgb: [%.4g, %.4g, %.4g]}",
+                   x, y, convert_lamp_power_to_stops(known), l->rgb[0],
+                   l->rgb[1], l->rgb[2]);
     }
     json_write(json, "]");
 }

@@ -33,8 +33,8 @@ void overlay_print_summary(const struct overlay *o,
 
 /* Prints that no lamp was found; if IS_COPIED, that the file was copied; for a
  * single picture also the brightest candidate. */
-void overlay_print_no_light(const struct drawing *drawing, bool is_copied,
-                            FILE *to);
+void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
+                                 FILE *to);
 
 /* Writes the result as members of a JSON object. */
 void overlay_write_json(struct json_writer *json, const struct overlay *o,

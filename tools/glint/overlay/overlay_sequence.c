@@ -188,7 +188,8 @@ static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = draw_numbered_picture(tool, o, l, i);
     if (code == EXIT_OK)
-        o->drawing.run.n_frames = l->n; /* without the missing ones */
+        o->drawing.run.n_frames = l->n; /* missing numbers do not count as
+                                         * frames */
     return code;
 }
 

@@ -23,8 +23,8 @@ struct video {
     struct tool *tool;
     struct overlay *o;
     struct glint_error error;
-    bool reads, writes; /* whether the input is read and the output is written
-                           by ffmpeg */
+    bool reads, writes; /* reads: ffmpeg decodes the input; writes: ffmpeg
+                         * encodes the output */
     struct ffmpeg_video about;
     struct child reader, writer;
     struct glint_output file; /* temporary file that ffmpeg writes */
@@ -34,7 +34,8 @@ struct video {
     struct ffmpeg_times times;
     bool is_variable, keeps_times; /* frame intervals vary; the output preserves
                                       the frame times */
-    bool is_closed; /* the reader of the output pipe has closed it */
+    bool is_closed; /* whether the program that reads the output pipe has closed
+                     * it */
     bool has_ended; /* the input was read to its end, not only to the last frame
                        of --frames */
 };
@@ -59,8 +60,9 @@ int overlay_check_gif(struct tool *tool, const struct overlay *o, bool *video)
     if (glint_has_extension(o->output, ".gif") && overlay_is_video(o->input))
         *video = true;
     else if (n == 1 && overlay_is_video(o->output))
-        return tool_usage(tool, "%s has one frame, which is not a video",
-                          o->input);
+        return tool_usage(
+            tool, "%s has only one frame, so the output cannot be a video",
+            o->input);
     else if (n > 1 && !moves && !tool->quiet)
         fprintf(stderr,
                 "glint overlay: %s has %d frames; only the first is drawn. -o "
@@ -76,7 +78,7 @@ static int report_video_failure(struct video *v, enum glint_status status)
     return tool_fail(v->tool, status, v->error.text);
 }
 
-static ptrdiff_t read_from_child(void *ctx, void *dst, size_t bytes)
+static ptrdiff_t read_ffmpeg_output(void *ctx, void *dst, size_t bytes)
 {
     struct child *child = ctx;
     ssize_t n;
@@ -97,13 +99,13 @@ static bool can_keep_other_streams(const struct overlay *o)
 
 /* Sets range, matrix and transfer of the input by its tags. Prints a warning
  * for unknown tags, and for missing tags of a video with BT.2020 primaries. */
-static void set_colour_meaning(struct video *v)
+static void set_input_colour_tags(struct video *v)
 {
     static const char *const matrices[] = {"601", "709", "2020"};
     struct glint_y4m_header *const h = &v->in.header;
     char unknown[FFMPEG_REPORT];
 
-    ffmpeg_set_colours(&v->about, h, unknown);
+    ffmpeg_set_y4m_colour_tags(&v->about, h, unknown);
     if (!*unknown && !*v->about.transfer &&
         h->primaries != GLINT_PRIMARIES_BT709)
         snprintf(unknown, sizeof unknown, ", no transfer");
@@ -119,7 +121,7 @@ static void set_colour_meaning(struct video *v)
 
 /* Opens the input through ffmpeg, which prints its own errors. Returns an exit
  * code. */
-static int open_coded_input(struct video *v)
+static int open_input_by_ffmpeg(struct video *v)
 {
     struct glint_input file;
     enum glint_status status =
@@ -139,13 +141,13 @@ static int open_coded_input(struct video *v)
                                  v->keeps_times, &v->error);
     if (status != GLINT_OK)
         return report_video_failure(v, status);
-    status = glint_y4m_reader_start(&v->in, read_from_child, &v->reader,
+    status = glint_y4m_reader_start(&v->in, read_ffmpeg_output, &v->reader,
                                     v->o->input, &v->error);
     if (status == GLINT_OK) {
-        set_colour_meaning(v);
+        set_input_colour_tags(v);
         return EXIT_OK;
     }
-    if (child_wait(&v->reader) != 0)
+    if (child_wait_for_exit(&v->reader) != 0)
         snprintf(v->error.text, sizeof v->error.text,
                  "%.180s: ffmpeg cannot read it", v->o->input);
     return report_video_failure(v, status == GLINT_E_MEMORY ? status
@@ -187,7 +189,7 @@ static int open_video_input(struct video *v)
     int code = EXIT_OK;
 
     if (v->reads) {
-        code = open_coded_input(v);
+        code = open_input_by_ffmpeg(v);
     } else {
         const enum glint_status status =
             o->raw.width ? open_raw_input(v)
@@ -209,7 +211,7 @@ static int open_video_input(struct video *v)
 
 /* Starts ffmpeg, which reads y4m from a pipe and writes a temporary file next
  * to the output. */
-static enum glint_status open_encoder(struct video *v)
+static enum glint_status start_ffmpeg_encoder(struct video *v)
 {
     const struct overlay *o = v->o;
     struct ffmpeg_target target = {
@@ -245,7 +247,7 @@ static enum glint_status open_encoder(struct video *v)
 static int open_video_output(struct video *v)
 {
     const enum glint_status status =
-        v->writes ? open_encoder(v)
+        v->writes ? start_ffmpeg_encoder(v)
                   : glint_y4m_writer_open(&v->out, v->o->output, &v->in.header,
                                           &v->error);
 
@@ -334,7 +336,7 @@ static int print_shot_list(struct video *v)
 
 /* Returns the mean interval between frames, microseconds; 40000 (25 frames per
  * second) if the rate is unknown. */
-static int32_t mean_frame_interval_us(const struct video *v)
+static int32_t compute_mean_frame_interval_us(const struct video *v)
 {
     const struct glint_y4m_header *const header = &v->in.header;
     const struct ffmpeg_times *const t = &v->times;
@@ -352,7 +354,7 @@ static int32_t mean_frame_interval_us(const struct video *v)
  * read the whole input. */
 static int wait_for_decoder(struct video *v)
 {
-    const int code = child_wait(&v->reader);
+    const int code = child_wait_for_exit(&v->reader);
 
     if (code == 0 && !v->reader.heard)
         return EXIT_OK;
@@ -371,7 +373,7 @@ static int finish_encoder(struct video *v)
 {
     enum glint_status status = glint_y4m_writer_commit(&v->out, &v->error);
 
-    if (v->writes && child_wait(&v->writer) != 0) {
+    if (v->writes && child_wait_for_exit(&v->writer) != 0) {
         fprintf(stderr, "glint overlay: %s: ffmpeg could not write this file\n",
                 v->o->output);
         return EXIT_OUTPUT;
@@ -401,11 +403,11 @@ static void warn_of_variable_rate(const struct video *v)
                 v->in.header.fps_num, v->in.header.fps_den);
 }
 
-static int overlay_video_frames(struct video *v)
+static int add_flare_to_video_frames(struct video *v)
 {
     int code = open_video_input(v);
 
-    v->o->elapsed_us = mean_frame_interval_us(v);
+    v->o->elapsed_us = compute_mean_frame_interval_us(v);
     if (code == EXIT_OK && v->o->lists_shots) {
         code = print_shot_list(v);
         return code == EXIT_OK && v->reads ? wait_for_decoder(v) : code;
@@ -455,7 +457,7 @@ int overlay_draw_video(struct tool *tool, struct overlay *o)
                       .file = {.fd = -1},
                       .in = {.in = {.fd = -1}},
                       .out = {.out = {.fd = -1}}};
-    const int code = overlay_video_frames(&v);
+    const int code = add_flare_to_video_frames(&v);
 
     close_video_files(&v);
     return code;

@@ -66,7 +66,7 @@ static enum glint_status draw_flare_on_planes(void *ctx,
         return GLINT_OK;
     status =
         drawing_draw_layer(&drawing->run, y->light.layout.bits > 12, y->layer);
-    if (status == GLINT_OK && (drawing_exposure_factor(&drawing->run) > 0 ||
+    if (status == GLINT_OK && (drawing_get_exposure_factor(&drawing->run) > 0 ||
                                glint_engine_has_veil(drawing->run.engine)))
         glint_y4m_light_add(&y->light, y->planes, y->layer);
     return status;
@@ -105,5 +105,6 @@ int overlay_y4m_draw(struct tool *tool, struct overlay *o,
     if (!o->y4m)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     o->y4m->planes = in->planes;
-    return overlay_draw_with(tool, o, image, draw_flare_on_planes, o->y4m);
+    return overlay_draw_frame_by_callback(tool, o, image, draw_flare_on_planes,
+                                          o->y4m);
 }

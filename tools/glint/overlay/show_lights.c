@@ -89,8 +89,9 @@ void show_lamp_mark(const struct glint_image *image,
     draw_shadowed_mark(image, track, "");
 }
 
-void show_lamp_mark_of(const struct glint_image *image,
-                       const struct glint_lamp_track *track, double power)
+void show_lamp_mark_with_power(const struct glint_image *image,
+                               const struct glint_lamp_track *track,
+                               double power)
 {
     char stops[32] = "";
 

@@ -17,8 +17,9 @@ void show_lamp_mark(const struct glint_image *image,
 
 /* Draws the mark of TRACK like show_lamp_mark(), with POWER below its number,
  * in stops above a white pixel. */
-void show_lamp_mark_of(const struct glint_image *image,
-                       const struct glint_lamp_track *track, double power);
+void show_lamp_mark_with_power(const struct glint_image *image,
+                               const struct glint_lamp_track *track,
+                               double power);
 
 /* Draws a legend in the lower left corner: the meaning of numbers and, if
  * FOLLOWED (lamps are tracked), of colours. Draws nothing if the picture is too

@@ -26,8 +26,8 @@ struct frames {
     struct drawing *c;
     bool is_y4m, is_numbered;
     int32_t elapsed_us; /* microseconds between frames; 0: a single frame */
-    struct glint_image
-        seen;           /* 8-bit picture of the scene, for exposure and veil */
+    /* 8-bit picture of the scene, from which exposure and veil are computed */
+    struct glint_image seen;
     int32_t *light_q20; /* linear light of the scene, [height][width][3] */
     float *flare; /* linear light of the flare, [height][width][3]; NULL: no
                      lens */
@@ -140,7 +140,7 @@ static enum glint_status add_flare_of_lights(struct frames *f)
 
     status = drawing_set_exposure(c, &f->seen);
     if (status != GLINT_OK || !f->flare ||
-        ((c->run.n_lamps == 0 || !(drawing_exposure_factor(&c->run) > 0)) &&
+        ((c->run.n_lamps == 0 || !(drawing_get_exposure_factor(&c->run) > 0)) &&
          !glint_engine_has_veil(c->run.engine)))
         return status;
     status = drawing_draw_layer(&c->run, true, f->flare);
@@ -300,9 +300,9 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     if (code != EXIT_OK)
         return code;
     c->line.settings.options.scene = path;
-    apart_add_drawing_files(&files, &c->line);
-    apart_add_output(&files, "-o", r->output);
-    code = apart_check_outputs(tool, &files);
+    file_conflicts_add_drawing_files(&files, &c->line);
+    file_conflicts_add_output(&files, "-o", r->output);
+    code = file_conflicts_check_outputs(tool, &files);
     if (code != EXIT_OK)
         return code;
     c->line.scene_dials.edge_samples = r->samples;

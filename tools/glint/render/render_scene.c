@@ -230,7 +230,7 @@ static void print_frame_json(const struct tool *tool,
     json_write(&json, "{engine: %s, scene: {", "model");
     scene_account_write_json(&json, frame, frame->model->header->bytes);
     json_write(&json, "quality: %.3f, lights: %u",
-               scene_budget_flare_quality(&budget),
+               scene_budget_get_flare_quality(&budget),
                frame->model->header->n_lights);
     scene_write_highlights_json(&json, frame);
     json_write(&json, "lamps_hidden: %d}, ms: %.3f}\n",

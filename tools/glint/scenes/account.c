@@ -11,8 +11,8 @@ const char *const scene_item_name[GLINT_SCENE_ITEMS] = {
     "triangles", "samples", "covering", "shaded",
     "shadows",   "texels",  "lookups",  "bounced"};
 
-enum glint_status scene_account_collect(struct scene_account *account,
-                                        const struct scene_frame *frame)
+enum glint_status scene_account_collect_costs(struct scene_account *account,
+                                              const struct scene_frame *frame)
 {
     const size_t n = frame->model->header->n_objects;
     const size_t px = (size_t)frame->cfg.width * (size_t)frame->cfg.height;
@@ -71,7 +71,7 @@ static void write_counts_json(struct json_writer *json,
         account->layer[GLINT_KIND_BOX].n);
 }
 
-static size_t highlight_search_bytes(const struct scene_frame *frame)
+static size_t count_highlight_search_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_config without = frame->cfg;
 
@@ -79,7 +79,7 @@ static size_t highlight_search_bytes(const struct scene_frame *frame)
     return frame->bytes - glint_scene_bytes(&without, frame->model);
 }
 
-static size_t light_map_bytes(const struct scene_frame *frame)
+static size_t count_light_map_bytes(const struct scene_frame *frame)
 {
     struct glint_scene_header header = *frame->model->header;
     struct glint_scene_model without = *frame->model;
@@ -97,17 +97,17 @@ void scene_account_write_json(struct json_writer *json,
     json_write(json, "objects: %u, drawn: %d, triangles: %d",
                frame->model->header->n_objects, frame->stats.objects,
                frame->stats.triangles);
-    if (scene_account_collect(&account, frame) == GLINT_OK) {
+    if (scene_account_collect_costs(&account, frame) == GLINT_OK) {
         write_counts_json(json, &account);
         scene_account_free(&account);
     }
     json_write(json, "covered_px: %d", scene_count_covered_px(frame));
-    baked_scene_count_bytes(json, frame->model);
+    baked_scene_write_byte_counts(json, frame->model);
     json_write(json,
                "scene: %zu, arena: %zu, highlights: %zu, maps: %zu}, "
                "project_ms: %.3f, draw_ms: %.3f, map_ms: %.3f, map_texels: %d",
-               bytes, frame->bytes, highlight_search_bytes(frame),
-               light_map_bytes(frame), frame->project_ms, frame->draw_ms,
+               bytes, frame->bytes, count_highlight_search_bytes(frame),
+               count_light_map_bytes(frame), frame->project_ms, frame->draw_ms,
                frame->map_ms, frame->map_texels);
 }
 

@@ -13,8 +13,8 @@ extern const char *const scene_item_name[GLINT_SCENE_ITEMS];
 
 /* Statistics of the frame drawn last. */
 struct scene_account {
-    struct glint_scene_part
-        *objects; /* cost of each object, [n_objects], owned */
+    /* cost of each object, [n_objects], owned */
+    struct glint_scene_part *objects;
     struct glint_scene_part all;
     int16_t *seen; /* [height][width]: index of the visible object, or -1 */
     struct glint_scene_layered layer[GLINT_KINDS];
@@ -22,8 +22,8 @@ struct scene_account {
 
 /* Fills ACCOUNT; scene_account_free() frees it. Returns GLINT_E_MEMORY on
  * failure. */
-enum glint_status scene_account_collect(struct scene_account *account,
-                                        const struct scene_frame *frame);
+enum glint_status scene_account_collect_costs(struct scene_account *account,
+                                              const struct scene_frame *frame);
 void scene_account_free(struct scene_account *account);
 
 /* Returns the number of pixels that objects cover in the frame drawn last. */

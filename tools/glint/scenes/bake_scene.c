@@ -34,7 +34,7 @@ int cmd_bake_scene(struct tool *tool, int argc, char **argv)
     code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, scene.data,
                           scene.bytes);
     if (code == EXIT_OK && bake_line_prints_report(tool))
-        baked_scene_print(tool, &scene);
+        baked_scene_print_contents(tool, &scene);
     baked_scene_close(&scene);
     return code;
 }

@@ -14,7 +14,7 @@
 
 bool baked_scene_is_file(const char *argument)
 {
-    return tool_is_scene(argument) ||
+    return tool_is_scene_text(argument) ||
            tool_has_magic(argument, GLINT_SCENE_MAGIC);
 }
 
@@ -28,7 +28,7 @@ int baked_scene_open(const struct tool *tool, const char *path,
     int code = EXIT_OK;
 
     *scene = (struct baked_scene){.data = NULL};
-    if (tool_is_scene(path)) {
+    if (tool_is_scene_text(path)) {
         code =
             tool_bake_scene(tool, path, &data, &scene->bytes, &scene->report);
         if (code != EXIT_OK)
@@ -184,8 +184,8 @@ count_scene_contents(const struct glint_scene_model *model)
     return n;
 }
 
-void baked_scene_count_bytes(struct json_writer *json,
-                             const struct glint_scene_model *model)
+void baked_scene_write_byte_counts(struct json_writer *json,
+                                   const struct glint_scene_model *model)
 {
     const struct scene_counts n = count_scene_contents(model);
 
@@ -212,7 +212,7 @@ static void print_scene_json(const struct baked_scene *scene,
     if (scene->is_text)
         json_write(&json, "reach: %.9g, flat: %d", scene->report.reach,
                    scene->report.flat);
-    baked_scene_count_bytes(&json, &scene->model);
+    baked_scene_write_byte_counts(&json, &scene->model);
     json_write(&json, "all: %zu}}}\n", scene->bytes);
 }
 
@@ -242,7 +242,7 @@ static void print_scene_text(const struct baked_scene *scene,
         printf("%s %s\n", i ? "            " : "environment ",
                scene->model.environment[i].name);
     printf("materials    %u, textures %u\n", h->n_materials, h->n_textures);
-    printf("triangles    %u on %u vertices, %u cells with %u entries\n",
+    printf("triangles    %u on %u vertices, %u grid cells with %u entries\n",
            n->triangles, n->vertices, n->cells, n->refs);
     if (scene->report.flat)
         printf("left out     %d triangles without area\n", scene->report.flat);
@@ -260,7 +260,8 @@ static void print_scene_text(const struct baked_scene *scene,
                    part_names[k], n->bytes[k]);
 }
 
-void baked_scene_print(const struct tool *tool, const struct baked_scene *scene)
+void baked_scene_print_contents(const struct tool *tool,
+                                const struct baked_scene *scene)
 {
     const struct scene_counts counts = count_scene_contents(&scene->model);
 

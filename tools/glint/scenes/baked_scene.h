@@ -29,13 +29,13 @@ void baked_scene_close(struct baked_scene *scene);
 
 /* Prints the contents of SCENE, and its bytes per section; with --json, as one
  * object. */
-void baked_scene_print(const struct tool *tool,
-                       const struct baked_scene *scene);
+void baked_scene_print_contents(const struct tool *tool,
+                                const struct baked_scene *scene);
 
 /* Begins the JSON object "bytes", with the bytes of MODEL per section. The
  * caller ends it. */
-void baked_scene_count_bytes(struct json_writer *json,
-                             const struct glint_scene_model *model);
+void baked_scene_write_byte_counts(struct json_writer *json,
+                                   const struct glint_scene_model *model);
 
 /* The command glint bake for scenes; see options/tool.h. */
 int cmd_bake_scene(struct tool *tool, int argc, char **argv);

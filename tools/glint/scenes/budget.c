@@ -48,7 +48,7 @@ void scene_budget_init(struct scene_budget *budget,
 
 void scene_dials_set_quality(struct scene_dials *dials, double quality)
 {
-    const int i = scene_budget_level_of_quality(quality);
+    const int i = scene_budget_find_level_of_quality(quality);
 
     if (i == USUAL)
         return;
@@ -66,8 +66,8 @@ static int min_int(int a, int b)
     return a < b ? a : b;
 }
 
-struct scene_dials scene_budget_set_dials(const struct scene_budget *budget,
-                                          int level)
+struct scene_dials
+scene_budget_get_parameters(const struct scene_budget *budget, int level)
 {
     struct scene_dials d = budget->asked;
 
@@ -80,14 +80,14 @@ struct scene_dials scene_budget_set_dials(const struct scene_budget *budget,
 
 /* Returns the nearest level in direction BY (1 or -1) whose parameters
  * differ from those of budget->level, or budget->level if there is none. */
-static int find_next_level(const struct scene_budget *budget, int by)
+static int find_next_quality_level(const struct scene_budget *budget, int by)
 {
     const struct scene_dials from =
-        scene_budget_set_dials(budget, budget->level);
+        scene_budget_get_parameters(budget, budget->level);
 
     for (int i = budget->level + by; i >= 0 && i < SCENE_BUDGET_LEVELS;
          i += by) {
-        const struct scene_dials to = scene_budget_set_dials(budget, i);
+        const struct scene_dials to = scene_budget_get_parameters(budget, i);
 
         if (to.shadow_points != from.shadow_points ||
             to.edge_samples != from.edge_samples ||
@@ -111,7 +111,7 @@ bool scene_budget_update_level(struct scene_budget *budget, double ms,
     if (!(ms > 0) || ++budget->n_frames < 2)
         return false;
     if (low_ms > limit_ms) {
-        budget->level = find_next_level(budget, 1);
+        budget->level = find_next_quality_level(budget, 1);
         if (budget->is_try)
             budget->hold = min_int(MAX_HOLD, 2 * budget->hold);
         budget->is_try = false;
@@ -119,7 +119,7 @@ bool scene_budget_update_level(struct scene_budget *budget, double ms,
         if (budget->is_try)
             budget->hold = HOLD;
         if (low_ms < SPARE * limit_ms)
-            budget->level = find_next_level(budget, -1);
+            budget->level = find_next_quality_level(budget, -1);
         budget->is_try = budget->level < before;
     }
     if (budget->level == before)
@@ -139,9 +139,10 @@ double scene_budget_limit_flare(double all_ms, double flare_ms, double quality)
     return quality < levels[USUAL].quality ? part_ms : fmax(part_ms, rest_ms);
 }
 
-double scene_budget_flare_quality(const struct scene_budget *budget)
+double scene_budget_get_flare_quality(const struct scene_budget *budget)
 {
-    const struct scene_dials d = scene_budget_set_dials(budget, budget->level);
+    const struct scene_dials d =
+        scene_budget_get_parameters(budget, budget->level);
     int i = 0;
 
     while (i < SCENE_BUDGET_LEVELS - 1 && (levels[i].points > d.shadow_points ||
@@ -152,7 +153,7 @@ double scene_budget_flare_quality(const struct scene_budget *budget)
     return levels[i].quality;
 }
 
-int scene_budget_level_of_quality(double quality)
+int scene_budget_find_level_of_quality(double quality)
 {
     int i = 0;
 

@@ -29,8 +29,8 @@ void scene_budget_init(struct scene_budget *budget,
                        const struct scene_dials *asked);
 
 /* Returns the drawing parameters of LEVEL. */
-struct scene_dials scene_budget_set_dials(const struct scene_budget *budget,
-                                          int level);
+struct scene_dials
+scene_budget_get_parameters(const struct scene_budget *budget, int level);
 
 /* Sets budget->level for the next frame, after a frame that took MS with a
  * limit of LIMIT_MS. Returns whether the level changed. */
@@ -48,9 +48,9 @@ void scene_dials_set_quality(struct scene_dials *dials, double quality);
 
 /* Returns the highest --quality none of whose parameters is finer than that of
  * budget->level. */
-double scene_budget_flare_quality(const struct scene_budget *budget);
+double scene_budget_get_flare_quality(const struct scene_budget *budget);
 
 /* Returns the finest level that is not finer than --quality QUALITY. */
-int scene_budget_level_of_quality(double quality);
+int scene_budget_find_level_of_quality(double quality);
 
 #endif

@@ -64,7 +64,7 @@ bake_picture(const char *named, const char *from,
     enum glint_status status = glint_picture_load_float(from, &picture, error);
 
     if (status == GLINT_OK) {
-        tool_copy_scene_name(named, name);
+        tool_copy_base_name(named, name);
         tool_hash_into_key(&key, options, sizeof *options);
         tool_hash_into_key(&key, picture.rgb,
                            3 * sizeof(float) * (size_t)picture.width *
@@ -244,7 +244,7 @@ static void print_bake_statistics(const struct glint_environment_report *r)
                r->not_finite);
     printf("\nlight        mean %.4g, largest %.4g, without the lights %.4g\n",
            r->mean, r->largest, r->residual_largest);
-    printf("lights have  %.3g %% of it", 100 * r->light_share);
+    printf("in lights    %.3g %% of the light", 100 * r->light_share);
     if (r->spots > 0)
         printf(", of %d spots", r->spots);
     printf("\n");
@@ -285,8 +285,8 @@ static void print_environment_text(const struct environment_file *file,
         printf("  lights       %8zu\n", n->lights);
 }
 
-void environment_file_print(const struct tool *tool,
-                            const struct environment_file *file)
+void environment_file_print_contents(const struct tool *tool,
+                                     const struct environment_file *file)
 {
     struct counts n;
 
@@ -342,7 +342,7 @@ static int parse_environment_option(struct tool *tool, void *line, int c,
 
     switch (c) {
     case 's':
-        l->side_log2 = tool_find_word(optarg, sizes);
+        l->side_log2 = tool_find_word_index(optarg, sizes);
         ok = l->side_log2 >= 0;
         l->side_log2 += GLINT_ENVIRONMENT_LEAST_LOG2;
         break;
@@ -379,7 +379,7 @@ int cmd_bake_environment(struct tool *tool, int argc, char **argv)
     code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
                           file.bytes);
     if (code == EXIT_OK && bake_line_prints_report(tool))
-        environment_file_print(tool, &file);
+        environment_file_print_contents(tool, &file);
     environment_file_close(&file);
     return code;
 }

@@ -12,8 +12,8 @@ struct environment_file {
                    into it */
     size_t bytes;
     struct glint_environment environment;
-    struct glint_environment_report
-        report; /* report of the bake, if is_baked_now */
+    /* report of the bake, if is_baked_now */
+    struct glint_environment_report report;
     bool is_baked_now;
 };
 
@@ -23,12 +23,12 @@ struct environment_file {
 bool environment_file_is_source(const char *argument);
 bool environment_file_is_baked(const char *argument);
 
-/* Open the picture, text or baked file PATH. They reject PATH, or the
- * picture that a text names, if it is the output file WRITTEN. OVERRIDE,
- * unless NULL, is called after the options of a text were read and may
- * change them. LEFT, unless NULL: as in tool_count_bake_work(), by the cube of
- * the texels along a side. environment_file_open() prints the reason of a
- * failure and returns an exit code. */
+/* Open the picture, text or baked file PATH. They reject PATH, or the picture
+ * that a text names, if it is the output file WRITTEN. OVERRIDE, unless NULL,
+ * is called after the options of a text were read and may change them. LEFT,
+ * unless NULL, is the remaining bake work, see tool_count_bake_work(); a bake
+ * costs the cube of its texels along a side. environment_file_open() prints the
+ * reason of a failure and returns an exit code. */
 enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*override)(void *ctx, struct glint_environment_options *), void *ctx,
@@ -42,8 +42,8 @@ int environment_file_open(const struct tool *tool, const char *path,
 void environment_file_close(struct environment_file *file);
 
 /* Prints the contents of FILE; with --json, as one object. */
-void environment_file_print(const struct tool *tool,
-                            const struct environment_file *file);
+void environment_file_print_contents(const struct tool *tool,
+                                     const struct environment_file *file);
 
 /* The command glint bake for environments; see options/tool.h. */
 int cmd_bake_environment(struct tool *tool, int argc, char **argv);

@@ -71,9 +71,9 @@ int glints_track_frame(struct glints *glints, const struct glint_scene *scene,
     return g->n;
 }
 
-double glints_make_lamp(const struct glints *glints, int i,
-                        const struct glint_view *view, double focal_mm,
-                        struct glint_lamp *lamp)
+double glints_get_lamp(const struct glints *glints, int i,
+                       const struct glint_view *view, double focal_mm,
+                       struct glint_lamp *lamp)
 {
     const struct glint_lamp_track *const t = &glints->track[i];
     const double tangent = glint_view_pixel_tangent(view, focal_mm);

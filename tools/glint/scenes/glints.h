@@ -5,7 +5,7 @@
  *
  *     glints_open(&glints, width, height);
  *     n = glints_track_frame(&glints, scene, elapsed_us);  each picture
- *     level = glints_make_lamp(&glints, i, &view, focal_mm, &lamp);
+ *     level = glints_get_lamp(&glints, i, &view, focal_mm, &lamp);
  *     glints_close(&glints);
  *
  * Highlights are tracked like lamps in a picture: they fade in and out and do
@@ -26,7 +26,8 @@ enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
 struct glints {
     struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
     struct glint_lamp_track track[GLINTS_MAX];
-    int n_found, n; /* n_found: highlights in the last picture; n: tracks */
+    int n_found, n; /* number of highlights in the last picture, and number of
+                     * tracks */
 
     /* Private. */
     struct glint_lamp_tracker *tracks;
@@ -45,8 +46,8 @@ int glints_track_frame(struct glints *glints, const struct glint_scene *scene,
 
 /* Sets LAMP to highlight I as seen by a lens of FOCAL_MM. Returns its level, 0
  * .. 1: the fraction of its power while it fades in or out. */
-double glints_make_lamp(const struct glints *glints, int i,
-                        const struct glint_view *view, double focal_mm,
-                        struct glint_lamp *lamp);
+double glints_get_lamp(const struct glints *glints, int i,
+                       const struct glint_view *view, double focal_mm,
+                       struct glint_lamp *lamp);
 
 #endif

@@ -38,16 +38,16 @@ static int find_object_by_name(const struct glint_scene_model *m,
     if (object >= 0)
         return object;
     suggest_begin(&suggest, name);
-    suggest_consider(&suggest, "camera", 6);
+    suggest_add_candidate(&suggest, "camera", 6);
     for (int i = 0; i < n; i++)
-        suggest_consider(&suggest, m->object[i].name,
-                         strlen(m->object[i].name));
+        suggest_add_candidate(&suggest, m->object[i].name,
+                              strlen(m->object[i].name));
     for (uint32_t i = 0; i < m->header->n_lights; i++) {
         const char *const light = m->light[i].name;
 
         if (strcmp(name, light) == 0)
             return n + (int)i;
-        suggest_consider(&suggest, light, strlen(light));
+        suggest_add_candidate(&suggest, light, strlen(light));
     }
     text_lines_format_cause(lines, "the scene has no '%.24s'%s", name,
                             suggest_from_words(&suggest));
@@ -137,8 +137,9 @@ static const char *split_line_into_columns(struct text_lines *lines, char *line,
     if (!field[OBJECT] || !field[PLACE] || !field[PLACE + 1] ||
         !field[PLACE + 2])
         return "object, x, y and z are needed";
-    return n == 0 || n == COLUMNS - TURN ? NULL
-                                         : "qw, qx, qy and qz belong together";
+    return n == 0 || n == COLUMNS - TURN
+               ? NULL
+               : "give all of qw, qx, qy and qz, or none";
 }
 
 static const char *parse_pose_columns(const struct poses *p,
@@ -154,13 +155,12 @@ static const char *parse_pose_columns(const struct poses *p,
     for (int k = 0; k < COLUMNS && !cause; k++)
         if (field[k] && k != OBJECT &&
             (k != FRAME || strcmp(field[k], is_object ? "\"*" : "*") != 0))
-            cause = text_parse_value(&columns[k], field[k],
-                                     is_object ? "a value is not a number"
-                                     : k == FRAME
-                                         ? columns[k].range
-                                         : "x, y, z, qw, qx, qy and qz are "
-                                           "numbers",
-                                     &v[k]);
+            cause = text_parse_value(
+                &columns[k], field[k],
+                is_object    ? "a value is not a number"
+                : k == FRAME ? columns[k].range
+                             : "x, y, z, qw, qx, qy and qz must be numbers",
+                &v[k]);
     *pose = (struct pose){.has_turn = field[TURN] != NULL};
     if (cause || late)
         return cause ? cause : late;
@@ -273,7 +273,7 @@ static void read_poses_from_pipe(struct poses *p)
     const char *cause;
     char *line;
 
-    text_lines_begin_turn(&p->lines);
+    text_lines_reset_read_limit(&p->lines);
     while ((line = text_lines_read_next(&p->lines))) {
         cause = p->lines.is_long ? "the line is longer than 511 bytes"
                                  : parse_pose_line(p, &p->lines, line);

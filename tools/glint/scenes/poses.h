@@ -31,7 +31,8 @@ enum {
 };
 
 struct pose {
-    int frame, order; /* frame number; order: index of the line, for sorting */
+    int frame, order; /* frame number, and index of the line, by which poses of
+                       * one frame are sorted */
     int thing;        /* index of an object, n_objects + index of a light, or
                          POSES_CAMERA */
     bool has_turn;
@@ -47,8 +48,8 @@ struct poses {
     /* Private. */
     bool is_open;
     struct glint_scene_model model;
-    struct text_lines
-        lines;        /* lines of the file; closed after a file was read */
+    /* lines of the file; closed after a file was read */
+    struct text_lines lines;
     struct pose *row; /* poses sorted by frame */
     int n, next;
     int read_at; /* frame at which the pipe was last read */

@@ -18,7 +18,7 @@ enum { TEXT_BYTES = 1 << 20 };
  * scene names: about 30 s of processor time */
 #define MOST_WORK (INT64_C(1) << 28)
 
-bool tool_is_scene(const char *argument)
+bool tool_is_scene_text(const char *argument)
 {
     return glint_has_extension(argument, ".scene");
 }
@@ -45,10 +45,10 @@ static enum glint_status find_scene_file_path(const struct reading *reading,
 
 /* If STATUS is GLINT_OK, sets *DATA and its size to FROM[N] and adds them to
  * the key. Returns STATUS. */
-static enum glint_status return_read_data(struct reading *reading,
-                                          enum glint_status status, void *from,
-                                          size_t n, uint8_t **data,
-                                          size_t *bytes)
+static enum glint_status store_read_data(struct reading *reading,
+                                         enum glint_status status, void *from,
+                                         size_t n, uint8_t **data,
+                                         size_t *bytes)
 {
     if (status != GLINT_OK)
         return status;
@@ -118,8 +118,7 @@ static enum glint_status read_or_bake_environment(void *ctx, const char *name,
     if (status == GLINT_OK)
         status = environment_file_read(path, reading->written, NULL, NULL,
                                        &reading->left, &file, error);
-    return return_read_data(reading, status, file.data, file.bytes, data,
-                            bytes);
+    return store_read_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
 /* Reads or bakes a translucent medium. The caller frees its data. */
@@ -135,8 +134,7 @@ static enum glint_status read_or_bake_medium(void *ctx, const char *name,
     if (status == GLINT_OK)
         status = stone_file_read(reading->tool, path, NULL, NULL, false,
                                  &reading->left, &file, error);
-    return return_read_data(reading, status, file.data, file.bytes, data,
-                            bytes);
+    return store_read_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
 /* Reads or bakes a motion. The caller frees its data. */
@@ -151,8 +149,7 @@ static enum glint_status read_or_bake_motion(void *ctx, const char *name,
 
     if (status == GLINT_OK)
         status = motion_file_read(path, reading->written, &file, error);
-    return return_read_data(reading, status, file.data, file.bytes, data,
-                            bytes);
+    return store_read_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
 int tool_read_scene(const struct tool *tool, const char *path,
@@ -204,7 +201,7 @@ int tool_bake_scene(const struct tool *tool, const char *path, uint8_t **data,
     if (description)
         code = tool_read_scene(tool, path, description, &key);
     if (description && code == EXIT_OK) {
-        tool_copy_scene_name(path, name);
+        tool_copy_base_name(path, name);
         status = glint_scene_bake(description, name, key, data, bytes, report,
                                   &error);
         glint_description_free(description);

@@ -8,7 +8,7 @@
 #include "model/names.h"
 
 /* Returns whether ARGUMENT is the name of a scene text: NAME.scene. */
-bool tool_is_scene(const char *argument);
+bool tool_is_scene_text(const char *argument);
 
 /* Reads the scene text PATH and the files that it names, relative to its
  * folder. Rejects files that are the output of TOOL. Prints warnings unless

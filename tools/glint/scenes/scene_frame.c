@@ -93,7 +93,8 @@ static int check_intersection_tests(struct scene_frame *frame)
     int64_t tests;
 
     glint_scene_begin(frame->scene, &stats);
-    /* A pixel of a triangle's tile takes about as long as a test. */
+    /* Each pixel of a tile that a triangle touches takes about as long as an
+     * intersection test. */
     tests = (int64_t)stats.need_refs << 2 * frame->cfg.tile_log2;
     if (tests <= most)
         tests += glint_scene_count_tests(frame->scene, most - tests);

@@ -6,7 +6,7 @@
 #include "posix/ending.h"
 #include "scenes/scene_file.h"
 
-bool tool_is_scene(const char *argument)
+bool tool_is_scene_text(const char *argument)
 {
     return glint_has_extension(argument, ".scene");
 }

@@ -52,7 +52,7 @@ static int parse_medium_option(struct tool *tool, void *line, int c,
 
     switch (c) {
     case 'm':
-        l->model = tool_find_word(optarg, models);
+        l->model = tool_find_word_index(optarg, models);
         ok = l->model >= 0;
         break;
     default:
@@ -84,7 +84,7 @@ int cmd_bake_stone(struct tool *tool, int argc, char **argv)
     code = tool_save_file(tool, tool->written, GLINT_OUTPUT_BINARY, file.data,
                           file.bytes);
     if (code == EXIT_OK && bake_line_prints_report(tool))
-        stone_file_print(tool, &file);
+        stone_file_print_contents(tool, &file);
     stone_file_close(&file);
     return code;
 }

@@ -232,8 +232,8 @@ static enum glint_status bake_medium_source(const struct tool *tool,
                                       .ctx = &progress};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
-    /* measured fraction of the time that is spent before the fit; pictures of
-     * rows are only read */
+    /* measured fraction of the bake time that precedes the fit: small if the
+     * scatter rows are read from a picture, large if they are simulated */
     const double before = s->rows.rgb ? .05 : .8;
     enum glint_status status;
 
@@ -287,7 +287,7 @@ static void write_cached_medium(const struct tool *tool, char *path,
 }
 
 /* Returns the number of values per channel in the rows of STONE. */
-static int64_t count_row_numbers(const struct glint_stone *stone)
+static int64_t count_row_values(const struct glint_stone *stone)
 {
     const int64_t side = stone->side, kernel = stone->kernel;
 
@@ -306,14 +306,14 @@ read_text(const struct tool *tool, const char *path,
         read_source(tool, path, over, ctx, &source, error);
     bool has_cache;
 
-    tool_copy_scene_name(path, name);
+    tool_copy_base_name(path, name);
     has_cache =
         cache_file_find_folder(kept, sizeof kept) &&
         cache_file_append_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
         (anew || !has_cache || !load_cached_medium(kept, source.key, file))) {
         status = tool_count_bake_work(
-            left, 8 * count_row_numbers(&source.text.stone), path, error);
+            left, 8 * count_row_values(&source.text.stone), path, error);
         if (status == GLINT_OK)
             status = bake_medium_source(tool, &source, name, file, error);
         if (status == GLINT_OK && has_cache)

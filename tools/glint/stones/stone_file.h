@@ -34,9 +34,10 @@ bool stone_file_is_baked(const char *argument);
 
 /* Opens the text or baked file PATH. Rejects PATH, or a file that the text
  * names, if it is the output file of TOOL. OVER, unless NULL, is called to
- * override values of the text. ANEW: bakes the text even if it is cached.
- * LEFT, unless NULL: as in tool_count_bake_work(), 8 for each number of a row
- * that is baked. ERROR: the reason of a failure. */
+ * override values of the text. ANEW: bakes the text even if it is cached. LEFT,
+ * unless NULL, is the remaining bake work, see tool_count_bake_work(); a bake
+ * costs 8 for each number in its scatter rows. ERROR receives the reason of a
+ * failure. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
@@ -45,7 +46,8 @@ stone_file_read(const struct tool *tool, const char *path,
 void stone_file_close(struct stone_file *file);
 
 /* Prints the contents of FILE; with --json, as one object. */
-void stone_file_print(const struct tool *tool, const struct stone_file *file);
+void stone_file_print_contents(const struct tool *tool,
+                               const struct stone_file *file);
 
 /* The command glint bake for translucent media; see options/tool.h. */
 int cmd_bake_stone(struct tool *tool, int argc, char **argv);

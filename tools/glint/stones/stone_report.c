@@ -6,8 +6,10 @@
 #include "stones/stone_file.h"
 
 struct counts {
-    size_t codes, clusters, taps, all; /* size of each section, bytes */
-    double each;                       /* bytes per texel, without the taps */
+    size_t codes, clusters, taps, all; /* bytes of each section of the baked
+                                        * medium */
+    double each;                       /* bytes per texel, without the kernel
+                                        * coefficients */
 };
 
 static struct counts count_medium_contents(const struct stone_file *file)
@@ -27,7 +29,8 @@ static struct counts count_medium_contents(const struct stone_file *file)
     return n;
 }
 
-static const char *scatter_model_name(const struct glint_translucent_header *h)
+static const char *
+get_scatter_model_name(const struct glint_translucent_header *h)
 {
     static const char *const name[] = {"clustered", "factored", "albedo"};
 
@@ -43,7 +46,7 @@ static void print_medium_json(const struct stone_file *file,
     json_write(&json,
                "{name: %s, stone: {model: %s, size: %d, texel_mm: %g, "
                "kernel: %u, planes: %u, rank: %u, index: %.5g",
-               h->name, scatter_model_name(h), 1 << h->side_log2,
+               h->name, get_scatter_model_name(h), 1 << h->side_log2,
                h->texel_um / 1000., h->kernel, h->n_planes, h->rank,
                h->index_q16 / 65536.);
     if (file->is_baked_now)
@@ -68,7 +71,7 @@ static void print_medium_text(const struct stone_file *file,
     printf("%s, a translucent medium of %dx%d texels of %g mm, index %.4g\n\n",
            h->name, side, side, h->texel_um / 1000., h->index_q16 / 65536.);
     printf("model        %s, %u plane%s of rank %u, kernels of %ux%u\n",
-           scatter_model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "",
+           get_scatter_model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "",
            h->rank, h->kernel, h->kernel);
     if (file->is_baked_now) {
         printf(
@@ -86,7 +89,8 @@ static void print_medium_text(const struct stone_file *file,
     printf("  taps         %8zu\n", n->taps);
 }
 
-void stone_file_print(const struct tool *tool, const struct stone_file *file)
+void stone_file_print_contents(const struct tool *tool,
+                               const struct stone_file *file)
 {
     const struct counts n = count_medium_contents(file);
 

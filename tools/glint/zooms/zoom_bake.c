@@ -9,7 +9,8 @@
 
 enum {
     DEPTH = 4, /* max number of times that a step between positions is halved */
-    LAST = 2,  /* smallest step; its middle is not baked */
+    LAST = 2,  /* length of the smallest step, in places; its middle is not
+                * baked */
     /* number of places: baked positions, and the middles of the smallest
      * steps */
     PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
@@ -18,23 +19,24 @@ enum {
 /* Margin, dB, by which the error at the measured angles must be below the
  * requested error, as other angles may have larger errors */
 #define MARGIN_DB 2
-/* Fraction of the requested error; a ghost whose max error is smaller is not
- * measured again in the halves of its step */
+/* Fraction of the requested error. A ghost whose max error in a step is below
+ * it is not measured again when the step is halved. */
 #define SMALL 1e-3
-/* Offset of the measured angles from place to place: its multiples, modulo 1,
- * fill 0 to 1 evenly */
+/* Shift of the measured angles from one place to the next, as a fraction of
+ * their spacing. Its multiples, modulo 1, fill 0 to 1 evenly. */
 #define GOLDEN 0.6180339887
 
 struct place {
-    struct glint_bake_model
-        model;    /* model of the place; no data: no ghost is baked there */
+    struct glint_bake_model model; /* model baked at this zoom position; without
+                                    * data if no ghost is baked here */
     bool *ghosts; /* whether each ghost is baked at this place, [n_ghosts] */
-    /* total error of the ghosts that are not baked, in the step that begins
-     * here */
+    /* total error, in the step that begins here, of the ghosts that are not
+     * baked in its middle */
     struct zoom_error left;
-    /* error of each ghost in the middle of the step of twice this length */
+    /* error of each ghost in the middle of the longer step, of which the step
+     * that begins here is one half */
     struct zoom_error *before;
-    bool is_half; /* whether that step was measured */
+    bool is_half; /* whether that longer step was measured */
 };
 
 struct run {
@@ -42,8 +44,8 @@ struct run {
     const struct zoom_bake *bake;
     struct zoom_baked *baked;
     struct glint_error *error;
-    struct tool_progress
-        progress; /* progress of all positions, or of one middle */
+    struct tool_progress progress;  /* progress of the bake of all positions, or
+                                     * of one added  position */
     struct glint_prescription lens; /* lens at the present place */
     /* lens one smallest step before and after the present place */
     struct glint_prescription beside[2];
@@ -55,8 +57,9 @@ struct run {
 };
 
 /* Sets LENS to the zoom lens of RUN at PLACE. */
-static enum glint_status move_lens_to_place(const struct run *run, int place,
-                                            struct glint_prescription *lens)
+static enum glint_status
+set_lens_to_zoom_position(const struct run *run, int place,
+                          struct glint_prescription *lens)
 {
     const struct zoom_bake *const b = run->bake;
     enum glint_status status;
@@ -87,8 +90,8 @@ set_neighbour_lenses(struct run *run, int place,
          at += 2 * LAST)
         if (run->bake->halfway_db > 0 && at >= 0 && at < run->n_places &&
             glint_prescription_is_round(&run->lens))
-            status =
-                move_lens_to_place(run, at, &run->beside[options->n_beside++]);
+            status = set_lens_to_zoom_position(
+                run, at, &run->beside[options->n_beside++]);
     return status;
 }
 
@@ -99,7 +102,8 @@ static enum glint_status bake_zoom_position(struct run *run, int place,
     struct place *const p = &run->place[place];
     struct glint_bake_options options = *run->bake->options;
     struct glint_bake_report report;
-    enum glint_status status = move_lens_to_place(run, place, &run->lens);
+    enum glint_status status =
+        set_lens_to_zoom_position(run, place, &run->lens);
 
     if (status == GLINT_OK)
         status = set_neighbour_lenses(run, place, &options);
@@ -146,7 +150,7 @@ static enum glint_status combine_baked_models(struct run *run)
 }
 
 /* Returns the max allowed mean squared error of all ghosts together. */
-static double max_total_error(const struct run *run)
+static double compute_max_total_error(const struct run *run)
 {
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
 }
@@ -154,10 +158,10 @@ static double max_total_error(const struct run *run)
 /* Chooses the ghosts to bake at TO so that the error of all others is small
  * enough; chooses none in the smallest step. Sets LEFT to the total error of
  * the others. Returns the number of chosen ghosts. */
-static int choose_ghosts(struct run *run, struct place *to,
-                         struct zoom_error *left)
+static int choose_ghosts_to_bake(struct run *run, struct place *to,
+                                 struct zoom_error *left)
 {
-    const double most = max_total_error(run);
+    const double most = compute_max_total_error(run);
     int n = 0;
 
     for (int g = 0; g < run->n_ghosts; g++)
@@ -185,7 +189,7 @@ static int choose_ghosts(struct run *run, struct place *to,
     }
 }
 
-static double max_angle_error(const struct zoom_error *error)
+static double find_max_angle_error(const struct zoom_error *error)
 {
     double worst = 0;
 
@@ -194,12 +198,15 @@ static double max_angle_error(const struct zoom_error *error)
     return worst;
 }
 
-/* Records the error LEFT at the present zoom position. */
-static void record_position_error(struct run *run,
-                                  const struct zoom_error *left, int n_added)
+/* Prints the PSNR that corresponds to the error LEFT at the present zoom
+ * position, and records it if it is the lowest so far. */
+static void record_lowest_position_psnr(struct run *run,
+                                        const struct zoom_error *left,
+                                        int n_added)
 {
     struct zoom_baked *const baked = run->baked;
-    const double db = fmin(99, -10 * log10(fmax(max_angle_error(left), 1e-10)));
+    const double db =
+        fmin(99, -10 * log10(fmax(find_max_angle_error(left), 1e-10)));
 
     if (baked->least_db <= 0 || db < baked->least_db) {
         baked->least_db = db;
@@ -215,15 +222,16 @@ static void record_position_error(struct run *run,
 /* Marks the errors to be measured in the middle of the step from FROM to TO,
  * except those of ghosts with small errors. Returns whether any ghost is baked
  * at both ends. */
-static bool mark_wanted_errors(struct run *run, int from, int to)
+static bool mark_errors_to_measure(struct run *run, int from, int to)
 {
     const struct place *const p = &run->place[from];
     bool any = false;
 
     for (int g = 0; g < run->n_ghosts; g++) {
         const bool has = p->ghosts[g] && run->place[to].ghosts[g];
-        const bool small = p->is_half && max_angle_error(&p->before[g]) <
-                                             SMALL * max_total_error(run);
+        const bool small =
+            p->is_half && find_max_angle_error(&p->before[g]) <
+                              SMALL * compute_max_total_error(run);
 
         any |= has;
         for (int a = 0; a < ZOOM_ANGLES; a++)
@@ -254,11 +262,11 @@ static enum glint_status halve_zoom_step(struct run *run, int from)
     int n;
 
     p->left = left;
-    if (!mark_wanted_errors(run, from, to))
+    if (!mark_errors_to_measure(run, from, to))
         return GLINT_OK;
     glint_zoom_set(&run->zoom,
                    (int32_t)lrint(middle / (run->n_places - 1.0) * 0x1p30));
-    status = move_lens_to_place(run, middle, &run->lens);
+    status = set_lens_to_zoom_position(run, middle, &run->lens);
     if (status == GLINT_OK)
         status = zoom_error_measure_ghosts(
             run->tool, &run->lens, &run->zoom, run->bake->options->max_deg,
@@ -267,9 +275,9 @@ static enum glint_status halve_zoom_step(struct run *run, int from)
     if (status != GLINT_OK)
         return status;
     store_ghost_errors(run, from, middle);
-    n = choose_ghosts(run, p, &left);
+    n = choose_ghosts_to_bake(run, p, &left);
     p->left = run->place[from].left = left;
-    record_position_error(run, &left, n);
+    record_lowest_position_psnr(run, &left, n);
     if (n == 0)
         return GLINT_OK;
     tool_progress_start(&run->progress, run->tool, "bake");
@@ -318,7 +326,7 @@ static enum glint_status bake_all_positions(struct run *run)
     return status;
 }
 
-static bool allocate_zoom_run(struct run *run)
+static bool allocate_run_arrays(struct run *run)
 {
     const size_t n = (size_t)run->n_ghosts + 1;
 
@@ -354,8 +362,8 @@ enum glint_status zoom_bake_positions(struct tool *tool,
         run->step /= 2;
     run->n_places = n * run->step + 1;
     run->n_ghosts = glint_ghost_list(bake->lens, NULL, 0);
-    if (allocate_zoom_run(run))
-        status = move_lens_to_place(run, 0, &run->lens);
+    if (allocate_run_arrays(run))
+        status = set_lens_to_zoom_position(run, 0, &run->lens);
     if (status == GLINT_OK)
         status = bake_all_positions(run);
     for (int k = 0; k < run->n_places; k++) {

@@ -18,12 +18,12 @@
 #define ZOOM_BAKE_DB 45
 
 struct zoom_bake {
-    const struct glint_prescription
-        *lens; /* zoom lens, as read from its table */
-    const struct glint_bake_options
-        *options; /* bake options; ghosts are chosen here */
-    double focus_m,
-        f_number;  /* focus distance, m, and f-number; 0: those of the table */
+    /* zoom lens, as read from its table */
+    const struct glint_prescription *lens;
+    /* bake options; ghosts are chosen here */
+    const struct glint_bake_options *options;
+    /* focus distance, m, and f-number; 0: those of the table */
+    double focus_m, f_number;
     int positions; /* number of evenly spaced positions, at least 2 */
     /* min PSNR half-way between positions, dB; 0: adds no positions */
     double halfway_db;

@@ -28,7 +28,7 @@ enum { WIDE = 480, MOST_HIGH = 480 };
 /* Min linear light of a visible ghost, 1 = white: a third of the first code */
 #define FAINT 1e-4
 
-enum { EACH = 4 }; /* in the first pass one of EACH angles is measured */
+enum { EACH = 4 }; /* the first pass measures every EACH-th angle */
 
 /* State of a ghost at an angle, as bits. */
 enum {
@@ -54,7 +54,7 @@ struct measuring {
     enum glint_status status[ZOOM_ANGLES];
 };
 
-static double field_angle_deg(const struct measuring *m, int angle)
+static double compute_field_angle_deg(const struct measuring *m, int angle)
 {
     return fmin(m->max_deg,
                 m->max_deg * (angle + EACH * m->shift) / ZOOM_ANGLES);
@@ -73,7 +73,7 @@ struct pictures {
 /* Sets ERROR to the mean squared error of the whole image if only this ghost
  * were interpolated and all others exact. Returns the images in which the
  * ghost is visible. */
-static int find_single_ghost_error(const struct pictures *p, double *error)
+static int compute_image_error_of_ghost(const struct pictures *p, double *error)
 {
     const size_t n = (size_t)p->all.width * (size_t)p->all.height;
     double sum = 0;
@@ -115,7 +115,8 @@ static enum glint_status draw_ghost_image(struct glint_engine *engine,
 static enum glint_status measure_ghosts_at_angle(const struct measuring *m,
                                                  struct pictures *p, int angle)
 {
-    const struct glint_lamp lamp = {.theta_deg = field_angle_deg(m, angle),
+    const struct glint_lamp lamp = {.theta_deg =
+                                        compute_field_angle_deg(m, angle),
                                     .phi_deg = AZIMUTH_DEG,
                                     .power = 1,
                                     .rgb = {1, 1, 1}};
@@ -131,7 +132,8 @@ static enum glint_status measure_ghosts_at_angle(const struct measuring *m,
             status = draw_ghost_image(p->by.exact, &lamp, g, &p->traced);
         m->known[g][angle] =
             (unsigned char)((m->known[g][angle] & IN_RANGE) | MEASURED |
-                            find_single_ghost_error(p, &m->error[g].of[angle]));
+                            compute_image_error_of_ghost(
+                                p, &m->error[g].of[angle]));
     }
     return status;
 }
@@ -146,7 +148,7 @@ static bool allocate_error_image(struct glint_float_image *image,
     return image->rgb != NULL;
 }
 
-static void measure_angle_job(void *ctx, int angle, int worker)
+static void measure_ghosts_at_angle_of_job(void *ctx, int angle, int worker)
 {
     struct measuring *const m = ctx;
     struct pictures p = {.exposure = 1};
@@ -184,7 +186,8 @@ static bool find_ghost_angle_ranges(struct measuring *m)
 
     for (int g = 0; g < m->n && has_room; g++)
         for (int a = 0; a < ZOOM_ANGLES && m->error[g].of[0] < 0; a++) {
-            const double sine = sin(field_angle_deg(m, a) * GLINT_PI / 180);
+            const double sine =
+                sin(compute_field_angle_deg(m, a) * GLINT_PI / 180);
 
             if (glint_transfer_init(transfer, &m->zoom->lens, g,
                                     (int32_t)(sine * 0x1p30), wave_q24))
@@ -212,7 +215,7 @@ static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
 
 /* Marks each STEP-th angle of the requested ghosts as wanted; between
  * measured angles only those of is_measurement_wanted(). */
-static void mark_wanted_angles(struct measuring *m, int step)
+static void mark_angles_to_measure(struct measuring *m, int step)
 {
     for (int g = 0; g < m->n; g++)
         for (int a = 0; a < ZOOM_ANGLES; a += step)
@@ -245,8 +248,8 @@ static void interpolate_angle_errors(const unsigned char known[ZOOM_ANGLES],
 
 /* Returns the max angle of lights to measure with LENS, at most MAX_DEG,
  * degrees. */
-static double max_measured_angle_deg(const struct glint_prescription *lens,
-                                     double max_deg)
+static double find_max_measured_angle_deg(const struct glint_prescription *lens,
+                                          double max_deg)
 {
     const double corner_mm =
         0.5 * hypot(lens->film_width_mm, lens->film_height_mm);
@@ -265,8 +268,9 @@ static enum glint_status measure_all_angles(struct measuring *m,
         find_ghost_angle_ranges(m) ? GLINT_OK : GLINT_E_MEMORY;
 
     for (int step = EACH; step > 0 && status == GLINT_OK; step /= 2) {
-        mark_wanted_angles(m, step);
-        glint_workers_run(workers, ZOOM_ANGLES, measure_angle_job, m);
+        mark_angles_to_measure(m, step);
+        glint_workers_run(workers, ZOOM_ANGLES, measure_ghosts_at_angle_of_job,
+                          m);
         for (int k = 0; k < ZOOM_ANGLES && status == GLINT_OK; k++)
             status = m->status[k];
     }
@@ -289,7 +293,7 @@ enum glint_status zoom_error_measure_ghosts(
         .zoom = zoom,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                lens->film_width_mm, lens->film_height_mm),
-        .max_deg = max_measured_angle_deg(lens, max_deg),
+        .max_deg = find_max_measured_angle_deg(lens, max_deg),
         .shift = shift,
         .n = n,
         .error = error,

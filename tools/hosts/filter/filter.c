@@ -10,8 +10,8 @@
 
 struct filter {
     struct tool tool;
-    struct glint_error
-        cause; /* cause of the last failure, for display by hosts */
+    /* cause of the last failure, for display by hosts */
+    struct glint_error cause;
     struct drawing drawing;
     int width, height;
     struct filter_values values;

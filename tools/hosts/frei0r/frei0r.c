@@ -154,7 +154,7 @@ void f0r_get_param_value(void *instance, void *value, int index)
  * and after a jump back, returns those of 25 pictures per second. Ten
  * seconds and more are read as milliseconds, as ffmpeg 5.1 passes the time
  * times 1000. */
-static int32_t elapsed_us(const struct instance *i, double seconds)
+static int32_t compute_elapsed_us(const struct instance *i, double seconds)
 {
     const double us = 1e6 * (seconds - i->seconds);
     const double frame = us < 1e7 ? us : us / 1000;
@@ -173,6 +173,6 @@ void f0r_update(void *instance, double seconds, const uint32_t *in,
             glint_image_bytes(GLINT_XRGB8888, i->image.width, i->image.height));
     glint_image_place(&i->image, out);
     filter_set_values(i->filter, &i->values);
-    if (filter_draw_flare(i->filter, &i->image, elapsed_us(i, seconds)))
+    if (filter_draw_flare(i->filter, &i->image, compute_elapsed_us(i, seconds)))
         i->seconds = seconds;
 }

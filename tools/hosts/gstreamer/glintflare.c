@@ -165,7 +165,7 @@ static gboolean set_caps_info(GstVideoFilter *base, GstCaps *in_caps,
 
 /* Returns the microseconds since the last frame drawn: the nominal duration
  * of the caps, except after a gap, as when late frames were dropped. */
-static gint32 elapsed_us(const GlintFlareElement *e, GstClockTime now)
+static gint32 compute_elapsed_us(const GlintFlareElement *e, GstClockTime now)
 {
     const gint64 us =
         GST_CLOCK_TIME_IS_VALID(e->last) && GST_CLOCK_TIME_IS_VALID(now)
@@ -205,7 +205,7 @@ static GstFlowReturn transform_frame(GstVideoFilter *base, GstVideoFrame *frame)
         e->image.plane[i] = GST_VIDEO_FRAME_PLANE_DATA(frame, i);
         e->image.stride_bytes[i] = GST_VIDEO_FRAME_PLANE_STRIDE(frame, i);
     }
-    if (!filter_draw_flare(e->filter, &e->image, elapsed_us(e, now))) {
+    if (!filter_draw_flare(e->filter, &e->image, compute_elapsed_us(e, now))) {
         GST_ELEMENT_ERROR(e, LIBRARY, FAILED,
                           ("No flare: %s", filter_error_text(e->filter)),
                           (NULL));

@@ -337,7 +337,7 @@ static bool prepare_filter(struct flare *f, const struct glint_image *image)
 /* Returns the microseconds since the last frame drawn. For the first frame,
  * after a jump back and after a long gap, returns those of 25 frames per
  * second. */
-static int32_t elapsed_us(const struct flare *f, uint64_t now_ns)
+static int32_t compute_elapsed_us(const struct flare *f, uint64_t now_ns)
 {
     const uint64_t us = (now_ns - f->last_ns + 500) / 1000;
 
@@ -362,7 +362,8 @@ filter_video_frame(void *ctx, struct obs_source_frame *frame)
     pthread_mutex_unlock(&f->lock);
     if (!is_ready)
         return frame;
-    if (filter_draw_flare(f->filter, &image, elapsed_us(f, frame->timestamp)))
+    if (filter_draw_flare(f->filter, &image,
+                          compute_elapsed_us(f, frame->timestamp)))
         f->last_ns = frame->timestamp;
     else
         disable_failed_filter(f);

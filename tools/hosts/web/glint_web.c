@@ -170,7 +170,7 @@ static int move_zoom_groups(void)
 
 /* Returns the bake options of the model, those of glint overlay; for a model
  * that was requested with its own f-number, the defaults of glint bake. */
-static struct glint_bake_options model_bake_options(void)
+static struct glint_bake_options get_model_bake_options(void)
 {
     const struct glint_options *const o = &web.options;
     const struct glint_prescription *const l = &web.table;
@@ -222,7 +222,7 @@ const char *web_open(double widest)
     if (f > 0 && !record_status(glint_prescription_set_f_number(&web.table, f,
                                                                 &web.error)))
         return NULL;
-    b = model_bake_options();
+    b = get_model_bake_options();
     snprintf(web.name, sizeof web.name, "%s-%016llx.glint", web.table.name,
              (unsigned long long)glint_bake_key(&web.table, &b));
     web.is_open = true;
@@ -248,7 +248,7 @@ int web_model(void *data, size_t bytes)
 
 int web_bake(void)
 {
-    const struct glint_bake_options b = model_bake_options();
+    const struct glint_bake_options b = get_model_bake_options();
     struct glint_bake_report report;
     unsigned char *data;
     size_t bytes;
@@ -388,7 +388,8 @@ static void write_lamp_row(double row[WEB_COLUMNS],
     const double *const axis = lamp->lamp.axis;
     const double pixels =
         view->width * fabs(web.setup.optics.focal_mm) /
-        view->sensor_width_mm; /* pixels per unit of tangent */
+        view->sensor_width_mm; /* pixels per unit of the tangent of the field
+                                * angle */
 
     row[WEB_X] = lamp->track.x_q8 / 256.0;
     row[WEB_Y] = lamp->track.y_q8 / 256.0;
@@ -474,7 +475,7 @@ int web_draw(uint8_t *pixels, int n, int quick)
     if (!web.engine)
         return record_error("there is no engine");
     if (n < WEB_FOUND || n > GLINT_ENGINE_MAX_LAMPS)
-        return record_error("not 0 to 1024 lamps");
+        return record_error("the number of lamps must be 0 to 1024");
     web.error.text[0] = '\0';
     image = wrap_pixels_as_image(pixels);
     if (n == WEB_FOUND) {

@@ -288,8 +288,8 @@ static void copy_table_cell(const char *line, int number, char cell[256])
     snprintf(cell, 256, "%.*s", (int)length, line);
 }
 
-static bool have_lines_same_keys(const struct recipe *r, const char *a,
-                                 const char *b)
+static bool have_lines_same_key_columns(const struct recipe *r, const char *a,
+                                        const char *b)
 {
     char cell[2][256];
 
@@ -346,7 +346,7 @@ static void replace_or_append_line(const struct recipe *r, struct table *t,
                                    char *line)
 {
     for (int i = 0; i < t->n && line; i++)
-        if (have_lines_same_keys(r, t->line[i], line)) {
+        if (have_lines_same_key_columns(r, t->line[i], line)) {
             t->line[i] = line;
             return;
         }
@@ -398,7 +398,7 @@ static bool compare_row_with_table(const struct recipe *r,
     bool fine = true;
 
     for (int i = 0; i < t->n; i++) {
-        if (!line || !have_lines_same_keys(r, t->line[i], line))
+        if (!line || !have_lines_same_key_columns(r, t->line[i], line))
             continue;
         for (int k = 0; k < r->n_columns; k++) {
             copy_table_cell(t->line[i], k, cell);

@@ -67,8 +67,8 @@ static struct ghost find_ghost_position(const struct figure_row *row,
 
 /* Writes the metrics with the prefix WHERE for a light whose image is MM from
  * the axis. */
-static void write_ghost_place(struct figure_row *row, const struct places *r,
-                              const char *where, double mm)
+static void write_ghost_position(struct figure_row *row, const struct places *r,
+                                 const char *where, double mm)
 {
     const double focal = fabs(r->setup.optics.focal_mm);
     const double px = 1920 / row->table.film_width_mm;
@@ -97,7 +97,7 @@ static void write_ghost_place(struct figure_row *row, const struct places *r,
                    moved / light, where, most);
 }
 
-int row_measure_places(struct figure_row *row)
+int row_measure_ghost_positions(struct figure_row *row)
 {
     static const double nm[] = {588};
     struct places *const r = calloc(1, sizeof *r);
@@ -124,8 +124,8 @@ int row_measure_places(struct figure_row *row)
                    r->setup.optics.focal_mm,
                    glint_projection_deg(&r->projection, r->projection.reach),
                    r->miss_deg);
-        write_ghost_place(row, r, "half", 0.5 * corner);
-        write_ghost_place(row, r, "corner", corner);
+        write_ghost_position(row, r, "half", 0.5 * corner);
+        write_ghost_position(row, r, "corner", corner);
     }
     free(r);
     return status == GLINT_OK ? EXIT_OK

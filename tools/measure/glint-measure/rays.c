@@ -48,14 +48,14 @@ struct task {
     int n_ghosts;
     double angle[MOST_ANGLES];
     int n_angles;
-    /* radius of the image circle: half the image's diagonal, or the radius
-     * of the field if that is smaller */
+    /* radius of the image circle, mm: half of the image's diagonal, or the
+     * radius of the model's field if that is smaller */
     double picture_mm;
 };
 
 /* ------------------------------------------------------------------ tallies */
 
-static int find_error_bin(double error)
+static int find_error_histogram_bin(double error)
 {
     const int bin = (int)(BINS_A_DECADE * log10(fmax(error, 1e-5) / 1e-5));
 
@@ -66,9 +66,9 @@ static void add_ray_error(struct tally *t, const double error[], double light)
 {
     t->rays++;
     t->light += light;
-    t->sensor[find_error_bin(
+    t->sensor[find_error_histogram_bin(
         hypot(error[GLINT_OUT_SENSOR_X], error[GLINT_OUT_SENSOR_Y]))]++;
-    t->energy[find_error_bin(fabs(error[GLINT_OUT_ENERGY]))]++;
+    t->energy[find_error_histogram_bin(fabs(error[GLINT_OUT_ENERGY]))]++;
     for (int kind = 0; kind <= GLINT_OUT_ENERGY; kind++)
         t->sum2[kind] +=
             error[kind] * error[kind] * (kind == GLINT_OUT_ENERGY ? light : 1);
@@ -80,8 +80,8 @@ static void add_uncovered_ray(struct tally *t, double light)
     t->lost++;
     t->light += light;
     t->light_lost += light;
-    t->sensor[find_error_bin(FAR)]++;
-    t->energy[find_error_bin(1)]++;
+    t->sensor[find_error_histogram_bin(FAR)]++;
+    t->energy[find_error_histogram_bin(1)]++;
 }
 
 /* Adds the tally FROM, scaled by WEIGHT, to T. */
@@ -102,7 +102,7 @@ static void merge_tally(struct tally *t, const struct tally *from,
 
 /* Returns the 99th percentile of the N errors counted in BIN, rounded up to the
  * end of its bin. */
-static double compute_p99(const double bin[BINS], double n)
+static double compute_99th_percentile(const double bin[BINS], double n)
 {
     double above = 0;
     int k = BINS;
@@ -112,9 +112,9 @@ static double compute_p99(const double bin[BINS], double n)
     return n > 0 ? 1e-5 * pow(10, (double)k / BINS_A_DECADE) : 0;
 }
 
-static double compute_sensor_p99_px(const struct tally *t)
+static double compute_sensor_99th_percentile_px(const struct tally *t)
 {
-    return compute_p99(t->sensor, t->rays);
+    return compute_99th_percentile(t->sensor, t->rays);
 }
 
 static double compute_rms(const struct tally *t, int kind)
@@ -133,7 +133,7 @@ static double compute_stop_rms(const struct tally *t)
 
 static bool does_tally_miss_target(const struct tally *t)
 {
-    return compute_sensor_p99_px(t) > SENSOR_PX ||
+    return compute_sensor_99th_percentile_px(t) > SENSOR_PX ||
            compute_stop_rms(t) > STOP_RMS;
 }
 
@@ -229,9 +229,9 @@ static void compare_ray_bundle(const struct task *t, int ghost,
 
     glint_path_init(&path, &t->row->table, &t->ghost[ghost], nm);
     path.places_only = true;
-    if (!glint_pupil_find_within(&box, &path, angle_deg,
-                                 t->optics.stop_radius_mm,
-                                 model_compute_real(t->header->field_mm), NULL))
+    if (!glint_pupil_find_within(
+            &box, &path, angle_deg, t->optics.stop_radius_mm,
+            model_convert_real_to_double(t->header->field_mm), NULL))
         return;
     path.places_only = false;
     find_ghost_parts(t, ghost, angle_deg, nm, &parts);
@@ -315,10 +315,11 @@ static void compare_all_ghosts(struct figure_row *row, const struct task *t)
                "energy_p99_ghosts: %.6g, lost: %.6g, lost_light: %.6g, "
                "ghosts_seen: %d, ghosts_miss: %d, angles_seen: %d, "
                "angles_miss: %d",
-               all.rays, compute_sensor_p99_px(&all),
-               compute_sensor_p99_px(&equally), compute_stop_rms(&all),
-               compute_stop_rms(&equally), compute_p99(all.energy, all.rays),
-               compute_p99(equally.energy, equally.rays),
+               all.rays, compute_sensor_99th_percentile_px(&all),
+               compute_sensor_99th_percentile_px(&equally),
+               compute_stop_rms(&all), compute_stop_rms(&equally),
+               compute_99th_percentile(all.energy, all.rays),
+               compute_99th_percentile(equally.energy, equally.rays),
                all.lost / fmax(1, all.rays), lost, ghosts, missing, angles[0],
                angles[1]);
     write_rms_metric(row, &all);
@@ -353,7 +354,7 @@ static void set_field_angles(struct task *t, double step_deg)
     qsort(t->angle, (size_t)t->n_angles, sizeof *t->angle, compare_doubles);
 }
 
-int row_measure_rays(struct figure_row *row)
+int row_measure_ray_errors(struct figure_row *row)
 {
     struct task *const t = calloc(1, sizeof *t);
     const struct glint_model_header *h;
@@ -371,7 +372,7 @@ int row_measure_rays(struct figure_row *row)
                          "the model is of another lens");
     }
     t->picture_mm =
-        fmin(model_compute_real(h->field_mm),
+        fmin(model_convert_real_to_double(h->field_mm),
              0.5 * hypot(row->table.film_width_mm, row->table.film_height_mm));
     glint_optics_of(&row->table, &t->optics);
     set_field_angles(t, row->step_deg);

@@ -21,8 +21,8 @@ struct recipe_row {
  * {METRIC%FORMAT} or {METRIC%FORMAT~TOLERANCE}. */
 struct recipe_column {
     const char *title, *cell;
-    bool
-        is_key; /* whether the column has no metric and so identifies the row */
+    /* whether the column has no metric and so identifies the row */
+    bool is_key;
 };
 
 struct recipe {

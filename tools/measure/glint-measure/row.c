@@ -196,7 +196,8 @@ static int bake_row_table(struct figure_row *r)
     if (!model_cache_make_path(path, sizeof path, "measured.glint") ||
         !(file = fopen(path, "wb"))) {
         free(model);
-        return tool_fail(r->tool, GLINT_E_IO, "no cache for a model");
+        return tool_fail(r->tool, GLINT_E_IO,
+                         "cannot create a file in the cache for the model");
     }
     status = fwrite(model, 1, bytes, file) == bytes ? GLINT_OK : GLINT_E_IO;
     free(model);
@@ -231,7 +232,8 @@ static void write_model_metrics(struct figure_row *r)
                r->opened.setup.optics.focal_mm);
     if (!model->data)
         return;
-    sum = model_summarise(&model->lens, model_full_span(&model->lens));
+    sum =
+        model_compute_summary(&model->lens, model_get_full_span(&model->lens));
     json_write(&r->json, "model_kib: %.4f, mean_terms: %.4f, table_ghosts: %u",
                (double)model->bytes / 1024, model_compute_mean_terms(&sum),
                model_count_ghosts(&model->lens));
@@ -292,10 +294,10 @@ static enum glint_status draw_row_frame(struct figure_row *r, struct frame *f,
     const struct glint_image *to = &layer;
 
     if (is_image_linear(r))
-        return glint_engine_render(f->engine, f->lamp, r->n_lights,
-                                   settings_brightness_scale(&r->settings),
-                                   GLINT_ENGINE_ALL | GLINT_ENGINE_CORES,
-                                   f->got.rgb, &f->report);
+        return glint_engine_render(
+            f->engine, f->lamp, r->n_lights,
+            settings_compute_brightness_scale(&r->settings),
+            GLINT_ENGINE_ALL | GLINT_ENGINE_CORES, f->got.rgb, &f->report);
     if (is_drawn_on_canvas(r)) {
         canvas_restore_background(&f->canvas);
         to = &f->canvas.image;
@@ -483,9 +485,9 @@ int row_measure(struct figure_row *row)
         is_any_metric_requested(row, ROW_PICTURE "," ROW_FRAME))
         code = measure_frame(row);
     if (code == EXIT_OK && is_any_metric_requested(row, ROW_RAYS))
-        code = row_measure_rays(row);
+        code = row_measure_ray_errors(row);
     if (code == EXIT_OK && is_any_metric_requested(row, ROW_PLACES))
-        code = row_measure_places(row);
+        code = row_measure_ghost_positions(row);
     json_write(&row->json, "}\n");
     return code;
 }

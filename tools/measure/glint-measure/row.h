@@ -13,13 +13,14 @@ struct figure_row {
     struct tool *tool;
     struct json_writer json;
     int n;
-    char **assignment;   /* [n], as passed to row_parse() */
+    char **assignment;   /* the texts PARAMETER=VALUE passed to row_parse(), [n]
+                          * */
     const char *metrics; /* names of metrics, separated by commas */
     const char *lens;    /* path of a lens table or model */
     struct settings settings;
     struct opened_lens opened;
-    struct glint_prescription
-        table; /* the lens table; for a model only its name is set */
+    /* the lens table; for a model only its name is set */
+    struct glint_prescription table;
     int width, height, n_lights;
     double theta, phi; /* direction of the first light, degrees */
     /* power of all lights, stops above white at exposure 1; NAN: the exposure
@@ -61,7 +62,7 @@ int row_measure(struct figure_row *row);
 #define ROW_PLACES                                                             \
     "traced_deg,miss_deg,half_tan,half_lens,half_light,half_ghosts,half_most," \
     "corner_tan,corner_lens,corner_light,corner_ghosts,corner_most"
-int row_measure_rays(struct figure_row *row);
-int row_measure_places(struct figure_row *row);
+int row_measure_ray_errors(struct figure_row *row);
+int row_measure_ghost_positions(struct figure_row *row);
 
 #endif

@@ -57,22 +57,22 @@ void plot_extend_axes(struct plot *p, double x, double y)
 }
 
 /* Returns the position of V along axis A, 0 to 1. */
-static double axis_fraction(const struct plot_axis *a, double v)
+static double compute_axis_fraction(const struct plot_axis *a, double v)
 {
     return a->is_log ? log(v / a->lo) / log(a->hi / a->lo)
                      : (v - a->lo) / (a->hi - a->lo);
 }
 
-static double data_x_to_px(const struct plot *p, double x)
+static double convert_data_x_to_px(const struct plot *p, double x)
 {
     return p->left + LEFT +
-           axis_fraction(&p->x, x) * (PLOT_WIDTH - LEFT - RIGHT);
+           compute_axis_fraction(&p->x, x) * (PLOT_WIDTH - LEFT - RIGHT);
 }
 
-static double data_y_to_px(const struct plot *p, double y)
+static double convert_data_y_to_px(const struct plot *p, double y)
 {
     return p->top + PLOT_HEIGHT - BOTTOM -
-           axis_fraction(&p->y, y) * (PLOT_HEIGHT - TOP - BOTTOM);
+           compute_axis_fraction(&p->y, y) * (PLOT_HEIGHT - TOP - BOTTOM);
 }
 
 static void draw_svg_text(const struct plot *p, double x, double y,
@@ -121,14 +121,16 @@ static void draw_axis_tick(const struct plot *p, bool is_x, double v)
 
     snprintf(words, sizeof words, "%.6g", v);
     if (is_x) {
-        draw_svg_stroke(p, data_x_to_px(p, v), p->top + TOP, data_x_to_px(p, v),
-                        bottom, "#ddd", 1);
-        draw_svg_text(p, data_x_to_px(p, v), bottom + 14, "middle", "", words);
+        draw_svg_stroke(p, convert_data_x_to_px(p, v), p->top + TOP,
+                        convert_data_x_to_px(p, v), bottom, "#ddd", 1);
+        draw_svg_text(p, convert_data_x_to_px(p, v), bottom + 14, "middle", "",
+                      words);
     } else {
-        draw_svg_stroke(p, left, data_y_to_px(p, v),
-                        p->left + PLOT_WIDTH - RIGHT, data_y_to_px(p, v),
-                        "#ddd", 1);
-        draw_svg_text(p, left - 5, data_y_to_px(p, v) + 4, "end", "", words);
+        draw_svg_stroke(p, left, convert_data_y_to_px(p, v),
+                        p->left + PLOT_WIDTH - RIGHT,
+                        convert_data_y_to_px(p, v), "#ddd", 1);
+        draw_svg_text(p, left - 5, convert_data_y_to_px(p, v) + 4, "end", "",
+                      words);
     }
 }
 
@@ -212,8 +214,8 @@ void plot_draw_mark(const struct plot *p, double x, double y, char kind,
                     const char *colour, const char *tip)
 {
     if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y))
-        draw_data_mark(p, data_x_to_px(p, x), data_y_to_px(p, y), kind, colour,
-                       tip);
+        draw_data_mark(p, convert_data_x_to_px(p, x),
+                       convert_data_y_to_px(p, y), kind, colour, tip);
 }
 
 void plot_draw_line(const struct plot *p, double x0, double y0, double x1,
@@ -221,17 +223,19 @@ void plot_draw_line(const struct plot *p, double x0, double y0, double x1,
 {
     if (is_on_axis(&p->x, x0) && is_on_axis(&p->x, x1) &&
         is_on_axis(&p->y, y0) && is_on_axis(&p->y, y1))
-        draw_svg_stroke(p, data_x_to_px(p, x0), data_y_to_px(p, y0),
-                        data_x_to_px(p, x1), data_y_to_px(p, y1), colour,
-                        thick ? 2 : 1);
+        draw_svg_stroke(p, convert_data_x_to_px(p, x0),
+                        convert_data_y_to_px(p, y0),
+                        convert_data_x_to_px(p, x1),
+                        convert_data_y_to_px(p, y1), colour, thick ? 2 : 1);
 }
 
 void plot_draw_label(const struct plot *p, double x, double y,
                      const char *words)
 {
     if (is_on_axis(&p->x, x) && is_on_axis(&p->y, y))
-        draw_svg_text(p, data_x_to_px(p, x) + 5, data_y_to_px(p, y) + 11,
-                      "start", " font-size=\"9\" fill=\"#555\"", words);
+        draw_svg_text(p, convert_data_x_to_px(p, x) + 5,
+                      convert_data_y_to_px(p, y) + 11, "start",
+                      " font-size=\"9\" fill=\"#555\"", words);
 }
 
 void plot_draw_legend_entry(struct plot *p, char kind, const char *colour,
@@ -247,7 +251,7 @@ void plot_draw_legend_entry(struct plot *p, char kind, const char *colour,
     p->n_keys++;
 }
 
-const char *plot_colour_of_series(int i)
+const char *plot_get_colour_of_series(int i)
 {
     static const char *const colours[] = {
         "#1f6fb2", "#c2571a", "#3a8f3a", "#7a4fa3", "#b01e5a",

@@ -17,8 +17,8 @@ enum { PLOT_WIDTH = 380, PLOT_HEIGHT = 320 }; /* size of a panel, px */
 struct plot_axis {
     const char *words;
     bool is_log;
-    double lo,
-        hi; /* range of the axis; lo > hi: no points yet (plot_extend_axes()) */
+    /* range of the axis; lo > hi: no points yet (plot_extend_axes()) */
+    double lo, hi;
     double least_span; /* min of hi - lo; ignored by a logarithmic axis */
 };
 
@@ -59,7 +59,7 @@ void plot_draw_label(const struct plot *plot, double x, double y,
 void plot_draw_legend_entry(struct plot *plot, char kind, const char *colour,
                             const char *words);
 
-const char *plot_colour_of_series(int i);
+const char *plot_get_colour_of_series(int i);
 
 /* ------------------------------------------------------------------- pages */
 
