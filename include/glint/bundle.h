@@ -24,9 +24,9 @@ struct glint_vertex {
     int32_t stop_x_q16,
         stop_y_q16; /* position in the stop, in stop radii, within +-2^14 */
     /* (1 + r^2) / 2 at each of two barrels that may cut the ray, where r is
-     * (distance of the ray from the axis) / (semi-diameter); the ray is cut if
-     * the value is above 1. The value is smooth everywhere, and its slope at r
-     * = 1 equals that of r. 0 .. 2^14; 0: there is no such barrel. */
+     * (distance of the ray from the axis) / (semi-diameter). The ray is cut if
+     * the value is above 1. Unlike r the value is smooth at r = 0; at r = 1 its
+     * slope is that of r. Values are 0 .. 2^14; 0: there is no such barrel. */
     int32_t barrel_q16[2];
     /* energy, 0 .. 65536, where 65536 is the bundle's unit; below 0: the ray is
      * invalid, and its other members are undefined. */

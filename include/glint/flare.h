@@ -346,8 +346,9 @@ int glint_flare_ghost(const struct glint_flare *flare, int i);
 /* A bundle that is planned, but not binned yet. A program can predict the cost
  * of a frame from all its planned bundles. */
 struct glint_planned {
-    int n_cells;            /* cells per side of the grid */
-    struct glint_real flux; /* flux as planned, display white times pixels */
+    int n_cells; /* cells per side of the grid */
+    /* planned flux; the unit is one pixel at display white */
+    struct glint_real flux;
     /* Mean irradiance of the pixels that the bundle covers, display white. */
     struct glint_real irradiance;
     int ghost, light, wave; /* indices, as in glint_flare_account() */

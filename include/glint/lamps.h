@@ -99,8 +99,8 @@ struct glint_lamp_finder_config {
      * extends to the pixels that reach it. */
     int32_t threshold_low_q8;
     /* 8-bit full-range code of white, 1 .. 255. 0: white is the code at which
-     * codes clip and, in a picture that does not reach it, the white of the
-     * picture, too. */
+     * codes clip; in a picture that does not reach that code, the code that
+     * one of 2048 of its pixels reaches counts as white as well. */
     int white_code;
     int min_area; /* min area, pixels, 1 or more; smaller regions are noise */
     /* Max area of a lamp, as a fraction of the area of the picture; larger

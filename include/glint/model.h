@@ -276,8 +276,8 @@ struct glint_zoom_model {
 
 struct glint_transfer;
 struct glint_zoom_lens {
-    /* glint_transfer_init() between positions. It is a pointer so that only
-     * programs that zoom link it. */
+    /* as glint_transfer_init(), for a focal length between two positions. A
+     * pointer, so that only programs that zoom link the function. */
     int (*transfer)(struct glint_transfer *transfer,
                     const struct glint_zoom_lens *zoom, int ghost,
                     int32_t sine_q30, int32_t wave_q24);

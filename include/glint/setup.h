@@ -191,8 +191,8 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
  * before. */
 void glint_front_free(struct glint_front_dirt *dirt);
 
-/* Sets the colours of SETUP to those of glint_spectrum(), which must also have
- * chosen its wavelengths. */
+/* Sets the colour of each wavelength of SETUP to that of glint_spectrum(),
+ * which must also have chosen the wavelengths. */
 void glint_setup_weigh(struct glint_setup *setup);
 
 /* Adds to SETUP, made from LENS, the sets of wavelengths from which each ghost

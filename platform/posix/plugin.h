@@ -23,7 +23,9 @@ struct glint_plugin {
     int version;         /* version of the interface; plug-ins of other versions
                             are rejected */
     /* Members for the message that the plug-in is missing. */
-    const char *without; /* consequence, such as ", so that ...", or "" */
+    /* what follows if the plug-in is missing, appended to the message: ", so
+     * that ...", or "" */
+    const char *without;
     const char *library; /* Debian package needed to build it */
     const char *target;  /* make target that builds it */
 };

@@ -138,8 +138,9 @@ static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                    8);
 }
 
-/* Sets RGB to the colour of the bundle, of light, waves and tint, scaled such
- * that its max channel is 1. Returns the max channel before scaling. */
+/* Sets RGB to the bundle's colour: the product of the colours of its light, its
+ * waves and its tint, scaled such that the max channel is 1. Returns the max
+ * channel before scaling. */
 static struct glint_real
 compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
                       const struct glint_bundle_plan *planned, int share_q8,

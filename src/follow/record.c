@@ -461,8 +461,9 @@ static int32_t get_blend_time_us(const struct glint_lamp_tracker_config *cfg,
     return 1000 * (change > 0 ? cfg->attack_ms : cfg->release_ms);
 }
 
-/* Filters a channel other than position towards TARGET. A change faster than
- * full scale per attack or release time is blended over that time. */
+/* Moves a channel, any but the position, towards TARGET. A change that is
+ * faster than full scale in one attack time (rising) or release time (falling)
+ * is spread over that time. */
 static void follow_light_channel(struct glint_record *r,
                                  const struct glint_record_step *step,
                                  int channel, int64_t target, int is_repeat)

@@ -297,9 +297,10 @@ static int set_transfer_from_neighbour(struct glint_transfer *transfer,
                                z->place[side][e], sine_q30, wave_q24);
 }
 
-/* Returns the index of the nearest model beyond the model on SIDE that contains
- * ghost G and is at least as far from it as both side models are from each
- * other, so that extrapolation at most doubles a distance; -1: none. */
+/* Let S be the side model on SIDE. Returns the index of the nearest model
+ * beyond S that contains ghost G and whose distance from S is at least the
+ * distance between both side models, so that extrapolation at most doubles a
+ * distance; -1: there is none. */
 static int find_model_behind_neighbour(const struct glint_zoom_lens *z, int g,
                                        int side)
 {

@@ -132,9 +132,10 @@ struct glint_shadow {
                                      rays and h along them */
     int32_t lo[3], hi[3];         /* bounds of the objects in the grid, in
                                      coordinates u, v, h */
-    int32_t lowest;       /* min h of points for which the grid is valid */
-    int32_t cells_q32[2]; /* number of cells per step along u and v, up to
-                             2^30 */
+    int32_t lowest; /* min h of points for which the grid is valid */
+    /* cells per step along u and v; the stored value is at most 2^30, a
+     * quarter of a cell */
+    int32_t cells_q32[2];
     int n_points;
     int32_t lean_q30; /* max slope of the rays from any sample point */
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];

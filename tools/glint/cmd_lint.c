@@ -74,9 +74,9 @@ static bool is_plausible_glass(double nd, double vd, bool moulded)
            vd <= ends[k].most + part * (ends[k + 1].most - ends[k].most);
 }
 
-/* Returns whether the glass behind surface K of LENS is in the catalogue or
- * also behind another surface. */
-static bool is_glass_in_catalogue(const struct glint_prescription *lens, int k)
+/* Returns whether the glass behind surface K of LENS is in the catalogue, or is
+ * also behind another surface and so is no misprint. */
+static bool is_glass_plausible(const struct glint_prescription *lens, int k)
 {
     const struct glint_surface *s = &lens->surface[k];
     const struct glint_glass *glass;
@@ -226,7 +226,7 @@ static void try_replacement_number(struct search *s, const char *number,
     glint_optics_of(&lens, &optics);
     memcpy(found.from, s->text + s->at, s->length);
     memcpy(found.to, number, n);
-    found.listed = s->glass >= 0 && is_glass_in_catalogue(&lens, s->glass);
+    found.listed = s->glass >= 0 && is_glass_plausible(&lens, s->glass);
     found.focal_mm = optics.focal_mm;
     found.back_mm = optics.back_focal_mm;
     found.off = fmax(

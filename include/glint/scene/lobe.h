@@ -49,9 +49,9 @@ typedef void glint_ward_sum_fn(const struct glint_ward_lobe *lobe,
                                uint64_t sum_q12[3]);
 
 /* A reflection lobe, as a set of sampled half vectors. Those from index N on
- * face away from the eye, so they add no light. Each sample reads mip level l,
- * where 4^l is (variance of its blur) / (variance of level 0): SPAN_Q14
- * 2^span_log2 times the cosine between half vector and direction to the eye. */
+ * face away from the eye, so they add no light. Each sample reads mip level l
+ * with 4^l = (variance of its blur) / (variance of level 0) = SPAN_Q14 *
+ * 2^span_log2 * (cosine between half vector and direction to the eye). */
 struct glint_ward_lobe {
     glint_ward_sum_fn *sum;
     int n; /* number of samples */

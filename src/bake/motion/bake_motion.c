@@ -31,7 +31,7 @@ struct glint_motion_baker {
     uint32_t n_frames, pose_capacity;
     struct recorded_pose *pose; /* pose of the body per frame, [n_frames] */
     uint32_t n_events, event_capacity;
-    /* foods in the order in which they appear, [n_events] */
+    /* [n_events]: the food items, in the order in which they appear */
     struct recorded_food *event;
     /* [slots]: index in event of the food that currently occupies the slot */
     uint32_t lives[GLINT_MOTION_MAX_FOODS];

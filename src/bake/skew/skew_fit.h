@@ -15,10 +15,10 @@
 
 #include "bake/fit/fit.h"
 
-/* Estimates the work of a bake, in zone fits, from the area of directions and
- * the number of surfaces. HEAD: work before the first ghost. TYPICAL: mean work
- * per ghost. Limit: ghosts whose light folds cost ten times as much as
- * others. */
+/* Estimates the work of a bake, as a number of zone fits, from the area of
+ * directions and the number of surfaces. HEAD: work before the first ghost.
+ * TYPICAL: mean work per ghost. Ghosts with caustics cost ten times as much as
+ * others, which the estimate does not know. */
 void glint_skew_estimate_work(const struct glint_prescription *lens,
                               int n_ghosts, double max_deg, double tolerance,
                               double *head, double *typical);

@@ -27,7 +27,7 @@
 #define GLINT_MIN_F_NUMBER 0.5
 #define GLINT_MAX_F_NUMBER 1000.0
 
-/* positions in the text of the table's numbers */
+/* where each number of a lens table stands in the table's text */
 struct glint_places {
     /* position of the f-number and of the stop's semi-diameter */
     struct glint_text_place f_number, stop;

@@ -39,8 +39,8 @@ struct glint_budget {
 
 void glint_budget_init(struct glint_budget *budget, double ms);
 
-/* Begins a frame for which the quality parameters ASKED were requested. Only
- * those of them are used that do not depend on quality. */
+/* Begins a frame. Of the requested parameters ASKED it uses those that no
+ * quality level sets; the budget chooses the others. */
 void glint_budget_begin_frame(struct glint_budget *budget,
                               const struct glint_dials *asked);
 

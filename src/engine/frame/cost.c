@@ -11,7 +11,8 @@
  */
 #define QUAD 2
 
-/* steps per octave in the cost model for light that is not rounded */
+/* steps per octave that the cost model assumes for light that is not rounded to
+ * steps */
 #define MOST_STEPS 4096
 
 /* log2 of the max number of subdivisions of a cell per side; number of sample

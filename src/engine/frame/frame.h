@@ -163,7 +163,8 @@ struct glint_frame_memory {
     size_t bytes;      /* size of BLOCK, bytes */
 };
 
-/* Progress, 0 to 1, at which exact rays have found the ghosts of a picture. */
+/* Progress that is reported, 0 to 1, when exact rays have found the ghosts of a
+ * picture; the rest is for drawing them. */
 #define GLINT_FRAME_FOUND 0.5
 
 struct glint_frame {

@@ -21,7 +21,9 @@ struct glint_dirt {
     double cos_turn, sin_turn; /* cosine and sine of the blades' rotation, by
                                   which mask and dust are rotated, too */
     uint64_t mark; /* digest of the shade's table, to detect changes */
-    double mean;   /* mean transmission over the stop; 1 if the mean is 0 */
+    /* mean transmission over the stop, a divisor; 1 if the stop transmits
+     * nothing */
+    double mean;
     /* Returns the fraction of light that is transmitted at (X, Y), stop radii,
      * inside the outline. */
     double (*through)(const struct glint_dirt *dirt, double x, double y);

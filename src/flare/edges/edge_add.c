@@ -404,8 +404,8 @@ static int64_t compute_light_change(const struct glint_edge *e,
            q_shift(multiply_by_colour_q20(e->left, colour_q14), less);
 }
 
-/* Adds patch E in the colour RGB. Returns the max light over the channels, with
- * LESS of the 20 fraction bits dropped. */
+/* Adds patch E in the colour RGB. Returns the max light over the channels,
+ * shifted right by LESS bits: with 20 - LESS fraction bits. */
 static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
                                const struct glint_edge *e,
                                const int32_t rgb_q14[3], int less)

@@ -407,9 +407,9 @@ static int64_t sum_light_in_middle(const int32_t *px_q20, int width, int height)
     return sum;
 }
 
-/* Scales the polynomials of the stop position so that only a small spot of the
- * ghost's pupil passes a round stop, and no ray of the prepass is near the edge
- * of the spot. */
+/* Scales up the polynomials that give a ray's position in the stop, so that
+ * only rays in a small spot of the ghost's pupil pass a round stop. No ray of
+ * the prepass is near the edge of that spot. */
 static void scale_stop_polynomials(struct fixture *f)
 {
     const struct glint_model_output *o =

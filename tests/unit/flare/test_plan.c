@@ -324,8 +324,8 @@ TEST(distant_lamp_points_widen_ghosts)
     assert_true(hypot(far.x - alone.x, far.y - alone.y) < 0.3);
 }
 
-/* Checks that edges snapped to pixels preserve the total light and nearly all
- * codes. */
+/* Checks that snapping edges to pixels preserves the total light, and the codes
+ * of nearly all pixels. */
 TEST(pixel_snapped_edges_keep_the_light)
 {
     static int32_t smooth[3 * WIDTH * HEIGHT], whole[3 * WIDTH * HEIGHT];

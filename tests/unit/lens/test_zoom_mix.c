@@ -646,9 +646,9 @@ TEST(ghosts_are_extrapolated_into_the_dark)
     free_position_models(at, 3);
 }
 
-/* Checks that a ghost is not extrapolated further than the distance of the two
- * positions that define its motion, nor if its pupil is divided into parts,
- * whose number may change, nor if its boxes are too far apart. */
+/* Checks that a ghost is extrapolated by at most the distance between the two
+ * positions that define its motion; and not at all if its pupil is divided into
+ * parts, whose number may change, or if its boxes are too far apart. */
 TEST(unsafe_ghosts_are_not_extrapolated)
 {
     static const struct part a[] = {

@@ -184,7 +184,7 @@ static bool is_model_entry_of_ghost(const struct glint_lens *lens,
            lens->ghost[entry].j == lens->ghost[ghost].j;
 }
 
-/* Adds system SYSTEM to MISS if one of its outputs misses its target. */
+/* Adds zone SYSTEM to MISS if one of its outputs misses its target. */
 static void add_zone_with_missed_target(const struct glint_lens *lens,
                                         uint32_t system,
                                         struct model_miss *miss)

@@ -38,10 +38,10 @@ struct drawing_run {
     /* all lamps of the frame: detected ones, those of options and lists, then
      * those of the scene */
     struct glint_engine_lamp *lamp;
-    int n_lamps, n_own, n_found; /* number of all lamps; the first n_own do not
-                                    come from the scene; the first n_found of
-                                    them were detected in the picture */
-    bool is_followed;            /* lamps are tracked from frame to frame */
+    /* number of all lamps: first those detected in the picture, n_found, then
+     * other given ones up to n_own, then those of the scene */
+    int n_lamps, n_own, n_found;
+    bool is_followed; /* lamps are tracked from frame to frame */
     double find_ms, flare_ms;
     struct glint_engine_report report;
 };

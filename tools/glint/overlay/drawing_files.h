@@ -18,7 +18,8 @@ struct drawing_files {
     bool has_lens; /* whether there is a lens; false with --lens none, which
                     * draws the scene only */
     struct opened_lens lens;
-    bool is_listed;        /* --lights disables the detection of lamps */
+    /* true: --lights lists the lamps, so none are detected */
+    bool is_listed;
     struct lamp_list list; /* lamps of --lights, --light-at and key frames */
     struct keys keys;
     char keys_line[224]; /* "FILE:LINE" of the key frame that sets the f-number

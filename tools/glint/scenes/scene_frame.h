@@ -79,10 +79,10 @@ void scene_frame_close(struct scene_frame *frame);
 /* Calls POSE if needed and prepares a frame. */
 void scene_frame_prepare(struct scene_frame *frame);
 
-/* Draw the scene onto IMAGE, which must have the size of the dials. Allocate
- * more memory if the triangle lists need it. scene_frame_draw() prints the
- * reason of a failure and returns an exit code; scene_frame_draw_once() prints
- * nothing. */
+/* Draw the scene onto IMAGE, whose width and height must be those of the
+ * settings. Allocate more memory if the triangle lists need it.
+ * scene_frame_draw() prints the reason of a failure and returns an exit code;
+ * scene_frame_draw_once() prints nothing. */
 int scene_frame_draw(struct scene_frame *frame,
                      const struct glint_image *image);
 enum glint_status scene_frame_draw_once(struct scene_frame *frame,
