@@ -78,8 +78,8 @@ static const char *const fault_text[GLINT_BLOB_FAULTS] = {
         "the model's address in memory is not a multiple of 4 bytes",
     [GLINT_BLOB_FOREIGN] = "this is not a glint model",
     [GLINT_BLOB_NEWER] = "the model was made by a newer glint",
-    [GLINT_BLOB_NO_VERSION] = "no glint has ever written a model of this "
-                              "version: not a glint model, or damaged",
+    [GLINT_BLOB_NO_VERSION] =
+        "this is not a glint model, or its version is damaged",
     [GLINT_BLOB_OLDER] = "the model was made by an older glint: bake it again",
     [GLINT_BLOB_TRUNCATED] = "the model is truncated",
     [GLINT_BLOB_LONGER] = "the model file is longer than its header says",

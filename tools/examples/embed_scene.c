@@ -50,8 +50,7 @@ int main(int argc, char **argv)
     static uint64_t baked[LIMIT / 8], objects[LIMIT / 8];
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_error error = {
-        "cannot open the lens or the scene, or out of memory"};
+    struct glint_error error = {"cannot open a file, or out of memory"};
     struct glint_engine *engine = NULL;
     struct glint_scene_model model;
     struct glint_scene_stats stats;

@@ -538,20 +538,22 @@ TEST(rejects_damaged_files)
     check_damaged_file_is_rejected(&b, AT(variant), 2, "unknown");
     check_damaged_file_is_rejected(&b, AT(code), 2, "unknown");
     check_damaged_file_is_rejected(&b, AT(name), 0, "name is empty");
-    check_damaged_file_is_rejected(&b, AT(side_log2), 11, "too many");
-    check_damaged_file_is_rejected(&b, AT(side_log2), 6, "too many");
-    check_damaged_file_is_rejected(&b, AT(unit_log2), 101, "unit");
-    check_damaged_file_is_rejected(&b, AT(n_levels), 5, "too many");
-    check_damaged_file_is_rejected(&b, AT(n_lights), 17, "too many");
+    check_damaged_file_is_rejected(&b, AT(side_log2), 11, "out of range");
+    check_damaged_file_is_rejected(&b, AT(side_log2), 6, "out of range");
+    check_damaged_file_is_rejected(&b, AT(unit_log2), 101, "scale");
+    check_damaged_file_is_rejected(&b, AT(n_levels), 5, "out of range");
+    check_damaged_file_is_rejected(&b, AT(n_lights), 17, "out of range");
     check_damaged_file_is_rejected(&b, AT(level_at), (uint32_t)b.bytes,
                                    "outside");
     check_damaged_file_is_rejected(&b, AT(irradiance_at), 8, "outside");
     check_damaged_file_is_rejected(&b, AT(light_at), (uint32_t)b.bytes - 4,
                                    "outside");
-    check_damaged_file_is_rejected(&b, h->level_at, 4, "side");
+    check_damaged_file_is_rejected(&b, h->level_at, 4, "size of a mip level");
     check_damaged_file_is_rejected(&b, h->level_at + 4, 2, "outside");
-    check_damaged_file_is_rejected(&b, h->level_at + 8, (1u << 28) + 1, "side");
-    check_damaged_file_is_rejected(&b, h->level_at + 12, 1, "side");
+    check_damaged_file_is_rejected(&b, h->level_at + 8, (1u << 28) + 1,
+                                   "size of a mip level");
+    check_damaged_file_is_rejected(&b, h->level_at + 12, 1,
+                                   "size of a mip level");
     check_damaged_file_is_rejected(&b, h->light_at, 0, "unit vector");
     check_damaged_file_is_rejected(&b, h->light_at + 12, 1u << 30, "too large");
     check_damaged_file_is_rejected(&b, h->light_at + 16, 5, "normalised");

@@ -243,7 +243,7 @@ TEST(rejects_wrong_columns)
         "f-number 10/11/12\n" FRONT "4/6" BACK,
         "thickness has 2 positions, but the lines above have 3");
     check_table_is_rejected("f-number 10/11\n" FRONT "4" BACK,
-                            "no thickness changes");
+                            "no thickness differs");
     check_table_is_rejected("f-number 10\n" FRONT "4/4" BACK,
                             "focal lengths must only rise or only fall");
     check_table_is_rejected("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,

@@ -197,7 +197,7 @@ TEST(two_foods_may_vanish_at_once)
     }
     assert_non_null(strstr(
         glint_localise_body(&l, 5, (const double(*)[3])f.seen, three, &located),
-        "three foods"));
+        "three food items"));
     four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
     assert_null(four_localise_body(&four, 5, (const double(*)[3])f.seen,
                                    f.is_new, &located));

@@ -92,7 +92,7 @@ TEST(rejects_invalid_recordings)
     bake_must_fail("", "run.json:1:1: the file ends within the recording");
     bake_must_fail("[]", "run.json:1:1: expected '{' here");
     bake_must_fail("{" BODY ", \"frames\": [" FRAME "]}", "invalid token");
-    bake_must_fail("{\"frames\": [" FRAME "]}", "this JSON is not a recording");
+    bake_must_fail("{\"frames\": [" FRAME "]}", "there is no structure");
     bake_must_fail("{" BODY_0 ", \"frames\": []}",
                    "the recording has no frames");
     bake_must_fail("{" BODY_0 "}", "the recording has no frames");
