@@ -533,8 +533,7 @@ enum glint_status glint_output_write(struct glint_output *out, const void *data,
 {
     if (bytes > BUFFER_BYTES - out->used) {
         write_all_bytes(out, out->buffer, out->used);
-        out->used =
-            0; /* NOLINT: glint_output_commit_or_abort() frees the buffer. */
+        out->used = 0; /* NOLINT: committing or aborting frees the buffer */
     }
     if (out->failed)
         return report_write_failure(out, error);

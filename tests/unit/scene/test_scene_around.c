@@ -122,8 +122,8 @@ TEST(mirror_shows_the_image_around_the_scene)
     draw_scene(start_scene_renderer(NULL));
     for (int i = 0; i < BYTES; i++) {
         double d[3], normal[3], at[2], dot = 0;
-        const double t = intersect_ball_at_pixel(i / 3 % WIDTH, i / 3 / WIDTH,
-                                                 d); /* NOLINT */
+        const int x = i / 3 % WIDTH, y = i / 3 / WIDTH; /* NOLINT: rows */
+        const double t = intersect_ball_at_pixel(x, y, d);
 
         if (t == 0)
             continue;

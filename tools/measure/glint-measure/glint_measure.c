@@ -79,8 +79,7 @@ static int run_row_in_child(const struct recipe *r,
                                      row->set[i]);
     if (counted && used < sizeof line)
         snprintf(line + used, sizeof line - used, " 2>&1");
-    pipe = popen(line,
-                 "r"); /* NOLINT: the command is built from our own recipes */
+    pipe = popen(line, "r"); /* NOLINT: built from our own recipes */
     if (!pipe)
         return EXIT_RUNTIME;
     bytes = fread(text, 1, TEXT - 1, pipe);
