@@ -46,9 +46,11 @@ enum { PARTS = 100, LEAST_PART = 4 };
  * edges from tiles. Enough for most frames. */
 #define EDGES 128.0
 
-/* Progress when all rays are traced, 0 .. 1. Measuring the ghosts ends at
- * GLINT_FRAME_FOUND; it is skipped if an earlier frame has measured them. */
-#define TRACED 0.85
+/* Progress, 0 .. 1, when all rays are traced. Measuring the ghosts ends at
+ * GLINT_FRAME_FOUND. It is skipped for those that an earlier frame has
+ * measured; measuring more of them continues from there to MEASURED_MORE. */
+#define MEASURED_MORE 0.65
+#define TRACED        0.85
 
 /* A light point: a lamp, a sample point of an area lamp, or the sum of several
  * nearby points. Points form levels of detail: each level has about half as
@@ -113,6 +115,7 @@ struct traced {
     struct glint_optics optics;
     int n_ghosts;
     int n_points, n_patches, n_fields, n_bundles, n_workers;
+    double found; /* progress when the fields were measured, 0 .. 1 */
     struct glint_flare_rays rays;
 };
 
@@ -808,9 +811,12 @@ static enum glint_status measure_lamp_fields(struct glint_frame *f,
         status = allocate_ghost_fields(t, had, n_ghosts);
     if (status != GLINT_OK)
         return status;
-    if (count_unmeasured_fields(f) > 0)
+    if (count_unmeasured_fields(f) > 0) {
+        t->found = had->n > 0 ? MEASURED_MORE : GLINT_FRAME_FOUND;
         run_jobs_with_progress(f, t->n_patches * n_ghosts,
-                               run_field_measure_job, 0, GLINT_FRAME_FOUND);
+                               run_field_measure_job,
+                               had->n > 0 ? GLINT_FRAME_FOUND : 0, t->found);
+    }
     list_drawn_fields(f);
     return GLINT_OK;
 }
@@ -1327,8 +1333,8 @@ draw_ray_frame(struct glint_frame *frame, const struct glint_lamp *lamps,
     if (status != GLINT_OK)
         return status;
     times[1] = read_frame_clock(frame);
-    run_jobs_with_progress(frame, t->n_fields, run_field_trace_job,
-                           GLINT_FRAME_FOUND, TRACED);
+    run_jobs_with_progress(frame, t->n_fields, run_field_trace_job, t->found,
+                           TRACED);
     times[2] = times[3] = read_frame_clock(frame);
     expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
     expected.need_refs = expected.need_primitives;

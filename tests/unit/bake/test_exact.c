@@ -540,7 +540,9 @@ TEST(progress_rises_from_exposure_to_picture)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    const struct glint_lamp lamp = make_white_lamp(7.58, 33.2);
+    /* The picture has a lamp that the exposure has not. */
+    const struct glint_lamp lamp[2] = {make_white_lamp(7.58, 33.2),
+                                       make_white_lamp(3.1, -100)};
     static float linear[3 * 240 * 135];
     struct reports reports = {.rises = true};
     struct glint_response_light light;
@@ -552,12 +554,12 @@ TEST(progress_rises_from_exposure_to_picture)
     frame.trace = &glint_frame_traces;
     frame.progress = record_progress_report;
     frame.progress_ctx = &reports;
-    assert_ok(glint_response_draw_and_measure(&frame, &lamp, 1, 5000, NULL,
+    assert_ok(glint_response_draw_and_measure(&frame, lamp, 1, 5000, NULL,
                                               &light, NULL));
     reports.n_exposing = reports.n;
     reports.exposed = reports.last;
     assert_ok(
-        glint_frame_draw_flare_alone(&frame, &lamp, 1, 1, linear, &report));
+        glint_frame_draw_flare_alone(&frame, lamp, 2, 1, linear, &report));
     glint_frame_finish(&frame);
     assert_true(reports.n_exposing > 1);
     assert_true(reports.exposed == GLINT_FRAME_FOUND);
