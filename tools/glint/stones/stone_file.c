@@ -297,7 +297,7 @@ static int64_t count_row_values(const struct glint_stone *stone)
 static enum glint_status
 read_text(const struct tool *tool, const char *path,
           void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
-          bool anew, int64_t *left, struct stone_file *file,
+          bool rebake, int64_t *left, struct stone_file *file,
           struct glint_error *error)
 {
     struct source source = {.mask = NULL};
@@ -311,7 +311,7 @@ read_text(const struct tool *tool, const char *path,
         cache_file_find_folder(kept, sizeof kept) &&
         cache_file_append_name(kept, sizeof kept, name, source.key, "stone");
     if (status == GLINT_OK &&
-        (anew || !has_cache || !load_cached_medium(kept, source.key, file))) {
+        (rebake || !has_cache || !load_cached_medium(kept, source.key, file))) {
         status = tool_count_bake_work(
             left, 8 * count_row_values(&source.text.stone), path, error);
         if (status == GLINT_OK)
@@ -326,7 +326,7 @@ read_text(const struct tool *tool, const char *path,
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
-                bool anew, int64_t *left, struct stone_file *file,
+                bool rebake, int64_t *left, struct stone_file *file,
                 struct glint_error *error)
 {
     uint8_t *data = NULL;
@@ -336,7 +336,7 @@ stone_file_read(const struct tool *tool, const char *path,
     *file = (struct stone_file){.data = NULL};
     status = tool_make_input_path("", path, tool->written, self, error);
     if (status == GLINT_OK && stone_file_is_text(path)) {
-        status = read_text(tool, path, over, ctx, anew, left, file, error);
+        status = read_text(tool, path, over, ctx, rebake, left, file, error);
     } else if (status == GLINT_OK) {
         status = glint_input_read_whole_file(&data, &file->bytes, path,
                                              MAX_FILE_BYTES, error);

@@ -34,14 +34,14 @@ bool stone_file_is_baked(const char *argument);
 
 /* Opens the text or baked file PATH. Rejects PATH, or a file that the text
  * names, if it is the output file of TOOL. OVER, unless NULL, is called to
- * override values of the text. ANEW: bakes the text even if it is cached. LEFT,
- * unless NULL, is the remaining bake work, see tool_count_bake_work(); a bake
- * costs 8 for each number in its scatter rows. ERROR receives the reason of a
- * failure. */
+ * override values of the text. REBAKE: bakes the text even if it is cached.
+ * LEFT, unless NULL, is the remaining bake work, see tool_count_bake_work(); a
+ * bake costs 8 for each number in its scatter rows. ERROR receives the reason
+ * of a failure. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,
-                bool anew, int64_t *left, struct stone_file *file,
+                bool rebake, int64_t *left, struct stone_file *file,
                 struct glint_error *error);
 void stone_file_close(struct stone_file *file);
 
