@@ -484,6 +484,37 @@ TEST(earlier_pictures_do_not_change_the_picture)
     }
 }
 
+/* Checks that lamps which share traced rays are each drawn at their own place:
+ * their picture equals the sum of the pictures of each alone, whose rays are
+ * traced in its own direction. */
+TEST(lamps_that_share_rays_keep_their_places)
+{
+    static float linear[3][3 * 240 * 135];
+    const struct glint_view view = {
+        .width = 240, .height = 135, .sensor_width_mm = 36};
+    const struct glint_lamp lamps[2] = {make_white_lamp(7.58, 33.2),
+                                        make_white_lamp(8.1, 33.9)};
+
+    for (int k = 0; k < 2; k++) {
+        struct glint_frame frame;
+        double db;
+
+        load_triplet_with_shapes("", k ? "shape toric x 41\n" : "", "");
+        for (int i = 0; i < 3; i++) {
+            draw_lamps_linear(&frame, view, i < 2 ? &lamps[i] : lamps,
+                              i < 2 ? 1 : 2, linear[i]);
+            glint_frame_finish(&frame);
+        }
+        for (int i = 0; i < 3 * 240 * 135; i++) {
+            rgb[i] = (double)linear[0][i] + (double)linear[1][i];
+            other[i] = (double)linear[2][i];
+        }
+        db = compute_psnr(rgb, other, view);
+        print_message("lamps that share rays: %.1f dB\n", db);
+        assert_true(db >= 55);
+    }
+}
+
 /* Checks that a decentre in x for light at an azimuth of 30 degrees equals a
  * decentre in y at 60 degrees, mirrored at the diagonal, and differs from the
  * centred lens. */
