@@ -528,11 +528,7 @@ void glint_score_score_candidates(const struct glint_score *score,
 
 /* The limits of ranks, by which the lamp is chosen among nested regions
  * (glint_score_choose_among_nested()). */
-enum {
-    SURE_Q8 = 384,          /* higher scores are clamped to this score */
-    FAINT_COST_Q8 = 1 << 14 /* exceeds the costs of all levels, so that no faint
-                               region replaces a lamp */
-};
+enum { SURE_Q8 = 384 }; /* higher scores are clamped to this score */
 
 static int is_rank_higher(const void *ctx, int32_t a, int32_t b)
 {
@@ -565,8 +561,7 @@ void glint_score_choose_among_nested(const struct glint_score *score,
         struct glint_candidate *c = &candidate[order[i]];
 
         c->rank_q8 = (c->score_q8 < SURE_Q8 ? c->score_q8 : SURE_Q8) -
-                     score->level[c->level].cost_q8 -
-                     (c->faint ? FAINT_COST_Q8 : 0);
+                     score->level[c->level].cost_q8;
     }
     glint_sort(order, n, is_rank_higher, candidate);
     for (int i = 0; i < n; i++) {

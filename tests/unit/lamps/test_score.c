@@ -497,22 +497,6 @@ TEST(lower_thresholds_find_more)
     free(s.light);
 }
 
-/* Checks that a faint region does not replace the lamp that contains it, even
- * if the lamp was found at a level with a high cost. */
-TEST(faint_regions_replace_no_lamp)
-{
-    static const struct glint_level level[2] = {{.cost_q8 = 4096}, {0}};
-    const struct glint_score score = {.level = level};
-    struct glint_candidate c[2] = {make_scored_candidate(10, 0, 50),
-                                   make_scored_candidate(10, 1, -50)};
-    int32_t order[2] = {0, 1};
-
-    c[1].faint = 1;
-    glint_score_choose_among_nested(&score, c, order, 2);
-    assert_int_equal(c[0].gone, 0);
-    assert_int_equal(c[1].gone, 1);
-}
-
 /* Checks that a region that differs from a lamp in a single measure gets doubts
  * for that measure. */
 TEST(differing_measure_is_doubted)
