@@ -148,13 +148,6 @@ find_light_with_lowest_psnr(const struct job *job, struct picture_check *check,
     return GLINT_OK;
 }
 
-/* Returns the fraction of the half diagonal CORNER_MM of a film within which a
- * model baked with FIELD_MM, 0: the default, has light. */
-static double compute_field_fraction(double field_mm, double corner_mm)
-{
-    return field_mm > 0 ? fmin(1, field_mm / corner_mm) : 1;
-}
-
 enum glint_status picture_check_run(const struct tool *tool,
                                     const struct glint_prescription *lens,
                                     const struct glint_lens *model,
@@ -167,8 +160,9 @@ enum glint_status picture_check_run(const struct tool *tool,
     const double wave_nm[] = {band[0] + 0.73 * span, band[0] + 0.47 * span,
                               band[0] + 0.2 * span};
     const double diagonal_mm = hypot(lens->film_width_mm, lens->film_height_mm);
+    /* fraction of the film in which the model has light */
     const double part =
-        compute_field_fraction(baked->field_mm, 0.5 * diagonal_mm);
+        baked->field_mm > 0 ? fmin(1, 2 * baked->field_mm / diagonal_mm) : 1;
     const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);
     struct glint_setup *const setup = malloc(sizeof *setup);
     struct job job = {
