@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * found PICTURE.ppm... - prints, as CSV, the lamps that the finder finds with
- * its defaults: the picture, then x, y, RMS radius, pixels and light of each
- * lamp. Lamps after the 128th are merged with lamps near them.
+ * found PICTURE.ppm... - prints, as CSV, the lamps that the engine would light
+ * in a still picture at its defaults: the picture, then x, y, RMS radius,
+ * pixels and light of each lamp. Lamps after the 128th are merged with lamps
+ * near them.
  */
 #include "glint/lamps.h"
 #include "ppm.h"
@@ -19,6 +20,7 @@ static int print_found_lamps(const char *name, const struct glint_image *image)
     int n;
 
     glint_lamp_finder_defaults(&cfg, image->width, image->height);
+    cfg.keep_faint = 1; /* as the engine does */
     bytes = glint_lamp_finder_bytes(&cfg);
     if (posix_memalign(&mem, 64, bytes) != 0 ||
         glint_lamp_finder_init(&finder, &cfg, mem, bytes) != GLINT_OK) {
@@ -27,10 +29,13 @@ static int print_found_lamps(const char *name, const struct glint_image *image)
         return 1;
     }
     n = glint_lamp_finder_find(finder, image, spot, MOST);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
+        if (spot[i].faint)
+            continue;
         printf("%s,%.2f,%.2f,%.2f,%d,%.3f\n", name, spot[i].x_q8 / 256.0,
                spot[i].y_q8 / 256.0, spot[i].size_q8 / 256.0, (int)spot[i].area,
                (double)spot[i].flux_q16 / 65536);
+    }
     free(mem);
     return 0;
 }
