@@ -22,6 +22,9 @@ demo:
 	@tools/make/demo
 inputs:
 	@tools/make/inputs
+# Seconds to a picture with each lens: half an hour.
+first-picture-table: all
+	@tools/measure/first-picture $(LENSES) | tools/measure/write-figures first-picture
 # Scenes as POV-Ray draws them.
 scene-table: all $(OUT)/scene_exact
 	@tools/make/deps "scenes of another program" povray python3-numpy >&2
@@ -133,7 +136,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/measure/budget | tools/measure/write-figures arm
 
-.PHONY: figures figure figures-quick video-report occlusion-table demo inputs scene-table hidden-table mesh-table \
+.PHONY: figures figure figures-quick first-picture-table video-report occlusion-table demo inputs scene-table hidden-table mesh-table \
         motion-table ward-table translucent-table stone-table ward-sheet colour-table power-fit corpus corpus-evaluate \
         corpus-stars corpus-sheet corpus-report gallery lens-sheet corpus-fit bench size trade reuse-table \
         zoom-halfway-table cost-fit budget
