@@ -19,12 +19,13 @@ extern "C" {
 
 enum {
     GLINT_AREA_SAMPLES = 7, /* default max points of the brightest lamp */
-    /* Factor on (number of points of a lamp - 1) for still pictures. */
+    /* A still picture has this many times as many points per lamp as a frame of
+     * a video. Precisely: the factor on (number of points of a lamp - 1). */
     GLINT_AREA_STILL = 20,
-    /* Factor for still pictures on max_lights, the max number of points that
-     * all wide lamps together may have. */
+    /* A still picture may have this many times max_lights points, for all wide
+     * lamps together. */
     GLINT_AREA_STILL_ROOM = 4,
-    /* Side of the square whose area each point represents, pixels. */
+    /* Each point represents a square of the lamp with this side, pixels. */
     GLINT_AREA_SPACING_PX = 4,
     GLINT_AREA_MOST_SAMPLES = 4096
 };
@@ -33,10 +34,11 @@ enum {
 struct glint_area {
     struct glint_lamp lamp;
     double points; /* number of points, 1 or more; the last may be fractional */
-    /* Middle of the pattern of points; the pattern is moved so that it
-     * coincides with the lamp's position. */
+    /* Weighted mean of the points in the unit circle. It is subtracted from all
+     * points, so that their mean lies at the lamp's position. */
     double centre[2];
-    /* Factor on the size of the pattern that gives it the lamp's RMS extent. */
+    /* Factor on the distances of the points from their mean, which gives the
+     * points the lamp's RMS extent. */
     double spread;
     double u, v; /* position of the lamp, tangents */
     /* xx, xy, yy of the symmetric matrix that maps the unit circle to the
@@ -53,13 +55,14 @@ struct glint_area_rule {
     double pixels_per_tangent;
     double most;      /* max points of the brightest lamp */
     double brightest; /* power of the brightest lamp */
-    /* Factor on (number of points - 1), 0 .. 1; 0: one point per lamp. */
+    /* Factor, 0 .. 1, on (number of points - 1) of each lamp; 0: one point per
+     * lamp. */
     double thinning;
 };
 
-/* Returns the rule by which LAMPS[N] get at most ROOM points in total; one
- * point each if N exceeds ROOM. MOST is the max number of points of one lamp.
- * Sets *TOTAL to an upper bound of the number of all points. */
+/* Returns the rule by which LAMPS[N] get at most ROOM points in total. If N
+ * exceeds ROOM, each lamp gets one point. MOST is the max number of points of
+ * one lamp. Sets *TOTAL to an upper bound of the number of all points. */
 struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
                                           double pixels_per_tangent,
                                           double most, int room, int *total);

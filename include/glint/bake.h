@@ -29,24 +29,24 @@ struct glint_bake_options {
     double band_nm[2]; /* shortest and longest wavelength, nm, 300 .. 1100 */
     double max_deg;    /* max angle of a light off the axis, degrees, above 0,
                           up to 89 */
-    double field_mm;   /* radius of the field around the sensor's centre within
-                          which the model is accurate, mm; 0: 1.1 times the
-                          distance to the corners of the image area that the
-                          lens table states (film) */
-    /* Factor on all tolerances, 0.1 .. 100. At 1, the brightest ghosts are
-     * fitted with RMS errors of 0.04 pixels (if the picture is 1920 pixels
-     * wide) for positions and outlines, and of 0.12 % for the energy. Faint
-     * ghosts may have errors of 0.07 pixels for positions, 0.4 pixels for
-     * outlines, and 1.2 % for the energy. */
+    /* Radius around the sensor's centre within which the model is accurate, mm.
+     * 0: 1.1 times the distance from the centre to the corners of the image
+     * area (film) that the lens table states. */
+    double field_mm;
+    /* Factor on all tolerances, 0.1 .. 100. At 1, RMS errors of the brightest
+     * ghosts are 0.04 pixels (of a picture 1920 pixels wide) for positions and
+     * outlines, and 0.12 % for the energy. Errors of faint ghosts may reach
+     * 0.07 pixels for positions, 0.4 pixels for outlines, and 1.2 % for the
+     * energy. */
     double tolerance;
     /* [ghosts of the lens]: true: bake this ghost; NULL: bake all ghosts.
      * Ghosts that are not baked have no systems in the model. */
     const bool *ghosts;
     /* [n_beside], at most 2: the same lens at neighbouring zoom positions. The
-     * model includes light that is visible at these positions, and the barrels
-     * that cut light there, so that the models of several positions can be
-     * interpolated. glint_bake() returns GLINT_E_ARGUMENT if they are not
-     * positions of this lens, or not symmetric about the axis. */
+     * model also includes light and barrels that matter only at these
+     * positions. Models of several positions can then be interpolated.
+     * glint_bake() returns GLINT_E_ARGUMENT if the entries are not positions of
+     * this lens, or not symmetric about the axis. */
     const struct glint_prescription *beside;
     int n_beside;
     struct glint_workers *workers; /* NULL: one thread. The output is the same
@@ -56,10 +56,10 @@ struct glint_bake_options {
     glint_progress_fn *progress;
     void *progress_ctx;
     /* Called by several workers at once: before each ghost with WORK 0, and
-     * after each fit with the fit's work, 1 or 2 units of about 40 ms of
-     * processor time. The sum does not depend on the number of workers. If it
-     * returns false, glint_bake() ends and returns GLINT_E_UNSUPPORTED with an
-     * empty ERROR. NULL: no limit. */
+     * after each fit with the work of the fit. A fit has 1 or 2 units of work;
+     * a unit is about 40 ms of processor time. The sum does not depend on the
+     * number of workers. If ALLOW returns false, glint_bake() ends and returns
+     * GLINT_E_UNSUPPORTED with an empty ERROR. NULL: no limit. */
     bool (*allow)(void *ctx, int work);
     void *allow_ctx;
 };
@@ -74,7 +74,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
 /* Sets PROJECTION to the projection of LENS at the d line. It is fitted to
  * chief rays at whole degrees (smaller steps for narrow lenses) up to 85
  * degrees or the last ray that passes the lens. Sets *MISS_DEG to the max error
- * of the polynomial at these rays, degrees. Returns GLINT_E_LENS if LENS is not
+ * of the projection at these rays, degrees. Returns GLINT_E_LENS if LENS is not
  * round, or if hardly any light passes; then ERROR states the cause, and
  * PROJECTION is that of a pinhole. */
 enum glint_status glint_projection_of(struct glint_projection *projection,
@@ -87,8 +87,8 @@ struct glint_bake_report {
     /* Number of rays at which errors were measured; all of them pass the
      * lens. */
     int rays;
-    /* number of further rays that the model transmits although the lens clearly
-     * blocks them: these rays miss a surface, or lie more than 3 % outside a
+    /* number of further rays, which the model transmits although the lens
+     * clearly blocks them: they miss a surface, or pass more than 3 % outside a
      * surface's semi-diameter or the stop's radius */
     int intruders;
     int unmet; /* number of systems whose errors exceed the tolerance */
@@ -110,8 +110,8 @@ struct glint_bake_model {
     unsigned char *data;
     size_t bytes;
     int32_t along_q30;
-    /* The value of options.ghosts with which the model was baked; NULL at both
-     * ends of the zoom. */
+    /* the ghosts that were baked, as in glint_bake_options.ghosts; NULL at both
+     * ends of the zoom, whose models have all ghosts */
     const bool *ghosts;
 };
 

@@ -23,13 +23,15 @@ struct glint_vertex {
                            down; within +-GLINT_VERTEX_LIMIT_Q8 */
     int32_t stop_x_q16,
         stop_y_q16; /* position in the stop, in stop radii, within +-2^14 */
-    /* (1 + r^2) / 2 at each of two barrels that may cut the ray, where r is
-     * (distance of the ray from the axis) / (semi-diameter). The ray is cut if
-     * the value is above 1. Unlike r the value is smooth at r = 0; at r = 1 its
-     * slope is that of r. Values are 0 .. 2^14; 0: there is no such barrel. */
+    /* (1 + r^2) / 2 at each of two barrels that may cut the ray, 0 .. 2^14; 0:
+     * there is no such barrel. r is (distance of the ray from the axis) /
+     * (semi-diameter of the barrel). The barrel cuts the ray if the value is
+     * above 1. This function of r is used because it is smooth at r = 0 and has
+     * the slope of r at r = 1. */
     int32_t barrel_q16[2];
-    /* energy, 0 .. 65536, where 65536 is the bundle's unit; below 0: the ray is
-     * invalid, and its other members are undefined. */
+    /* energy of the ray, 0 .. 65536; 65536 stands for an energy of 1 in
+     * flux_q31 of the bundle. Below 0: the ray is invalid, and its other
+     * members are undefined. */
     int32_t energy_q16;
 };
 
@@ -48,22 +50,22 @@ struct glint_bundle {
                            linear BT.709, -4 .. 4 */
 };
 
-/* Functions that compute the vertices of bundles while the bundles are sorted
- * into tiles (binned), so that vertices need not be stored. Bundles are
+/* Callbacks that compute the vertices of bundles while glint_flare_bin() sorts
+ * the bundles into tiles. The vertices are then never stored. Bundles are
  * numbered in the order in which they were added. Any worker may call both
- * functions, with its number WORKER; they must give the same result each
+ * callbacks, with its number WORKER; they must give the same result each
  * time. */
 struct glint_flare_rays {
-    /* Starts bundle I; returns 0 if the whole bundle lies outside the pixel
-     * rows Y0 .. Y1 - 1. */
+    /* Starts bundle I for WORKER. Returns 0 if the whole bundle lies outside
+     * the pixel rows Y0 .. Y1 - 1. */
     int (*open)(void *ctx, int worker, int i, int y0, int y1);
     /* Sets ROW to row J, 0 .. n_cells, of the vertices of the bundle that
-     * WORKER has started. Called for increasing J. */
+     * WORKER has opened. Called for increasing J. */
     void (*row)(void *ctx, int worker, int j, struct glint_vertex *row);
     void *ctx;
     int coded;         /* 1: the picture has integer codes, so faint light needs
                           less precision */
-    int snap_codes_q8; /* snap_codes_q8 of struct glint_flare_frame */
+    int snap_codes_q8; /* as in struct glint_flare_frame */
 };
 
 #ifdef __cplusplus

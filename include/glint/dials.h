@@ -25,7 +25,7 @@ enum glint_dial_flag {
     /* Pictures of integer codes (not linear light) are drawn at half
      * resolution. */
     GLINT_DIAL_HALF = 1,
-    /* A time budget does not change GLINT_DIAL_HALF. */
+    /* Like GLINT_DIAL_HALF, but a time budget does not clear the flag. */
     GLINT_DIAL_ALWAYS_HALF = 2,
     GLINT_DIAL_NO_VEIL = 4 /* veil and haze are not drawn */
 };
@@ -38,12 +38,13 @@ struct glint_dials {
     /* Number of steps per octave to which irradiance is rounded, 1 .. 4096; 0:
      * irradiance is not rounded. */
     int irradiance_steps;
-    /* Edges across which light changes by fewer codes are moved to whole
-     * pixels; 0: no edge is moved. */
+    /* Edges of a ghost's cells are snapped to the pixel grid if the light
+     * changes across them by fewer codes than this; 0: no edge is snapped. */
     int snap_codes_q8;
-    int dispersion_q8; /* max distance between outlines of neighbouring
-                          wavelengths, pixels; 0: all ghosts use three
-                          wavelengths */
+    /* Max distance between a ghost's outlines in neighbouring wavelengths,
+     * pixels; ghosts with larger distances use more wavelengths. 0: all ghosts
+     * use three wavelengths. */
+    int dispersion_q8;
     int max_lights; /* max number of lights; more are merged, faint ones first
                      */
     unsigned flags; /* enum glint_dial_flag */
@@ -52,12 +53,14 @@ struct glint_dials {
     double cull_codes;
     double area_points; /* max number of points into which a lamp with an extent
                            is divided */
-    /* Ghosts that add fewer codes than this to a black pixel are drawn with the
-     * rays of only one of the three wavelengths, and merged with the ghosts of
-     * near-by lights; see dimmest of struct glint_flare_frame. */
+    /* Ghosts that add fewer codes than this to a black pixel count as dim. A
+     * dim ghost is drawn with the rays of only one of the three wavelengths,
+     * and merged with the same ghost of near-by lights; see dimmest of struct
+     * glint_flare_frame. */
     double dim_codes;
-    /* Tolerance for reusing rays in a video, pixels: if a light moved less, its
-     * traced rays are used again; 0: rays are always traced. */
+    /* Tolerance for reusing rays in a video, pixels: the traced rays of a light
+     * are used again if the light has moved by less. 0: rays are always
+     * traced. */
     double still_px;
     /* Log2 of the number of cells per side of the finest tables of dust and
      * masks, 3 .. GLINT_SHADE_MOST_LOG2. Lower values blur the specks and

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/engine.h - pictures in, pictures with flares out: lamps are found and
- * followed, and their ghosts drawn behind a lens at a suitable exposure.
+ * glint/engine.h - adds lens flares to pictures: finds and tracks the lamps in
+ * each picture, chooses an exposure, and draws the lamps' ghosts.
  *
  *     glint_engine_defaults(&cfg, width, height);           once
  *     cfg.model = &lens;                                    glint_lens_open()
@@ -10,8 +10,8 @@
  *     glint_engine_draw(engine, lamps, n, &image, &report);  each picture
  *     glint_engine_destroy(engine);
  *
- * The engine of glint overlay and glint live, for programs with floating point
- * and malloc: libglint-engine.a on top of libglint.a. It needs neither an
+ * The programs glint overlay and glint live use this engine. It needs floating
+ * point and malloc: libglint-engine.a on top of libglint.a. It needs neither an
  * operating system nor libglint-bake.a; the caller passes a clock. Without
  * malloc, use glint/flare.h alone.
  *
@@ -49,25 +49,27 @@ enum { GLINT_ENGINE_MAX_LAMPS = 1024 }; /* max lamps found in a picture */
 /* A lamp of a picture: found by glint_engine_find(), or made by the program
  * with glint_engine_lamp_of(). */
 struct glint_engine_lamp {
-    struct glint_lamp lamp; /* the lamp; its power is already multiplied by
-                               level */
-    uint32_t id;            /* number of the lamp, constant while it is
-                               tracked */
-    /* Factor on the lamp's power, above 0, at most 1: rises when tracking
-     * begins and falls when the lamp vanishes. glint_engine_apply_shares()
-     * lowers it for partly hidden lamps. */
+    /* The lamp. Its power is already multiplied by level. */
+    struct glint_lamp lamp;
+    uint32_t id; /* number of the lamp, constant while it is
+                    tracked */
+    /* Factor that fades the lamp in and out, above 0, at most 1; already
+     * multiplied into its power. It rises when tracking begins and falls when
+     * the lamp vanishes. glint_engine_apply_shares() lowers it for partly
+     * hidden lamps. */
     double level;
-    /* Visible fraction of the lamp, above 0: GLINT_ENGINE_HIDDEN if all is
-     * hidden. */
+    /* Visible fraction of the lamp, above 0. GLINT_ENGINE_HIDDEN stands for a
+     * completely hidden lamp. */
     double share;
-    /* RMS radius, pixels, of the lamp's spot if the picture clips the lamp; 0:
-     * not clipped; -1: the picture does not show the lamp. */
+    /* RMS radius of the lamp's spot, pixels, if the lamp is clipped in the
+     * picture. 0: the lamp is not clipped; -1: the lamp is not in the
+     * picture. */
     double seen_px;
-    int is_found; /* 1: the lamp was found in a picture, and TRACK is its
-                     track */
+    /* 1: the lamp was found in a picture, and TRACK is its track; else 0. */
+    int is_found;
     struct glint_lamp_track track;
-    /* Light of the lamp minus the part of this light that the picture shows;
-     * set by glint_engine_expose(). */
+    /* Light of the lamp that the picture does not show because pixels are
+     * clipped; set by glint_engine_expose(). */
     double excess;
 };
 
@@ -78,19 +80,19 @@ struct glint_engine_lamp glint_engine_lamp_of(const struct glint_lamp *lamp,
 
 /* ------------------------------------------------------------ configuration */
 
-struct glint_frame_rays;   /* opaque: traces exact rays */
-struct glint_engine_stops; /* opaque: makes the iris and the dirt on the
-                              front */
+struct glint_frame_rays; /* opaque: traces exact rays */
+/* Opaque: computes the shape of the stop, and the dirt on the front element. */
+struct glint_engine_stops;
 
-/* A program that names this variable links the code for dust, for masks and for
- * stops that do not have straight, clean blades. */
+/* Code for dust, for masks and for stops whose blades are not straight and
+ * clean. Programs that name this variable link the code. */
 extern const struct glint_engine_stops glint_engine_all_stops;
 
 /* Lens, stop and sensor. */
 struct glint_engine_camera {
-    /* Number of sides of the stop, 3 .. 64, or 0 for a circle; angle of its
-     * first corner, degrees; f-number, where 0 selects the f-number of the
-     * model, its widest opening. */
+    /* Number of blades of the stop, 3 .. 64, or 0 for a circle; angle of the
+     * stop's first corner, degrees; f-number, where 0 selects the f-number of
+     * the model, which is the widest opening. */
     int n_blades;
     double blade_rotation_deg, f_number;
     /* Shape of the stop, dust and mask; needs STOPS unless all 0. Its mask must
@@ -104,24 +106,25 @@ struct glint_engine_camera {
     const struct glint_projection
         *projection; /* projection of the lens, copied; NULL: pinhole
                         projection */
-    /* A setup of the caller, for example of glint_engine_setup(), instead of
-     * the stop and colours above; must outlive the engine. The caller calls
-     * glint_engine_update_stop() after changing the setup. NULL: the engine
-     * makes a setup from the model. */
+    /* A setup that the caller made, for example with glint_engine_setup(). It
+     * replaces the stop and colours above and must outlive the engine. The
+     * caller calls glint_engine_update_stop() after changing the setup. NULL:
+     * the engine makes a setup from the model. */
     const struct glint_setup *setup;
-    /* &glint_frame_traces of libglint-bake.a traces exact rays through the lens
-     * of SETUP if there is no model. NULL: a model is required. */
+    /* Method to trace exact rays through the lens of SETUP if there is no
+     * model: &glint_frame_traces of libglint-bake.a. NULL: a model is
+     * required. */
     const struct glint_frame_rays *rays;
     /* [ghosts of the setup]: tints of ghosts, or NULL; must outlive the
      * engine. */
     const struct glint_tint *tints;
     /* Dirt on the front element, made by glint_front_make(); must outlive the
-     * engine. NULL: the engine makes it from front_dirt, whose mask is copied
-     * and which needs STOPS unless all 0. */
+     * engine. NULL: the engine makes the dirt from front_dirt, of which it
+     * copies the mask. Unless front_dirt is all 0, this needs STOPS. */
     const struct glint_front_dirt *front;
     struct glint_front front_dirt;
-    /* &glint_engine_all_stops, which glint_engine_configure() sets, or NULL:
-     * the stop is of straight, clean blades, and the front element is clean. */
+    /* &glint_engine_all_stops, which glint_engine_configure() sets. NULL: the
+     * stop has straight, clean blades, and the front element is clean. */
     const struct glint_engine_stops *stops;
     uint64_t reserved[15]; /* must be 0 */
 };
@@ -150,10 +153,11 @@ struct glint_engine_search {
 
 /* Brightness of the flare. */
 struct glint_engine_light {
-    /* Strength, 0 .. 100: at 0.5 the brightest part of the flare is about a
-     * quarter of white for any lamps and lens; src/engine/strength.h states the
-     * rule. If by_hand is not 0, exposure_ev (in stops) is used instead of
-     * strength. gain is a factor on the resulting light. */
+    /* Strength of the flare, 0 .. 100. At 0.5 the brightest pixels of the flare
+     * are about a quarter of white for any lamps and lens;
+     * src/engine/strength.h states the rule. If by_hand is not 0, exposure_ev
+     * (in stops) is used instead of strength. gain is a factor on the resulting
+     * light. */
     double strength, exposure_ev, gain;
     int by_hand;
     /* Factor on the star around each lamp (light diffracted by the edges of the
@@ -190,21 +194,22 @@ struct glint_engine_drawing {
      * instructions; costlier frames are drawn coarser. Each further light adds
      * a 16th to the limit. 0: no limit. */
     double most_minsn;
-    double apart_px; /* merge distance, pixels: lights whose images are closer
-                        than this are merged */
-    int tile_log2;   /* log2 of the side of tiles, 3 .. 6 */
+    /* Merge distance, pixels: lights are merged if their images are closer
+     * together. */
+    double apart_px;
+    int tile_log2; /* log2 of the side of tiles, 3 .. 6 */
     /* Bits of enum glint_engine_part: the components that are drawn. */
     unsigned parts;
     int only_ghost; /* index of the only ghost that is drawn; -1: all
                        ghosts */
     /* Not 0: each picture is planned again, even if no lamp has moved. */
     int is_fresh;
-    /* Not 0: still pictures are drawn with the area_points or max_lights of
-     * DIALS. 0: they get more points per wide lamp, or more lights, than
-     * video. */
+    /* Not 0: still pictures are drawn with area_points (keep_points) or
+     * max_lights (keep_lights) of DIALS. 0: still pictures get more points per
+     * wide lamp, or more lights, than frames of a video. */
     int keep_points, keep_lights;
-    /* Receives the progress of exact rays until the first picture is drawn; may
-     * be NULL. */
+    /* Receives the progress of tracing exact rays until the first picture is
+     * drawn; may be NULL. */
     glint_progress_fn *progress;
     void *progress_ctx;
     uint64_t reserved[16]; /* must be 0 */
@@ -222,10 +227,10 @@ struct glint_engine_cache {
     void *ctx;
 };
 
-/* A program built with an older library keeps working, with the defaults of
- * members that it does not know: a new member of a group, or of struct
- * glint_dials, replaces one of its reserved members, and 0 is its default; a
- * new member of this struct is added at its end. */
+/* Compatibility: a program keeps working with a newer library. Members that the
+ * program does not know get their defaults. For this, a new member of a group,
+ * or of struct glint_dials, replaces one of its reserved members, and its
+ * default is 0. New members of this struct are added at its end. */
 struct glint_engine_config {
     size_t size;       /* sizeof this struct in the program, set by
                           glint_engine_defaults() */
@@ -245,14 +250,14 @@ struct glint_engine_config {
 
     /* Memory for drawing. If arena_bytes is 0, the engine allocates as much as
      * a frame needs, and allocates again when a later frame needs more.
-     * Otherwise arena_bytes is the limit: without a budget, grids become
+     * Otherwise arena_bytes is the limit. Without a budget, grids then become
      * coarser until the visible ghosts fit; ghosts that still do not fit are
      * left out and counted; lamps above max_drawn are merged. ARENA must be
      * aligned to 64 bytes and outlive the engine; NULL: the engine allocates
      * it. Stars need about 50 KB for tables and 0.3 KB per lamp in addition,
-     * allocated once, when the engine is made. If arena_has_all is not 0, ARENA
-     * must be NULL and arena_bytes includes the memory for stars and a veil;
-     * still pictures need more memory while they are exposed. */
+     * which are allocated once, when the engine is made. If arena_has_all is
+     * not 0, arena_bytes includes the memory for stars and a veil, and ARENA
+     * must be NULL. Still pictures need more memory while they are exposed. */
     void *arena;
     size_t arena_bytes;
     int arena_has_all;
@@ -266,9 +271,9 @@ struct glint_engine_config {
 void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
                                  int width, int height);
 
-/* Sets CFG to the defaults of glint overlay, except for straight blades: blades
- * of overlay have an iris.roundness of 0.2. The caller still sets the model and
- * the workers. */
+/* Sets CFG to the defaults of glint overlay, with one exception: blades are
+ * straight, while those of overlay have an iris.roundness of 0.2. The caller
+ * still sets the model and the workers. */
 static inline void glint_engine_defaults(struct glint_engine_config *cfg,
                                          int width, int height)
 {
@@ -276,9 +281,9 @@ static inline void glint_engine_defaults(struct glint_engine_config *cfg,
 }
 
 /* Sets the members of CFG for light, drawing, search, camera and memory from
- * OPTIONS (glint/options.h). Members whose options are not set get the options'
- * defaults, except for the shape of the stop, its dust and front_dirt, which do
- * not change. */
+ * OPTIONS (glint/options.h). A member gets its default if its option is not
+ * set. Exceptions are the shape of the stop, its dust and front_dirt, which
+ * then do not change. */
 struct glint_options;
 void glint_engine_configure(struct glint_engine_config *cfg,
                             const struct glint_options *options);
@@ -299,8 +304,8 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
 
 /* Light of a flare without the picture: linear R, G, B, 1 = display white. */
 struct glint_response_light {
-    /* Per channel, the mean of the brightest 1/1000 of the pixels, at most 46
-     * pixels. */
+    /* Mean of the brightest 1/1000 of the pixels, at most 46 pixels, for each
+     * channel. */
     double peak[3];
     double mean[3]; /* per channel, the mean of all pixels */
 };
@@ -310,8 +315,8 @@ struct glint_engine_exposure {
     double scale; /* factor on the powers of lamps; 0: nothing is drawn */
     /* Light of the flare with powers multiplied by scale. */
     struct glint_response_light light;
-    /* Not 0: the light was measured in a flare that was drawn at reduced size
-     * for this. */
+    /* Not 0: the light was measured by drawing the flare of this picture at
+     * reduced size. */
     int is_drawn;
     /* Not 0: the exposure restarted in this picture, as after a cut. */
     int is_new;
@@ -324,7 +329,8 @@ struct glint_engine_report {
     int beyond_lights;
     /* Number of lights left after merging lights closer than apart_px. */
     int apart_lights;
-    /* Number of lights drawn, after further merging because of max_lights. */
+    /* Number of lights drawn. If max_lights was exceeded, more lights were
+     * merged. */
     int drawn_lights;
     int ghosts, tiles; /* number of ghosts drawn, and number of tiles that
                           contain light */
@@ -332,17 +338,17 @@ struct glint_engine_report {
     int held_samples;
     size_t arena_bytes; /* bytes of the arena that was passed to libglint */
     size_t peak_bytes;  /* bytes of arena_bytes that this frame used */
-    /* Bytes with which this picture would have been drawn completely, with
+    /* Bytes that would have sufficed to draw this picture completely, with
      * grids as fine as requested. */
     size_t need_bytes;
-    /* Additional bytes, for the tables and lamps of stars and for a
-     * veil. */
+    /* Bytes allocated outside the arena: for the tables and lamps of stars and
+     * for a veil. */
     size_t star_bytes;
-    /* Not 0: the plan exceeded a limit and was made coarser. */
+    /* Not 0: the plan exceeded a limit, and coarser grids were planned. */
     int coarsened;
     int tight; /* not 0: the exceeded limit was the memory limit */
-    /* Number of plans until one was within the limits, and number of these
-     * plans that were binned. */
+    /* Number of plans that were made until one was within the limits, and
+     * number of these plans that were binned. */
     int plans, binned;
     long long looked; /* number of rays that the plans traced to estimate
                          ghosts */
@@ -355,8 +361,8 @@ struct glint_engine_report {
     struct glint_dials dials;
     int blurred;  /* not 0: dust or a mask was drawn from coarser tables */
     int unveiled; /* not 0: the veil was not drawn, to meet the budget */
-    /* Cost of a measured frame on which predictions are based, in millions of
-     * instructions, or 0. */
+    /* Cost on which predictions are based, measured for an earlier frame, in
+     * millions of instructions, or 0. */
     double calibrated_minsn;
     double scale; /* factor on the powers of lamps */
 };
@@ -380,12 +386,12 @@ void glint_engine_destroy(struct glint_engine *engine);
 const struct glint_view *glint_engine_view(const struct glint_engine *engine);
 
 /* Set option NAME of glint/options.h for the following pictures, to a number or
- * to a text as on a command line. NAME is strength, exposure (the last set of
- * these two applies), gain, starburst, f-number (as by glint_engine_stop()),
- * stop or dust (as by glint_engine_iris()). Returns GLINT_E_ARGUMENT and sets
- * ERROR if there is no such option, it does not accept the value, or it is
- * fixed when an engine is made; the engine is unchanged. May return
- * GLINT_E_MEMORY. */
+ * to a text as on a command line. NAME is strength, exposure, gain, starburst,
+ * f-number (as by glint_engine_stop()), stop or dust (as by
+ * glint_engine_iris()). If both strength and exposure are set, the last one
+ * applies. Returns GLINT_E_ARGUMENT and sets ERROR if there is no such option,
+ * it does not accept the value, or it is fixed when an engine is made; the
+ * engine is unchanged. May return GLINT_E_MEMORY. */
 enum glint_status glint_engine_set(struct glint_engine *engine,
                                    const char *name, double value,
                                    struct glint_error *error);
@@ -397,8 +403,9 @@ enum glint_status glint_engine_set_text(struct glint_engine *engine,
 void glint_engine_set_light(struct glint_engine *engine,
                             const struct glint_engine_light *light);
 
-/* Set the quality parameters of the following pictures, and return those in
- * use: with a budget, the parameters that were chosen to meet it. */
+/* Set the quality parameters of the following pictures; return the quality
+ * parameters in use. With a budget, these are the parameters that were chosen
+ * to meet it. */
 void glint_engine_set_dials(struct glint_engine *engine,
                             struct glint_dials dials);
 struct glint_dials glint_engine_dials(const struct glint_engine *engine);
@@ -459,14 +466,14 @@ void glint_engine_mark_cut(struct glint_engine *engine);
 void glint_engine_forget_lamps(struct glint_engine *engine);
 
 /* Sets SPOT to doubtful region I, from 0, of the last picture that was
- * searched. Doubtful regions look like lamps but were rejected; they are sorted
- * by decreasing brightness. SPOT->doubt is the reason of the rejection. Returns
- * 0 if there are fewer. */
+ * searched. A doubtful region looks like a lamp but was rejected. SPOT->doubt
+ * is the reason. Regions are sorted by decreasing brightness. Returns 0 if
+ * there is no region I. */
 int glint_engine_doubtful(const struct glint_engine *engine, int i,
                           struct glint_spot *spot);
 
-/* Visible fraction that stands for a completely hidden lamp. It is not 0, so
- * that power / fraction is still the lamp's power. */
+/* Value of the visible fraction of a completely hidden lamp. It is not 0, so
+ * that the lamp's own power can still be computed as power / fraction. */
 #define GLINT_ENGINE_HIDDEN 1e-18
 
 /* Multiplies power and share of each of N LAMPS by the fraction of the lamp
@@ -491,11 +498,11 @@ double glint_engine_focal_px(const struct glint_engine *engine);
 /* ------------------------------------------------------------ expose and draw
  */
 
-/* Chooses the brightness of the flare of N LAMPS on IMAGE, and limits the
- * ghosts of new lamps that are still too bright for it. WHITE is the light that
- * the code of white stands for: 1, or more if IMAGE is a proxy of a picture
- * with more light than white. glint_engine_draw() calls this function with
- * WHITE 1 if the program did not. May return GLINT_E_ARGUMENT or
+/* Chooses the brightness of the flare of N LAMPS on IMAGE. Dims the ghosts of
+ * lamps that appeared while the exposure has not adapted to them yet. WHITE is
+ * the linear light of the code of white: 1, or more if IMAGE is a proxy of a
+ * picture with more light than white. glint_engine_draw() calls this function
+ * with WHITE 1 if the program did not. May return GLINT_E_ARGUMENT or
  * GLINT_E_MEMORY. */
 enum glint_status glint_engine_expose(struct glint_engine *engine,
                                       struct glint_engine_lamp *lamps, int n,

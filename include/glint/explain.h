@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/explain.h - explains which parts of a frame were drawn or left out, and
- * why: per ghost, light and wavelength.
+ * glint/explain.h - reports for each ghost, light and wavelength of a frame
+ * whether it was drawn and, if not, why.
  *
  *     glint_explain_open(&explain, engine, 0); its last picture
  *     glint_explain_close(&explain);
  *
- * Counts and reasons are the flare's own statistics (glint_flare_account);
- * light is measured by drawing each part of the frame separately. */
+ * Counts and reasons come from glint_flare_account(). The light of a ghost,
+ * light or wavelength is measured by drawing it alone. */
 #ifndef GLINT_EXPLAIN_H
 #define GLINT_EXPLAIN_H
 
@@ -19,24 +19,25 @@
 extern "C" {
 #endif
 
-/* Kinds of items whose numbers determine the cost of a frame. The numbers are
- * either predicted from the frame's plan or counted after drawing. */
+/* Kinds of items that are counted to compute the cost of a frame. Counts are
+ * predicted from the frame's plan, or taken from the drawn frame. */
 enum glint_cost_kind {
-    /* In a plan: bundles for which rays are traced to estimate them (probed);
-     * in a drawn frame: rays that its plans traced for this. */
+    /* In a plan: bundles that are estimated by tracing a few rays (probed). In
+     * a drawn frame: the rays that its plans traced for these estimates. */
     GLINT_COST_LOOKED_AT,
-    /* Bundles drawn: each costs a few rays, and for each row a substitution
-     * into polynomials. */
+    /* Bundles drawn. Each costs a few rays and, per row of rays, one
+     * substitution into its polynomials. */
     GLINT_COST_BUNDLES,
     GLINT_COST_VERTICES, /* vertices of ray grids */
     GLINT_COST_EDGES,    /* edges across which light changes */
     GLINT_COST_ROWS,     /* pixel rows that these edges cross */
-    GLINT_COST_PARTS,    /* pieces of cells that dust or a mask shades */
-    GLINT_COST_LIT,      /* pixels with any light */
-    GLINT_COST_STAR,     /* pixels lit by stars; a pixel lit by several parts of
-                            a star is counted several times */
-    GLINT_COST_VEIL,     /* pixels that a veil covers; includes the cost of its
-                            blur */
+    /* Parts of cells on which dust or a mask is drawn. */
+    GLINT_COST_PARTS,
+    GLINT_COST_LIT,  /* pixels with any light */
+    GLINT_COST_STAR, /* pixels lit by stars; a pixel lit by several parts of
+                        a star is counted several times */
+    GLINT_COST_VEIL, /* pixels that a veil covers; includes the cost of its
+                        blur */
     GLINT_COST_KINDS
 };
 
@@ -61,16 +62,17 @@ struct glint_explain_part {
     int terms, barrels;
     long long probed; /* number of rays that the plan traced to estimate these
                          bundles */
-    /* all_terms: number of polynomial terms of each vertex, summed over all
-     * vertices. */
+    /* Counts as in struct glint_account. all_terms: number of polynomial terms
+     * of each vertex, summed over all vertices. */
     long long vertices, edges, rows, refs, all_terms;
     int tiles, lit; /* number of tiles drawn, and number of pixels that
                        receive light */
-    /* Light in the picture, and its fraction of the light of the frame. */
+    /* Light in the picture (flux), and its fraction of the light of the frame
+     * (share). */
     double flux, share;
     double brightest; /* light of the brightest pixel, mean of R, G and B */
-    /* Estimated number of instructions, and its fraction of the instructions of
-     * the frame. */
+    /* Estimated number of instructions (work), and its fraction of the
+     * instructions of the frame (cost). */
     double work, cost;
 };
 
@@ -92,12 +94,12 @@ struct glint_explain {
     const struct glint_wave_sets
         *sets; /* sets of waves; NULL: all ghosts use the same waves */
     /* Brightness, in codes near black, below which ghosts of several lights
-     * were drawn with the same rays; 0: no ghosts were. */
+     * were drawn with the same rays. 0: no ghosts were drawn in this way. */
     double dim_codes;
     int n_ghosts; /* number of pairs of reflecting surfaces */
     int n_lights;
-    /* Number of wavelengths, or, if each ghost chooses a set, number of
-     * sets. */
+    /* Length of WAVE: the number of wavelengths or, if each ghost chooses a set
+     * of wavelengths, the number of sets. */
     int n_waves;
     /* [ghosts of the lens, additional pupil regions included]: index of the
      * pair of surfaces that causes the ghost. */
@@ -106,7 +108,7 @@ struct glint_explain {
     int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles that 0, 1, ...
                                            barrels cut */
     double stage[GLINT_COST_KINDS]; /* estimated instructions of each stage */
-    double unit;                    /* factor on the drawn light */
+    double unit; /* factor from the drawn light to the light that is reported */
     /* Log2 of the side of a tile, and number of tiles. */
     int tile_log2, n_tiles;
     /* [height][width][3]: light that glint_explain_draw() drew. */

@@ -2,9 +2,10 @@
  *
  * glint/glint.h - the whole API, and the conventions of all its headers.
  *
- * glint computes the ghosts that a lamp shining into a real lens causes in a
- * picture. Most programs need only glint/engine.h, which uses doubles and
- * malloc. Below it are two halves:
+ * When a lamp shines into a real lens, reflections between its surfaces cause
+ * ghosts in the picture; glint computes them. Most programs need only
+ * glint/engine.h, which uses doubles and malloc. It builds on two halves of the
+ * library:
  *
  *   offline   glint/prescription.h trace.h   double precision; lens tables,
  *             exact.h bake.h                 exact rays and pictures, models

@@ -43,7 +43,7 @@ enum glint_matrix {
 enum glint_tone { GLINT_TONE_SRGB, GLINT_TONE_BT709 };
 
 /* A picture. Chroma planes of subsampled formats have (side + 1) / 2 samples,
- * so odd sizes are fine. Strides may exceed the row and may be negative. */
+ * so that sides may be odd. Strides may exceed the row and may be negative. */
 struct glint_image {
     enum glint_pixel_format format;
     int width, height; /* size of the picture, pixels, 1 .. GLINT_MAX_SIDE */

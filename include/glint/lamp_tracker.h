@@ -12,8 +12,8 @@
  * to its predicted position. Noise in position, flux and colour is averaged
  * out; real changes are followed without jumps: a track rises and fades over
  * time, and changes of flux and position are blended when lamps merge, separate
- * or are hidden. A track without a spot fades, is remembered for a while, and
- * gets its number back when the lamp returns. After a cut all tracks restart at
+ * or are hidden. A track without a spot fades. It is remembered for a while: if
+ * the lamp returns, it gets the same number. After a cut all tracks restart at
  * once.
  *
  * All arithmetic is in integers. The result does not depend on the order of the
@@ -42,15 +42,15 @@ enum glint_lamp_state {
     GLINT_LAMP_LEAVING
 };
 
-/* A lamp over time. Its power does not include the level: draw it with level
- * times power. */
+/* A lamp over time. Draw it with the power times the level; the power does not
+ * include the level. */
 struct glint_lamp_track {
     uint32_t id; /* unique number, from 1 */
     enum glint_lamp_state state;
     int32_t x_q8, y_q8; /* position, as in struct glint_spot; may be
                            off-screen */
     int32_t size_q8;    /* RMS radius, pixels */
-    /* Level, 1 .. 32768: how far the lamp has risen or faded; 32768 is full. */
+    /* Factor that fades the lamp in and out, 1 .. 32768; 32768 is full. */
     int32_t level_q15;
     /* Linear luminance in the picture, 1 = white pixel. */
     int64_t flux_q16;
@@ -67,28 +67,31 @@ struct glint_lamp_tracker_config {
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_tracks;    /* max number of lamps that are tracked at a time, 1 ..
                           1024 */
-    /* Max number of lamps that are reported, 1 .. max_tracks: the strongest;
-     * the level of all others fades. */
+    /* Max number of lamps that are reported, 1 .. max_tracks. The strongest
+     * lamps are reported; the level of all others falls. */
     int max_shown;
     /* Max distance of a spot from the predicted position of its track, as a
      * fraction of the picture's width. */
     int32_t match_q15;
     /* Min fraction of the flux that changes at a cut; above 32768: cuts are not
-     * detected. There is a cut if this fraction of the previous picture's flux
-     * vanishes and this fraction of the new picture's flux is new, or if three
-     * or more lamps appear or vanish at once. */
+     * detected. There are two criteria for a cut. Either this fraction of the
+     * previous picture's flux vanishes and this fraction of the new picture's
+     * flux is new; or three or more lamps appear or vanish at once. */
     int32_t cut_q15;
-    /* Milliseconds in which the level rises from 0 to full, or the flux to a
-     * greater flux. */
+    /* Time in which the level rises from 0 to full, or the flux rises to a
+     * greater flux, milliseconds. All times of this struct are 1 .. 60000. */
     int32_t attack_ms;
-    int32_t release_ms; /* milliseconds in which the level falls from full to 0,
-                           or the flux to a lesser flux */
-    int32_t leave_ms;   /* milliseconds in which the level of a lamp that left
-                           the picture falls from full to 0 */
-    /* Milliseconds for which a lamp without a spot keeps its number. */
+    /* Time in which the level falls from full to 0, or the flux falls to a
+     * lesser flux, milliseconds. */
+    int32_t release_ms;
+    /* Time in which the level falls from full to 0 after the lamp left the
+     * picture, milliseconds. */
+    int32_t leave_ms;
+    /* Time for which the number of a lamp without a spot stays reserved for it,
+     * milliseconds. */
     int32_t memory_ms;
     int32_t smooth_ms; /* time constant of averaging, milliseconds */
-};                     /* Each time is 1 .. 60000 ms. */
+};
 
 struct glint_lamp_tracker; /* opaque, in the caller's memory */
 
@@ -124,10 +127,10 @@ void glint_lamp_tracker_restart(struct glint_lamp_tracker *tracks);
 /* Returns whether the last step was the first one, or detected a cut. */
 int glint_lamp_tracker_was_cut(const struct glint_lamp_tracker *tracks);
 
-/* Returns the argument PART_Q15 of glint_lamp_finder_keep_white() for the next
- * picture of a video, ELAPSED_US after the last picture. The white level may
- * fall by a stop per second, or by any amount if no lamp is visible or
- * remembered. */
+/* Returns the fraction PART_Q15 for glint_lamp_finder_keep_white(), for the
+ * next picture of a video, ELAPSED_US after the last picture. With this
+ * fraction the white level may fall by a stop per second, or by any amount if
+ * no lamp is visible or remembered. */
 int32_t glint_lamp_tracker_white_q15(const struct glint_lamp_tracker *tracks,
                                      int32_t elapsed_us);
 

@@ -48,7 +48,8 @@ enum glint_doubt {
     GLINT_DOUBT_NONE, /* not rejected: the region is a lamp */
     GLINT_DOUBT_DIM,  /* too few pixels reach the upper threshold, or the region
                          has too few pixels */
-    /* The surroundings of the region are nearly as bright as the region. */
+    /* The surroundings of the region are nearly as bright as the region
+     * itself. */
     GLINT_DOUBT_AROUND,
     /* Light around the region does not fall off, or falls off unevenly. */
     GLINT_DOUBT_GLOW,
@@ -68,8 +69,8 @@ struct glint_spot {
                            corner of the picture, pixel centres at n + 1/2 */
     int32_t size_q8;    /* RMS radius, pixels */
     int32_t area;       /* number of pixels of the region */
-    /* Number of pixels of the region whose largest channel is clipped, or
-     * reaches the white of the picture. */
+    /* Number of pixels of the region whose largest channel is clipped or
+     * reaches the picture's white level. */
     int32_t n_clipped;
     int64_t flux_q16;   /* linear luminance summed over the region's pixels, 1 =
                            white */
@@ -79,9 +80,9 @@ struct glint_spot {
     /* If faint is 1, the reason; else GLINT_DOUBT_NONE. */
     enum glint_doubt doubt;
 
-    /* glint_profile_measure() (glint/profile.h) sets these members and refines
-     * rgb_q15. Before that call they hold the flux, and a circle with the same
-     * RMS radius as the spot. */
+    /* Members that glint_profile_measure() (glint/profile.h) sets; it also
+     * refines rgb_q15. Before that call the power equals the flux, and the axes
+     * are those of a circle with the same RMS radius as the spot. */
     int64_t power_q16;  /* estimated flux minus background, as if nothing were
                            clipped; 1 = one white pixel */
     int32_t axis_q8[2]; /* RMS semi-axes of its core, pixels, the major axis
@@ -98,9 +99,9 @@ struct glint_lamp_finder_config {
     /* Lower threshold, stops from white, -20 .. threshold_high_q8: a region
      * extends to the pixels that reach it. */
     int32_t threshold_low_q8;
-    /* 8-bit full-range code of white, 1 .. 255. 0: white is the code at which
-     * codes clip; in a picture that does not reach that code, the code that
-     * one of 2048 of its pixels reaches counts as white as well. */
+    /* 8-bit full-range code of white, 1 .. 255; 0: white is the code at which
+     * codes clip. If a picture does not reach that code, the code that one of
+     * 2048 of its pixels reaches counts as white, too. */
     int white_code;
     int min_area; /* min area, pixels, 1 or more; smaller regions are noise */
     /* Max area of a lamp, as a fraction of the area of the picture; larger
@@ -111,10 +112,10 @@ struct glint_lamp_finder_config {
     /* 1: regions are scored by appearance and surroundings; 0: all bright
      * regions are lamps. */
     int32_t judge;
-    /* 1: the list also has, after the lamps, regions marked faint, for
-     * glint/lamp_tracker.h: regions with too few pixels at the upper threshold,
-     * with an area of only half of min_area, or with a score slightly too
-     * low. */
+    /* 1: after the lamps, the list has regions marked faint, for
+     * glint/lamp_tracker.h. These are regions with too few pixels at the upper
+     * threshold, with an area of only half of min_area, or with a score
+     * slightly too low. */
     int32_t keep_faint;
 };
 
@@ -145,11 +146,11 @@ int glint_lamp_finder_find(struct glint_lamp_finder *finder,
                            struct glint_spot *spots, int max);
 
 /* Prepares the next call of glint_lamp_finder_find(), and only that call, for a
- * picture of a video. The white level will be at least the fraction PART_Q15, 0
- * .. 2^15, of that of the last picture: otherwise, while a lamp is hidden for a
- * moment, its glow would be the brightest light and count as a lamp. If no
+ * picture of a video. The white level will be at least the white level of the
+ * last picture times PART_Q15, 0 .. 2^15. Otherwise, while a lamp is hidden for
+ * a moment, its glow would be the brightest light and count as a lamp. If no
  * region is a lamp, the best region needs a slightly higher score than in a
- * still picture, as the region may be visible in other pictures, too. */
+ * still picture, because other pictures may show that region, too. */
 void glint_lamp_finder_keep_white(struct glint_lamp_finder *finder,
                                   int32_t part_q15);
 

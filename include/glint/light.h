@@ -17,8 +17,8 @@ extern "C" {
 #define GLINT_MAX_WAVE_SETS \
     5 /* max waves, see struct glint_wave_sets, flare.h */
 
-/* Transmission of a stop within its outline: of its soft edge, and at each
- * point of dust or a mask. */
+/* Transmission inside the outline of a stop: its soft edge, and tables of dust
+ * and of a mask. */
 enum { GLINT_SHADE_LEAST_LOG2 = 3, GLINT_SHADE_MOST_LOG2 = 10 };
 struct glint_shade_method;
 extern const struct glint_shade_method glint_shade_method;
@@ -33,11 +33,12 @@ struct glint_shade {
     /* Log2 of the number of cells per side of the finest table; 0: there are no
      * tables, and everything inside the soft edge is clear. */
     int log2;
-    /* [log2]: table k has 2^(log2 - k) + 1 nodes per side over +-1 stop radius;
-     * row 0 has the lowest y. Points outside have the value of the nearest
-     * node. Both arrays must outlive the stop. LEVEL: transmission, 0 .. 2^15.
-     * ROUGH: max difference, within a node and a half, between the transmission
-     * in a finer table and in this table, in 256ths. */
+    /* Tables of transmission, [log2]. Table k has 2^(log2 - k) + 1 nodes per
+     * side over +-1 stop radius; row 0 has the lowest y. Points outside have
+     * the value of the nearest node. Both arrays must outlive the stop. LEVEL:
+     * transmission at each node, 0 .. 2^15. ROUGH: max difference between this
+     * value and the transmission in finer tables, within one and a half nodes,
+     * in 256ths. */
     const uint16_t *level_q15[GLINT_SHADE_MOST_LOG2];
     const uint8_t *rough_q8[GLINT_SHADE_MOST_LOG2];
 };
@@ -49,11 +50,12 @@ struct glint_stop {
     /* Unit normal of each side, outwards. */
     int32_t normal_q30[GLINT_MAX_BLADES][2];
     int32_t apothem_q16; /* distance from the centre to each side */
-    int32_t inset_q16; /* (1 - r^2) / 2 at the outline of a circle: 0 .. 2^15 */
-    /* Curved sides: arcs of a circle from corner to corner. round_q30:
-     * curvature of the arcs, 1 / stop radii, 0 .. 2^30 - 1; off_q30: this
-     * curvature times the distance from the centre of the stop to the centre of
-     * an arc, 1 .. 2^30. Both 0: sides are straight. */
+    int32_t inset_q16; /* for a circle: (1 - r^2) / 2, where r is the radius of
+                          the outline in stop radii; 0 .. 2^15 */
+    /* Curvature of the sides, which are arcs of a circle from corner to corner.
+     * round_q30: curvature of the arcs, 1 / stop radii, 0 .. 2^30 - 1. off_q30:
+     * this curvature times the distance from the centre of the stop to the
+     * centre of an arc, 1 .. 2^30. Both 0: the sides are straight. */
     int32_t round_q30, off_q30;
     /* Soft edge, dust and mask of the stop; must outlive the stop. NULL: all of
      * the opening is clear. */
@@ -69,18 +71,19 @@ struct glint_light {
     int32_t sine_q30, cosine_q30;
     /* Cosine and sine of the azimuth: 0 = right, 90 degrees = up. */
     int32_t cos_q30, sin_q30;
-    /* Value that the pixels of the light's in-focus image would have if the
-     * image covered one pixel; 1 = display white. */
+    /* Brightness of the light: the value that the pixels of its in-focus image
+     * would have if the image covered one pixel; 1 = display white. */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* If the light is one of the many points of a lamp: tangent of the angle to
-     * the neighbouring points. Ghosts of the light that are too small to touch
-     * the ghosts of those points are enlarged. 0: a single light. */
+    /* Distance to the neighbouring points, as the tangent of an angle, if the
+     * light is one of the many points of a lamp; 0: a single light. Ghosts of
+     * the light are enlarged if they are too small to touch the ghosts of those
+     * points. */
     int32_t apart_q30;
 };
 
-/* Factors on the light of one ghost: rgb_q14 per channel, -4 .. 4, and gain on
- * all channels. A ghost with gain {0, 0} is muted: it is not planned. */
+/* Factors on the light of one ghost, -4 .. 4 per channel, and a gain on all
+ * channels. A ghost with gain {0, 0} is muted: it is not planned. */
 struct glint_tint {
     int32_t rgb_q14[3];
     struct glint_real gain; /* factor on all channels, 0 or more */
@@ -93,9 +96,10 @@ double glint_tint_factor(const struct glint_tint *tint, int c);
 struct glint_wave {
     int32_t wave_q24;   /* 1 / wavelength^2, um^-2 */
     int32_t rgb_q14[3]; /* colour, linear BT.709, largest channel 1 */
-    /* Factor on rgb_q14, 1 / mm^2: (largest channel of the colour before it was
-     * normalised to 1) / (flux in mm^2 of the direct image at angle 0, the unit
-     * of light; unit_flux of struct glint_setup). */
+    /* Factor on rgb_q14, 1 / mm^2: A / B. A is the largest channel of the
+     * colour before the colour was normalised to 1. B is the flux in mm^2 of
+     * the direct image at angle 0, which is the unit of light (unit_flux of
+     * struct glint_setup). */
     struct glint_real weight;
 };
 

@@ -2,11 +2,11 @@
  *
  * glint/measure.h - measures the difference of two pictures in linear light.
  *
- * Both pictures are multiplied by a factor, clipped, sRGB-encoded and rounded
- * to 8 bits. The caller gives the factor, or it is chosen so that the 99.9th
- * percentile of luminance over all pixels of the reference becomes 1. Metrics
- * are computed from the codes; if all codes are equal, PSNR is computed from
- * the values before rounding. Flux is compared before clipping. */
+ * Both pictures are multiplied by the same factor, clipped, sRGB-encoded and
+ * rounded to 8 bits. The caller passes the factor. Otherwise it is the factor
+ * that makes the 99.9th percentile of the reference's luminance 1. Metrics are
+ * computed from the codes; if all codes are equal, PSNR is computed from the
+ * values before rounding. Flux is compared before clipping. */
 #ifndef GLINT_MEASURE_H
 #define GLINT_MEASURE_H
 
@@ -51,15 +51,15 @@ uint8_t *glint_measure_encode(const struct glint_float_image *image,
 void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
                          int width, int height, struct glint_measure *result);
 
-/* Compares TEST with REFERENCE, of the same size, at glint_measure_exposure()
- * of the reference. If FIT, TEST is first multiplied by the factor that
- * minimises the squared difference. Returns false if there is no memory. */
+/* Compares TEST with REFERENCE, which has the same size, at the exposure
+ * glint_measure_exposure() of REFERENCE. If FIT is true, TEST is first
+ * multiplied by the factor that minimises the squared difference. Returns false
+ * if there is no memory. */
 bool glint_measure_compare(const struct glint_float_image *reference,
                            const struct glint_float_image *test, bool fit,
                            struct glint_measure *result);
 
-/* Compares TEST with REFERENCE at EXPOSURE; otherwise as
- * glint_measure_compare(). */
+/* Like glint_measure_compare(), but at the exposure EXPOSURE. */
 bool glint_measure_at(const struct glint_float_image *reference,
                       const struct glint_float_image *test, bool fit,
                       double exposure, struct glint_measure *result);

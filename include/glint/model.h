@@ -52,15 +52,15 @@ extern "C" {
 
 enum glint_basis {
     GLINT_BASIS_AUTO, /* u, v, s, w: see above */
-    /* u, v, s, p, w in the frame of the lens. May be combined with
-     * GLINT_MIRRORS_X: the model covers lights with x of 0 or more, others are
-     * mirrored; and with GLINT_MIRRORS_Y, likewise for y. */
+    /* Variables u, v, s, p, w in the frame of the lens. May be combined with
+     * GLINT_MIRRORS_X: then the model covers only lights with x of 0 or more,
+     * and all others are mirrored. GLINT_MIRRORS_Y is the same for y. */
     GLINT_BASIS_LENS = 4
 };
 enum { GLINT_MIRRORS_X = 1, GLINT_MIRRORS_Y = 2 };
 
-/* Returns whether BASIS is GLINT_BASIS_LENS, possibly with bits
- * GLINT_MIRRORS_. */
+/* Returns whether BASIS is GLINT_BASIS_LENS, with or without GLINT_MIRRORS_
+ * bits. */
 static inline int glint_basis_is_lens(uint32_t basis)
 {
     return basis >> 2 == 1;
@@ -86,8 +86,9 @@ struct glint_model_header {
     /* Sine of the max angle of lights that the model covers; lights farther off
      * the axis are not drawn. */
     int32_t sine_hi_q30;
-    /* Flux, mm^2, of the direct image at angle 0 through a circular stop if the
-     * irradiance is 1: coefficients of powers of w over the band. */
+    /* Flux of the direct image at angle 0 through a circular stop, if the
+     * irradiance is 1, mm^2. The flux is a polynomial in w over the band; these
+     * are the coefficients. */
     struct glint_real direct_flux[GLINT_FLUX_TERMS];
     /* Correction for smaller stops: at R times the radius of the stop, the flux
      * is R^2 (direct_flux + c (stopped_flux[0] + c stopped_flux[1])) with c = 1
@@ -95,15 +96,15 @@ struct glint_model_header {
     struct glint_real stopped_flux[2][GLINT_FLUX_TERMS];
     uint32_t n_surfaces;
     uint32_t n_ghosts, ghost_at; /* array of struct glint_model_ghost */
-    /* The last n_parts ghosts are additional pupil regions (parts) of earlier
-     * ghosts. */
+    /* The last n_parts ghosts are additional pupil regions (parts), each of one
+     * of the ghosts before them. */
     uint32_t n_parts;
     uint32_t n_systems, system_at; /* array of struct glint_model_system */
 };
 
-/* The systems of one ghost follow each other by rising angle or band, without
- * overlap; so do the systems of successive ghosts. A ghost without systems is
- * invisible. */
+/* A ghost and its systems. The systems of one ghost follow each other by rising
+ * angle or band, without overlap. The systems of successive ghosts follow each
+ * other, too. A ghost without systems is invisible. */
 struct glint_model_ghost {
     uint32_t i, j; /* indices of the two reflecting surfaces, i < j */
     uint32_t first_system, n_systems;
@@ -114,23 +115,24 @@ struct glint_model_system {
     /* Range of the sine of the angle of lights, 0 .. 2^30; in the lens basis,
      * range of the x component of their direction, -2^30 .. 2^30. */
     int32_t sine_lo_q30, sine_hi_q30;
-    int32_t wave_lo_q24, wave_hi_q24; /* range of 1 / wavelength^2; if both are
-                                         equal, one wavelength */
-    uint32_t zero_word;               /* must be 0 */
+    /* Range of 1 / wavelength^2. If both ends are equal, the system is for one
+     * wavelength. */
+    int32_t wave_lo_q24, wave_hi_q24;
+    uint32_t zero_word; /* must be 0 */
     uint32_t across_at; /* int32 _q30 [2]: range of the y component of the
                            direction; in the lens basis only */
-    /* The box, mm: middle, half width, half height, int32 * 2^box_exponent.
+    /* The box, mm: middle, half width and half height, int32 * 2^box_exponent.
      * Each is a polynomial with up to GLINT_BOX_TERMS terms: s^0, s^1 .. s^5,
-     * w, s w. Terms whose bits are set in box_terms are stored: [3][bits set].
-     * In the lens basis the terms are 1, s, s^2, p, s p, p^2, w, s w, and a
-     * fourth polynomial, the middle along y, follows: [4][bits set]. */
+     * w, s w. Only terms whose bits are set in box_terms are stored: [3][bits
+     * set]. In the lens basis the terms are 1, s, s^2, p, s p, p^2, w, s w. A
+     * fourth polynomial, the middle along y, then follows: [4][bits set]. */
     uint32_t box_at;
     int32_t box_exponent;
     uint32_t output_at; /* array of struct glint_model_output, by rising kind */
     uint8_t n_outputs, box_terms;
-    /* If annulus is k, the system omits |v| < k / (k + 1), which other pupil
-     * regions of the ghost cover; at most GLINT_MAX_ANNULUS, 0 in the lens
-     * basis. */
+    /* If annulus is k above 0, the system does not cover |v| < k / (k + 1);
+     * other pupil regions of the ghost cover this range. At most
+     * GLINT_MAX_ANNULUS; 0 in the lens basis. */
     uint8_t annulus;
     uint8_t zero;
 };
@@ -141,26 +143,28 @@ enum {
     GLINT_MAX_POWER = 9,
     GLINT_MAX_ANNULUS = 15,
     GLINT_RAYS = 8, /* number of rays that are traced at a time */
-    /* Entries in a row of powers of u: a multiple of the width of vectors. */
+    /* Number of entries in a row of powers of u: a multiple of the width of
+     * SIMD vectors. */
     GLINT_TABLE_WIDTH = 16,
     GLINT_MAX_MODEL_TERMS = 120,
     GLINT_LENS_SIDES = 4, /* number of polynomials of a box in the lens basis */
-    /* In the lens basis exponents of s and p are below GLINT_LENS_POWERS,
-     * exponents of w below GLINT_LENS_WAVE_POWERS. */
+    /* Limits of exponents in the lens basis: those of s and p are below
+     * GLINT_LENS_POWERS, those of w below GLINT_LENS_WAVE_POWERS. */
     GLINT_LENS_POWERS = 6,
     GLINT_LENS_WAVE_POWERS = 7
 };
 
 enum glint_channel {
-    /* Position on the sensor, mm, in the frame of the light. Except in the lens
-     * basis, both y outputs are odd in v, all others even. */
+    /* Position on the sensor, mm, in the frame of the light. SENSOR_Y and
+     * STOP_Y are odd in v and all other outputs are even, except in the lens
+     * basis. */
     GLINT_OUT_SENSOR_X,
     GLINT_OUT_SENSOR_Y,
     GLINT_OUT_STOP_X, /* position in the stop, stop radii */
     GLINT_OUT_STOP_Y,
     GLINT_OUT_ENERGY,
-    /* Max of (height of the ray) / (semi-diameter) over all surfaces
-     * [Bodonyi25]. */
+    /* Max of (height of the ray) / (semi-diameter) over all surfaces that the
+     * ray crosses [Bodonyi25]. */
     GLINT_OUT_RADIUS,
     /* (1 + r^2) / 2, where r = (height of the ray) / (semi-diameter) at a
      * barrel that cuts rays: the ray is cut if the value is above 1. */
@@ -171,19 +175,19 @@ enum glint_channel {
     GLINT_OUT_KINDS
 };
 
-/* An output of a system. Every system has the first five kinds; sensor x and y
- * have the same exponent, and so have stop x and y. */
+/* An output of a system. Every system has the first five kinds. Sensor x and
+ * sensor y have the same exponent; stop x and stop y have the same exponent. */
 struct glint_model_output {
     uint8_t kind, n_terms;
-    uint8_t n_narrow;     /* number of coefficients, at the end of the list,
-                             that are int16 instead of int32, padded to whole
-                             words */
+    /* Number of coefficients, at the end of the list, that are stored as int16
+     * instead of int32 and padded to whole words. */
+    uint8_t n_narrow;
     uint8_t narrow_shift; /* int16 coefficients are multiplied by
                              2^narrow_shift; at most 20 */
-    /* For the energy only; both are 0 for other kinds. If head, at most 28, is
-     * not 0, the polynomial P is clamped to 2^(29 - head), far above its values
-     * where light passes. The energy is P, squared ROOTS times (at most 2), or
-     * 0 if P is below 0. */
+    /* For the energy only; both are 0 for other kinds. If head is not 0, the
+     * polynomial P is clamped to 2^(29 - head), which is far above its values
+     * where light passes; head is at most 28. The energy is P after squaring it
+     * ROOTS times (at most 2), or 0 if P is below 0. */
     uint8_t head, roots;
     int16_t exponent; /* value of the polynomial = integer * 2^exponent */
     uint32_t term_at; /* uint16 [n_terms], padded to whole words: exponents of
@@ -195,16 +199,17 @@ struct glint_model_output {
                          results; < 2^30 */
     uint32_t rounding_q8; /* proven bound of the rounding error of the
                              polynomial, in units of the integer */
-    /* Measured errors of the run-time arithmetic against exact rays, coded for
-     * glint_model_error_q20(). Units: pixels (of a picture 1920 pixels wide),
-     * stop radii, fraction of the energy (for energies of at least a fiftieth
-     * of the system's max), or relative radius. */
+    /* Measured errors of the run-time arithmetic against exact rays: RMS, 50th
+     * and 99th percentile, max. They are coded for glint_model_error_q20().
+     * Units: pixels (of a picture 1920 pixels wide), stop radii, fraction of
+     * the energy (for energies of at least a fiftieth of the system's max), or
+     * relative radius. */
     uint16_t rms, p50, p99, max;
 };
 
-/* Returns the error that the code E stands for: the lower eleven bits, shifted
- * left by the upper five. If the shift is not 0, the lower bits exceed 1023, so
- * that a larger E is a larger error. */
+/* Returns the error that the code E stands for: the lower eleven bits of E,
+ * shifted left by the upper five bits. If the shift is not 0, the lower bits
+ * exceed 1023. So a larger E is always a larger error. */
 static inline uint64_t glint_model_error_q20(uint16_t e)
 {
     return (uint64_t)(e & 2047) << (e >> 11);
@@ -236,15 +241,15 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
  *     ... &zoom->lens is an ordinary lens
  *
  * A zoom is a set of models of one lens at several positions. Between two
- * positions the polynomials of a bundle are interpolated linearly at the same
- * point of the pupil, after substituting angle and wavelength. A frame costs
- * 1.3 to 2.1 times as much, as interpolated polynomials have more terms and
- * there are more ghosts. A ghost that exists at only one of the two positions
- * is extrapolated from that position and the next one beyond it, if that is
- * near enough; otherwise the ghost fades. Ghosts change at different rates:
- * positions between the first and the last may have only some of the ghosts,
- * and each ghost is interpolated between the two nearest positions that have
- * it.
+ * positions, angle and wavelength are substituted into the polynomials of both
+ * models; the results are then interpolated linearly at each point of the
+ * pupil. A frame costs 1.3 to 2.1 times as much, as interpolated polynomials
+ * have more terms and there are more ghosts. A ghost may exist at only one of
+ * the two positions. It is then extrapolated from that position and the next
+ * position on the same side, if that is near enough; otherwise the ghost fades.
+ * Ghosts change at different rates: positions between the first and the last
+ * may have only some of the ghosts, and each ghost is interpolated between the
+ * two nearest positions that have it.
  *
  * The file: a header, then for each position an ordinary model at a multiple of
  * 4 bytes. It is used in place. */
@@ -276,8 +281,9 @@ struct glint_zoom_model {
 
 struct glint_transfer;
 struct glint_zoom_lens {
-    /* as glint_transfer_init(), for a focal length between two positions. A
-     * pointer, so that only programs that zoom link the function. */
+    /* Function that does the work of glint_transfer_init() for a focal length
+     * between two positions. It is a pointer so that only programs that zoom
+     * link the function. */
     int (*transfer)(struct glint_transfer *transfer,
                     const struct glint_zoom_lens *zoom, int ghost,
                     int32_t sine_q30, int32_t wave_q24);
@@ -285,23 +291,24 @@ struct glint_zoom_lens {
     int n_models;
     struct glint_lens model[GLINT_MAX_ZOOM_MODELS];
     int32_t along_q30[GLINT_MAX_ZOOM_MODELS];
-    /* Bit masks of the ghosts that each model has, as has_at; NULL: all
-     * ghosts. */
+    /* Bit masks of the ghosts that each model has, as has_at describes; NULL:
+     * the model has all ghosts. */
     const uint32_t *has[GLINT_MAX_ZOOM_MODELS];
     int32_t now_q30; /* current position */
-    /* Index of the model at or below the current position; the model after it
-     * is above. */
+    /* Index of the last model whose position is at or below the current
+     * position. */
     int below;
     /* For each ghost, the indices of the two nearest models that have it: the
      * one below and the one above the current position. */
     uint8_t side[2][GLINT_MAX_ZOOM_GHOSTS];
-    /* Storage that LENS points to. */
+    /* Header and ghosts of LENS at the current position. */
     struct glint_model_header header;
     struct glint_model_ghost ghost[GLINT_MAX_ZOOM_GHOSTS];
-    /* For each ghost and additional pupil region (part): the ghost to which it
-     * belongs, its number among the parts of that ghost, and its index in both
-     * models of that ghost, -1 in a model that lacks it. The additional parts
-     * of ghost G are PART_FROM[G] .. PART_FROM[G + 1] - 1. */
+    /* For each ghost or additional pupil region (part), whole: the ghost to
+     * which it belongs; number: its number among the parts of that ghost;
+     * place: its index in both models of that ghost, or -1 in a model that
+     * lacks it. The additional parts of ghost G are PART_FROM[G] .. PART_FROM[G
+     * + 1] - 1. */
     int16_t whole[GLINT_MAX_ZOOM_GHOSTS], number[GLINT_MAX_ZOOM_GHOSTS];
     int16_t place[2][GLINT_MAX_ZOOM_GHOSTS];
     int16_t part_from[GLINT_MAX_ZOOM_GHOSTS + 1];

@@ -41,7 +41,8 @@ enum glint_option_type {
     GLINT_OPTION_REAL,
     GLINT_OPTION_INTEGER,
     GLINT_OPTION_FLAG, /* set or not set, without a value */
-    /* One of a list of words; the value is the index of the word. */
+    /* One of a list of words. The value of the option is the index of the
+     * word. */
     GLINT_OPTION_WORD,
     GLINT_OPTION_TEXT
 };
@@ -58,7 +59,7 @@ enum glint_option_group {
 };
 
 /* Where an option is applied: by the engine, to pictures; by the code that
- * opens the lens, to its table; or by the program itself, to files, scenes and
+ * opens the lens, to the lens table; or by the program, to files, scenes and
  * videos. */
 enum glint_option_scope {
     GLINT_OPTION_PICTURE,
@@ -76,16 +77,16 @@ enum glint_option_change {
 
 /* An option: a row of glint/options.inc. */
 struct glint_option {
-    const char *name;    /* name without dashes */
-    const char *value;   /* placeholder of the value in help texts; "" for a
-                            flag */
-    const char *accepts; /* WORD: the words, separated by '|'. TEXT: a
-                            description. Numbers: the unit, to which ", or WORD"
-                            may be appended */
-    const char *help;    /* description for help, one line */
-    const char *text;    /* TEXT: the default, or "" */
-    double low, high;    /* range of a number */
-    double initial;      /* default of a number or a word; NAN: none */
+    const char *name;  /* name without dashes */
+    const char *value; /* placeholder of the value in help texts; "" for a
+                          flag */
+    /* Accepted values. WORD: the words, separated by '|'. TEXT: a description.
+     * Numbers: the unit, to which ", or WORD" may be appended. */
+    const char *accepts;
+    const char *help; /* description for help, one line */
+    const char *text; /* TEXT: the default, or "" */
+    double low, high; /* range of a number */
+    double initial;   /* default of a number or a word; NAN: none */
     enum glint_option_type type;
     enum glint_option_group group;
     enum glint_option_scope scope;
@@ -106,9 +107,9 @@ enum glint_option_id {
 enum { GLINT_MAX_OPTIONS = 256 }; /* max rows of the table, for all versions */
 
 /* The value of each option, one member per row, and whether the option was set.
- * An option without a default is 0 or NULL until it is set. The struct grows
- * with the table, at its end: in the smaller struct of an older program, the
- * options that it does not have keep their defaults. */
+ * An option without a default is 0 or NULL until it is set. New options are
+ * added at the end of the struct. An older program has a smaller struct, and
+ * the options that it lacks keep their defaults. */
 struct glint_options {
     size_t size; /* sizeof this struct in the program, set by
                     glint_options_defaults() */
@@ -141,12 +142,12 @@ static inline void glint_options_defaults(struct glint_options *options)
 }
 
 /* Set option NAME. If both --quality and --error are set, the last one applies;
- * likewise --strength and --exposure. VALUE is a number, the index of a word,
- * or 0 or 1 for a flag. TEXT is written as on a command line. For a flag it is
- * yes, no, 1 or 0; "" or NULL mean yes. For an option of type TEXT it is not
- * copied and must outlive OPTIONS; NULL or "" restores the default. Returns
- * GLINT_E_ARGUMENT and sets ERROR if there is no such option, or it does not
- * accept the value; the option is unchanged. */
+ * the same holds for --strength and --exposure. VALUE is a number, the index of
+ * a word, or 0 or 1 for a flag. TEXT is written as on a command line. A flag
+ * accepts the texts yes, no, 1 and 0; "" or NULL mean yes. The text of an
+ * option of type TEXT is not copied and must outlive OPTIONS; NULL or ""
+ * restores the default. Returns GLINT_E_ARGUMENT and sets ERROR if there is no
+ * such option, or it does not accept the value; the option is unchanged. */
 enum glint_status glint_options_set(struct glint_options *options,
                                     const char *name, double value,
                                     struct glint_error *error);
@@ -154,9 +155,9 @@ enum glint_status glint_options_set_text(struct glint_options *options,
                                          const char *name, const char *text,
                                          struct glint_error *error);
 
-/* Returns the quality parameters that OPTIONS select: those of the option
- * quality, except that parameters that were set individually replace them.
- * max_lights and area_points are not replaced. */
+/* Returns the quality parameters that OPTIONS select. The option quality
+ * determines all of them; then options for single parameters replace these,
+ * except max_lights and area_points. */
 struct glint_quality glint_options_quality(const struct glint_options *options);
 
 /* Writes to TEXT[BYTES] a description of the values that OPTION accepts. */

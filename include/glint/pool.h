@@ -6,16 +6,15 @@
  *     ...
  *     glint_pool_destroy(cfg.workers);
  *
- * Part of the engine's library, and linked only into programs that call it; not
- * built for WebAssembly. A static program needs -pthread (pkg-config --static).
+ * The pool is part of libglint-engine.a, except for WebAssembly. Only programs
+ * that call it link it. A static program needs -pthread (pkg-config --static).
  *
  * The calling thread works as worker 0, so a pool of n creates n - 1 threads,
  * with stacks large enough for baking (GLINT_BAKE_STACK_BYTES). Workers get
  * jobs from an atomic counter; they share nothing else while jobs run. The end
  * of a run does not wait for threads that woke up after the last job had begun.
- * Signals are blocked in the threads of the pool and go to those of the
- * application, except for signals of a thread's own faults.
- */
+ * The threads of the pool block all signals, which go to the application's
+ * threads instead, except for signals of a thread's own faults. */
 #ifndef GLINT_POOL_H
 #define GLINT_POOL_H
 

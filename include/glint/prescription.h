@@ -56,10 +56,10 @@ enum glint_bend {
 };
 
 /* The form of a surface that is not a centred sphere; all 0 for a sphere. The
- * profile at the height h is c h^2 / (1 + sqrt(1 - (1 + conic) c^2 h^2)) + A4
- * h^4 + A6 h^6 + ..., c = 1 / radius_mm. A cylinder or toric surface results
- * from sweeping the profile along circles of radius across_mm about a line
- * parallel to its plane. */
+ * height of the profile's curve at distance h from the axis is c h^2 / (1 +
+ * sqrt(1 - (1 + conic) c^2 h^2)) + A4 h^4 + A6 h^6 + ..., with c = 1 /
+ * radius_mm. A cylinder or toric surface results from sweeping the profile
+ * along circles of radius across_mm about a line parallel to its plane. */
 struct glint_shape {
     double conic; /* conic constant; 0: sphere, -1: paraboloid */
     double term[GLINT_SHAPE_TERMS]; /* A4 in mm^-3, A6 in mm^-5, .. */
@@ -84,8 +84,8 @@ struct glint_surface {
     double nd;      /* index of refraction, at 587.56 nm, of the medium
                        behind the surface */
     double vd; /* Abbe number of the medium behind the surface; 0 for air */
-    /* Dispersion of a catalogue glass, as glint_glass.sellmeier; all 0: nd and
-     * vd give the dispersion. */
+    /* Coefficients of the dispersion of a catalogue glass, as in
+     * glint_glass.sellmeier. All 0: the dispersion follows from nd and vd. */
     double sellmeier[6];
     struct glint_coating coating; /* coating of the surface; cemented surfaces
                                      have none */
@@ -100,19 +100,20 @@ struct glint_form {
     double semi_mm;
     /* end2: square of the height up to which the profile follows the lens
      * table. end_at: value of the profile at end2, and its first and second
-     * derivative by the squared height; they continue the profile with a
-     * curvature that fades out. */
+     * derivative with respect to the squared height. Above end2 these values
+     * continue the profile with a curvature that fades out. */
     double end2, end_at[3];
     /* Rigid transform of a point p from the axes of the light at the vertex to
      * the axes of the surface: TURN p + SHIFT; rows of TURN are unit
      * vectors. */
     double turn[3][3], shift[3];
-    /* LEVEL: the form is round or a cylinder, and on the axis, so rays stay in
-     * the frame of the light. ALONG: direction of the profile in that frame.
-     * ROUND: 1 for a round form, whose directions are all equal, else 0. */
+    /* level: the form is round or a cylinder, and on the axis, so that rays
+     * stay in the frame of the light. along: direction of the profile in that
+     * frame. round: 1 for a round form, which has the same profile in all
+     * directions, else 0. */
     bool level;
     double along[2], round;
-    int n_terms;      /* number of terms up to the last that is not 0 */
+    int n_terms;      /* number of terms, up to the last term that is not 0 */
     double steepest2; /* square of the max slope of the profile within the
                          glass */
 };
@@ -120,9 +121,9 @@ struct glint_form {
 /* Returns true unless S is a sphere or plane centred on the axis. */
 bool glint_surface_is_shaped(const struct glint_surface *s);
 
-/* Sets AT to the point of S at (X, Y) mm in the frame of S, after its shift and
- * tilt. AT is relative to the vertex on the axis, in the frame of a light in
- * the plane at PHI_DEG. Returns false if there is no such point. */
+/* Sets AT to the point of S at (X, Y) mm in the frame of S, after the shift and
+ * tilt of S. AT is relative to the vertex on the axis, in the frame of a light
+ * whose plane is at PHI_DEG. Returns false if there is no such point. */
 bool glint_surface_point(const struct glint_surface *s, double phi_deg,
                          double x, double y, double at[3]);
 
@@ -150,18 +151,18 @@ double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 
 /* The values of a zoom lens at each of its positions (columns of the table),
  * sorted by ascending or descending focal length. Monotone cubics interpolate
- * the values over the zoom parameter, which is 0 at the first and 1 at the last
- * column and proportional to the logarithm of the focal length. */
+ * the values over the zoom parameter. It is 0 at the first column, 1 at the
+ * last, and a linear function of the logarithm of the focal length. */
 struct glint_zoom {
     int n_positions; /* number of columns; 0: the lens does not zoom */
     int n_moves;     /* number of gaps that change */
-    /* For each gap that changes: index of the element before it, among surfaces
-     * and the stop, counted from the front. */
+    /* For each gap that changes: index of the element before the gap. Elements
+     * are the surfaces and the stop, counted from the front. */
     int move[GLINT_MAX_MOVES];
     double gap_mm[GLINT_MAX_MOVES][GLINT_MAX_POSITIONS];
     double f_number[GLINT_MAX_POSITIONS];
-    /* Values that the table states for each column, to check it; 0: not
-     * stated. */
+    /* Values that the lens table states for each column, which the parser
+     * compares with the computed values; 0: not stated. */
     double check_focal_mm[GLINT_MAX_POSITIONS];
     double check_back_mm[GLINT_MAX_POSITIONS];
     /* Values that are computed from the columns. */
@@ -199,15 +200,16 @@ struct glint_prescription {
     double stop_semi_mm; /* max radius of the stop */
     bool stop_is_circle; /* true: the stop is a circle at every opening;
                             false: it has blades */
-    /* Focal length and other values that the table states, to check the data;
-     * 0: not stated. */
+    /* Focal length and other values that the lens table states, which the
+     * parser compares with the computed values; 0: not stated. */
     double check_focal_mm;
     double check_back_mm;
-    /* Alternative coatings in the table, chosen for appearance, not
-     * measured. glint_prescription_coat() applies them. */
+    /* Alternative coatings from the table, which glint_prescription_coat()
+     * applies. They were chosen for appearance, not measured. */
     struct glint_coating mixed[GLINT_MAX_COATINGS];
     int n_mixed; /* number of mixed coatings; 0: the table lists none */
-    /* After parsing, the lens is at the first position. */
+    /* the positions of a zoom lens; after parsing, the lens is at the first
+     * position */
     struct glint_zoom zoom;
     /* Index of the first surface, and number of surfaces, of the group that
      * moves along the axis to focus; 0 surfaces: the whole lens moves. */
@@ -232,15 +234,15 @@ enum glint_status
 glint_prescription_set_f_number(struct glint_prescription *lens,
                                 double f_number, struct glint_error *error);
 
-/* Returns, for printing, the smallest f-number of three digits that
+/* Returns the smallest f-number of three digits, for printing, that
  * glint_prescription_set_f_number() accepts. */
 double glint_prescription_widest(const struct glint_prescription *lens);
 
 /* Zooms LENS, which must not have been focused before, to ALONG, 0 .. 1.
- * Between columns the image stays in focus: the difference between last gap
- * and back focal length is interpolated. Returns GLINT_E_ARGUMENT if LENS
- * does not zoom, if ALONG is out of range, or if elements would collide or
- * the stop would be too small at ALONG. */
+ * Between columns the image stays in focus, because the difference between last
+ * gap and back focal length is interpolated. Returns GLINT_E_ARGUMENT if LENS
+ * does not zoom, or ALONG is out of range. Also returns it if elements would
+ * collide, or the stop would be too small, at ALONG. */
 enum glint_status glint_prescription_zoom(struct glint_prescription *lens,
                                           double along,
                                           struct glint_error *error);
@@ -261,9 +263,9 @@ enum glint_status glint_prescription_focus(struct glint_prescription *lens,
                                            double metres,
                                            struct glint_error *error);
 
-/* Replaces the coatings of LENS. Surfaces between air and glass get
- * COATINGS[N] in turn, from the front, starting again at the first when all
- * are used; N is 1 .. GLINT_MAX_COATINGS. Cemented surfaces get no coating. */
+/* Replaces the coatings of LENS. Surfaces between air and glass get COATINGS[N]
+ * in turn, from the front. After the last coating, the first one follows again.
+ * N is 1 .. GLINT_MAX_COATINGS. Cemented surfaces get no coating. */
 void glint_prescription_coat(struct glint_prescription *lens,
                              const struct glint_coating *coatings, int n);
 
@@ -278,8 +280,9 @@ enum glint_status
 glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
                      const char *text, struct glint_error *error);
 
-/* Sets COATING to the Kth (from 0) of the coatings that have a name, at its
- * usual design wavelength. Returns the name, or NULL if there are no more. */
+/* Sets COATING to coating K, from 0, of the coatings that have a name, at its
+ * usual design wavelength. Returns the name, or NULL if there is no coating
+ * K. */
 const char *glint_coating_named(int k, struct glint_coating *coating);
 
 /* First-order quantities at the d line (587.56 nm). */
@@ -294,8 +297,8 @@ struct glint_optics {
     double stop_radius_mm;     /* radius of the aperture stop at the f-number */
     double length_mm; /* distance from the front vertex to the sensor, even if
                          the stop lies before the vertex */
-    /* Squeeze of an anamorphic lens: focal length in the y-z plane (focal_mm) /
-     * focal length in the x-z plane. 1 for round lenses. */
+    /* Squeeze of an anamorphic lens: (focal length in the y-z plane, which is
+     * focal_mm) / (focal length in the x-z plane); 1 for round lenses. */
     double squeeze;
     /* Image scale: (distance of a light's image from the centre of the sensor)
      * / (tangent of the light's angle). It equals the focal length if the lens

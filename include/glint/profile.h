@@ -8,9 +8,9 @@
  *     glint_profile_measure(profile, &image, spots, n);
  *
  * Reads the pixels around each spot once. If channels are clipped, the power is
- * estimated from the size of the clipped core and the fall-off of light around
- * it, and the colour from the fringe where no channel is clipped. Otherwise the
- * power is the flux minus the background.
+ * estimated from the size of the clipped core and from the fall-off of light
+ * around it. The colour is then that of the fringe where no channel is clipped.
+ * Otherwise the power is the flux minus the background.
  *
  * All arithmetic is in integers. No state is preserved from picture to picture.
  * All results are continuous functions of the pixels. At most about 10000

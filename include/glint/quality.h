@@ -23,15 +23,16 @@ extern const char
 double glint_quality_named(int name);
 
 /* Returns the level of QUALITY, a real number from 0 to GLINT_QUALITY_LEVELS -
- * 1. Between a level that draws at half resolution and one that does not, it is
- * rounded to one of the two. */
+ * 1. If QUALITY lies between a level at half resolution and a level at full
+ * resolution, the result is one of these two levels. */
 double glint_quality_place(double quality);
 
-/* Parameters that a quality selects: those of a frame, and two others. */
+/* All parameters that a quality selects: the parameters of a frame (dials), and
+ * two others. */
 struct glint_quality {
     struct glint_dials dials;
-    /* Mean step, in percent, to which irradiance is rounded; determines
-     * irradiance_steps. */
+    /* Mean step to which irradiance is rounded, percent. irradiance_steps of
+     * DIALS follows from it. */
     double quantum;
     /* Tolerance with which the model is baked, as in struct
      * glint_bake_options. */
@@ -41,8 +42,8 @@ struct glint_quality {
 /* Returns the parameters that QUALITY, 0 to 1, selects; 0.5 is the default. */
 struct glint_quality glint_quality_at(double quality);
 
-/* Returns the lowest quality at which outlines are off by at most PX pixels on
- * average. */
+/* Returns the lowest quality at which the mean error of outlines is at most PX
+ * pixels. */
 double glint_quality_for_error(double px);
 
 /* Returns the irradiance_steps whose mean step is QUANTUM percent. */

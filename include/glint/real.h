@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/real.h - floating-point numbers as two integers, for powers, fluxes and
- * lengths in code without floating point, as their ranges are too wide for
- * fixed point. */
+ * glint/real.h - floating-point numbers as two integers, for code without
+ * floating point. Powers, fluxes and lengths use them, because their ranges are
+ * too wide for fixed point. */
 #ifndef GLINT_REAL_H
 #define GLINT_REAL_H
 

@@ -21,21 +21,21 @@ extern "C" {
 #define GLINT_SET_WAVES 65
 
 /* Chooses N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that represent the
- * spectrum of 400 .. 700 nm. WAVELENGTH_NM is in rising order. The sum over i
- * of RGB[i] times the light at wavelength i approximates the linear BT.709
- * colour that the CIE 1931 observer [Wyman13] sees of the whole spectrum; it is
- * exact if the spectrum is a polynomial of a degree below both 4 and N. Each
- * channel of RGB sums to 1, so that a flat spectrum is white; colours of single
- * wavelengths lie outside BT.709, so some channels are negative. SHARE[i] is
- * the weight of wavelength i in the mean of all wavelengths; SHARE sums to 1.
- * Outlines of ghosts move in proportion to 1 / wavelength^2; the chosen
- * wavelengths minimise the steps between outlines, in the mean of squares over
- * the channels. */
+ * spectrum of 400 .. 700 nm, and sets WAVELENGTH_NM to them in rising order.
+ * The sum over i of RGB[i] times the light at wavelength i approximates the
+ * linear BT.709 colour that the CIE 1931 observer [Wyman13] sees of the whole
+ * spectrum. It is exact if the spectrum is a polynomial of a degree below both
+ * 4 and N. Each channel of RGB sums to 1, so that a flat spectrum is white.
+ * Some channels are negative, because colours of single wavelengths lie outside
+ * BT.709. SHARE[i] is the weight of wavelength i in the mean of all
+ * wavelengths; SHARE sums to 1. Outlines of ghosts move in proportion to 1 /
+ * wavelength^2. The chosen wavelengths minimise the mean square, over the
+ * channels, of the steps between outlines. */
 void glint_spectrum(int n, double *wavelength_nm, double (*rgb)[3],
                     double *share);
 
-/* Wavelengths of a setup: AUTO: each ghost has as many as it needs; COUNT: the
- * N of glint_spectrum(); or a LIST. */
+/* How the wavelengths of a setup are chosen. AUTO: each ghost has as many as it
+ * needs. COUNT: glint_spectrum() chooses N. LIST: the caller lists them. */
 enum glint_waves_kind { GLINT_WAVES_AUTO, GLINT_WAVES_COUNT, GLINT_WAVES_LIST };
 struct glint_waves {
     enum glint_waves_kind kind;
@@ -58,11 +58,12 @@ struct glint_iris {
     /* Curvature of the edges of the blades between the corners, 1 / stop radii:
      * 0 (straight) .. 1 (a circle). */
     double roundness;
-    /* Width of the soft edge, stop radii inwards from the outline, 0 .. 1:
-     * across it the transmission rises from 0 to 1. */
+    /* Width of the soft edge, stop radii, 0 .. 1. The transmission rises from 0
+     * at the outline to 1 at this distance inside it. */
     double softness;
     /* Fraction of the stop's circle that specks of dust cover, 0 .. 0.5;
-     * scratches and smudges are added. dust_seed selects their positions. */
+     * scratches and smudges are added to them. dust_seed selects all
+     * positions. */
     double dust;
     int dust_seed;
     /* [mask_height][mask_width]: transmission over a square of +-1 stop radius,
@@ -106,9 +107,9 @@ struct glint_setup {
     double direct_flux[GLINT_MAX_WAVELENGTHS]; /* flux of the direct image
                                                   through the stop at angle 0
                                                   for irradiance 1, mm^2 */
-    /* Flux, mm^2, that counts as light 1: the mean of direct_flux over the
-     * wavelengths or, after glint_setup_balance(), each wavelength's own
-     * direct_flux. */
+    /* Flux that counts as light 1, mm^2: the mean of direct_flux over the
+     * wavelengths. After glint_setup_balance() it is direct_flux of each
+     * wavelength. */
     double unit_flux[GLINT_MAX_WAVELENGTHS];
     /* Set by glint_setup_spread(): sets of wavelengths, one after the other,
      * the smallest set first. Each ghost uses one set. */
@@ -136,21 +137,21 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
                                          const double *wavelength_nm, int n,
                                          struct glint_error *error);
 
-/* Sets the f-number of SETUP, which must be made from LENS and not changed
- * since. Returns GLINT_E_ARGUMENT if F_NUMBER is below the f-number of the
- * model, or above 1024 times it. */
+/* Sets the f-number of SETUP. SETUP must have been made from LENS, and must not
+ * have been changed since. Returns GLINT_E_ARGUMENT if F_NUMBER is below the
+ * f-number of the model, or above 1024 times it. */
 enum glint_status glint_setup_stop_down(struct glint_setup *setup,
                                         const struct glint_lens *lens,
                                         double f_number,
                                         struct glint_error *error);
 
-/* Sets the iris of SETUP, which must be initialised, to IRIS and computes its
- * fluxes again. Afterwards glint_setup_weigh(), glint_setup_spread() and
- * glint_setup_balance() must be called again, where they are used. Light is
- * relative to the light that the stop transmits; a stop that is all black
- * counts as clear. *DIRT receives the dust and mask that SETUP refers to, or
- * NULL. Returns GLINT_E_ARGUMENT and sets ERROR if a member is out of range.
- * May return GLINT_E_MEMORY. */
+/* Sets the iris of SETUP, which must be initialised, to IRIS and computes the
+ * fluxes of SETUP again. Programs that use glint_setup_weigh(),
+ * glint_setup_spread() or glint_setup_balance() must call these again. Light is
+ * relative to the light that the stop transmits; an opaque stop counts as
+ * clear. *DIRT receives the dust and mask that SETUP refers to, or NULL.
+ * Returns GLINT_E_ARGUMENT and sets ERROR if a member is out of range. May
+ * return GLINT_E_MEMORY. */
 enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    const struct glint_iris *iris,
                                    struct glint_dirt **dirt,
@@ -168,7 +169,8 @@ double glint_dirt_light(const struct glint_dirt *dirt, double x, double y);
  * clean. */
 struct glint_front {
     /* Fraction of the front element that specks of dust cover, 0 .. 0.5;
-     * scratches and smudges are added. dust_seed selects their positions. */
+     * scratches and smudges are added to them. dust_seed selects all
+     * positions. */
     double dust;
     int dust_seed;
     /* [mask_height][mask_width]: transmission of the square around the front
@@ -191,8 +193,9 @@ enum glint_status glint_front_make(struct glint_front_dirt **dirt,
  * before. */
 void glint_front_free(struct glint_front_dirt *dirt);
 
-/* Sets the colour of each wavelength of SETUP to that of glint_spectrum(),
- * which must also have chosen the wavelengths. */
+/* Sets the colour of each wavelength of SETUP to the colour that
+ * glint_spectrum() returns. glint_spectrum() must also have chosen the
+ * wavelengths. */
 void glint_setup_weigh(struct glint_setup *setup);
 
 /* Adds to SETUP, made from LENS, the sets of wavelengths from which each ghost
@@ -201,9 +204,9 @@ void glint_setup_weigh(struct glint_setup *setup);
 void glint_setup_spread(struct glint_setup *setup,
                         const struct glint_lens *lens);
 
-/* Normalises each wavelength by its own direct image, like a camera that is
- * white-balanced behind this lens. Otherwise the ghosts have the tint of the
- * lens, like the rest of the picture. */
+/* Normalises each wavelength by the flux of its own direct image, as a camera
+ * does that is white-balanced behind this lens. Otherwise the ghosts have the
+ * tint of the lens, like the rest of the picture. */
 void glint_setup_balance(struct glint_setup *setup);
 
 /* Sets STOP to the stop of SETUP, for struct glint_flare_config. */

@@ -33,8 +33,8 @@ struct glint_error {
     char text[256];
 };
 
-/* Progress report: receives the fraction of the work that is done, 0 .. 1, from
- * the calling thread or worker 0, never from both at once. */
+/* Callback for progress. DONE is the fraction of the work that is done, 0 .. 1.
+ * Called by the calling thread or worker 0, never by both at once. */
 typedef void glint_progress_fn(void *ctx, double done);
 
 /* Returns a description of STATUS in a few words, never NULL. */

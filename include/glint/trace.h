@@ -27,7 +27,8 @@ extern "C" {
 
 enum glint_event_kind { GLINT_REFRACT, GLINT_REFLECT, GLINT_STOP };
 
-/* An event: a ray meets a surface or the stop. Holds precomputed constants. */
+/* An event: a ray meets a surface or the stop. Its members are precomputed
+ * constants of the path. */
 struct glint_event {
     enum glint_event_kind kind;
     int surface;       /* index of the surface; -1 for the stop */
@@ -51,20 +52,21 @@ struct glint_film_at {
 };
 
 /* The path of one ghost at one wavelength: forward to surface J, back to I,
- * forward to the sensor. Immutable once made, so any number of threads may
- * trace it. */
+ * forward to the sensor. It never changes after initialisation, so any number
+ * of threads may trace it. */
 struct glint_path {
     int n_events;
     struct glint_event event[GLINT_MAX_EVENTS + 1];
     /* Layers of the coating of each surface, at the wavelength of the path. */
     struct glint_film_at film[GLINT_MAX_SURFACES][GLINT_MAX_FILMS];
-    /* Defined only for surfaces that are not centred spheres. */
+    /* Forms of the surfaces; defined only for surfaces that are not centred
+     * spheres. */
     struct glint_form form[GLINT_MAX_SURFACES];
     bool round; /* true: the lens is symmetric about its axis, so rays of a
                    light in the x-z plane are symmetric in y */
-    /* Matrix from sensor to picture coordinates, in the frame of the light: the
-     * picture of an anamorphic lens is widened when projected. Used unless
-     * ROUND. */
+    /* Matrix from sensor to picture coordinates, in the frame of the light. The
+     * picture of an anamorphic lens is widened when it is projected. Used only
+     * if ROUND is false. */
     double widen[2][2];
     double to_sensor_mm; /* z from the last vertex to the sensor */
     /* true: energies are not computed but set to 1, which saves a third of the
@@ -88,7 +90,7 @@ void glint_path_init_at(struct glint_path *path,
 
 enum glint_ray_status {
     GLINT_RAY_OK = 0,
-    /* The ray misses a surface, hits only the far half of a surface's sphere,
+    /* The ray misses a surface, hits a surface's sphere only on its far half,
      * or cannot continue. */
     GLINT_RAY_MISSED = 1,
     GLINT_RAY_TOTAL_REFLECTION =
@@ -108,12 +110,11 @@ struct glint_ray {
 };
 
 /* Traces the ray that starts at (PX, PY) on the vertex plane of the first
- * surface along DIRECTION, of unit length. The ray continues where a barrel or
- * the stop would have blocked it. RAY is written only if GLINT_RAY_OK is
- * returned. HITS, unless NULL, receives x and y of each event, [n_events][2],
- * in mm; at a surface that is not a centred sphere, in the frame of the
- * surface. The energy is computed for unpolarised light. [Hullin11] section
- * 4 */
+ * surface and runs along DIRECTION, of unit length. Barrels and the stop do not
+ * block the ray. RAY is written only if GLINT_RAY_OK is returned. HITS, unless
+ * NULL, receives x and y of each event in mm, [n_events][2]; at a surface that
+ * is not a centred sphere they are in the frame of the surface. The energy is
+ * computed for unpolarised light. [Hullin11] section 4 */
 enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,
                                   double py_mm, const double direction[3],
                                   struct glint_ray *ray, double (*hits)[2]);
@@ -148,10 +149,10 @@ double glint_index(double nd, double vd, double wavelength_nm);
 
 /* Returns the reflectance of a boundary for unpolarised light with the cosine
  * of incidence COS_FROM; 1 at total reflection. Light that is not reflected is
- * transmitted. The boundary is bare if N_FILMS is 0, else coated with
- * FILM[N_FILMS], at most GLINT_MAX_FILMS, the film next to the medium of lower
- * index (air) first. The order is the same for both directions of light, as
- * films do not absorb. */
+ * transmitted. The boundary is bare if N_FILMS is 0. Otherwise it is coated
+ * with FILM[N_FILMS], at most GLINT_MAX_FILMS films; the film next to the
+ * medium of lower index (air) is first. The order is the same for both
+ * directions of light, because films do not absorb. */
 double glint_reflectance(double n_from, double n_to, double cos_from,
                          const struct glint_film_at *film, int n_films);
 
@@ -167,8 +168,8 @@ int glint_coating_at(const struct glint_coating *coating, double wavelength_nm,
 
 /* A rectangle of the vertex plane of the first surface that contains all rays
  * of a path that pass the stop and the barrels. The light is in the x-z plane.
- * For a round lens the rectangle is symmetric in y: y0 is 0, and MIRRORED
- * states that the rectangle also covers the mirror image below. */
+ * For a round lens the rays are symmetric in y: y0 is then 0, and MIRRORED
+ * states that the mirror image of the rectangle belongs to it. */
 struct glint_pupil {
     double x0_mm, x1_mm, y0_mm, y1_mm;
     bool mirrored;
@@ -184,8 +185,8 @@ static inline double glint_pupil_height(const struct glint_pupil *p)
 }
 
 /* Finds the pupil of PATH for light at THETA_DEG. Returns false if no light
- * passes. NEAR is NULL, or the pupil at another wavelength; then only NEAR
- * and its surroundings are searched, at a third of the cost. */
+ * passes. NEAR is NULL, or the pupil at another wavelength. Only NEAR and its
+ * surroundings are then searched, at a third of the cost. */
 bool glint_pupil_find(struct glint_pupil *pupil, const struct glint_path *path,
                       double theta_deg, double stop_radius_mm,
                       const struct glint_pupil *near);
@@ -204,8 +205,8 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const double direction[3], double stop_radius_mm,
                               double field_mm, const struct glint_pupil *near);
 
-/* Extends PUPIL, which was found for a wavelength and a direction near by, by
- * the pupil of PATH for light along DIRECTION, at a tenth of the cost of
+/* Extends PUPIL by the pupil of PATH for light along DIRECTION. PUPIL must be
+ * the pupil for a similar wavelength and direction. This costs a tenth of
  * glint_pupil_find(). Returns false if no light passes. */
 bool glint_pupil_extend(struct glint_pupil *pupil,
                         const struct glint_path *path,

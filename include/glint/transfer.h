@@ -22,9 +22,9 @@
 extern "C" {
 #endif
 
-/* A window of a box, _q30: u from u_middle - u_half to u_middle + u_half,
- * within -1 .. 1; |v| from v_from to v_to, where 0 is the middle of the box
- * (the inner rim, if the box is annular) and 1 is its end. */
+/* A window of a box, _q30. u runs from u_middle - u_half to u_middle + u_half,
+ * within -1 .. 1. |v| runs from v_from to v_to, where 0 is the middle of the
+ * box (the inner rim, if the box is annular) and 1 is its end. */
 struct glint_box_window {
     int32_t u_middle_q30, u_half_q30, v_from_q30, v_to_q30;
 };
@@ -36,20 +36,21 @@ struct glint_transfer {
                          kind */
     /* Exponents: value of an output = integer * 2^exponent. */
     int32_t exponent[GLINT_OUT_KINDS];
-    /* head and roots of the struct glint_model_output of the energy */
+    /* head and roots of the energy's struct glint_model_output */
     uint8_t head, roots;
-    /* Log2 of the factor on the energy of a vertex, 0 .. 29;
-     * glint_transfer_init() sets it to 0, the caller may raise it. */
+    /* Log2 of a factor on the energy of vertices, 0 .. 29.
+     * glint_transfer_init() sets it to 0; the caller may raise it. */
     uint8_t energy_up;
     /* Middle, half width and half height of the box at this angle and
      * wavelength, and (lens basis) its middle along y. */
     int32_t box[4];
     int32_t box_exponent;
     uint8_t annulus;
-    /* WHOLE is 1 in the lens basis: v runs over all of the box. The light is
-     * mirrored into the quadrant that the model covers, and its outputs are
-     * mirrored back: x and y are multiplied by SIGN, and y is negated again if
-     * SIDE is 1. In other bases WHOLE and SIDE are 0, and SIGN is 1. */
+    /* WHOLE is 1 in the lens basis: v then runs over the whole box, not only
+     * over one half. The light is mirrored into the quadrant that the model
+     * covers, and the outputs are mirrored back: x and y are multiplied by
+     * SIGN, and y is negated again if SIDE is 1. In other bases WHOLE and SIDE
+     * are 0, and SIGN is 1. */
     uint8_t whole, side;
     int8_t sign;
     /* Window of the box that rows and grids of rays cover.
@@ -62,8 +63,8 @@ struct glint_transfer {
     /* Instruction sets for rows, GLINT_SET_ bits; 0 after init, the caller may
      * set it. The result is the same for all sets. */
     unsigned sets;
-    /* Scratch: polynomials in u of one row of rays, and u of each ray of a
-     * row. */
+    /* Scratch: the polynomials in u of one row of rays, and the value of u of
+     * each ray in a row. */
     int32_t of_u[GLINT_OUT_KINDS][GLINT_TABLE_WIDTH];
     int32_t n_nodes, node_q30[GLINT_MAX_CELLS + GLINT_RAYS];
 };
@@ -80,8 +81,8 @@ struct glint_azimuth {
     int32_t cos_q30, sin_q30;
 };
 
-/* Does the same for a light at AZIMUTH, which matters only for lenses that are
- * not round; glint_transfer_init() uses the azimuth 0. */
+/* Like glint_transfer_init(), for a light at AZIMUTH. The azimuth matters only
+ * for lenses that are not round; glint_transfer_init() uses the azimuth 0. */
 int glint_transfer_init_at(struct glint_transfer *transfer,
                            const struct glint_lens *lens, int ghost,
                            int32_t sine_q30, struct glint_azimuth azimuth,
@@ -98,25 +99,27 @@ glint_box_whole(const struct glint_transfer *transfer)
     return whole;
 }
 
-/* Sets OUT to the outputs of the ray at (U, V), by kind: integers within
- * +-2^30, to be scaled by 2^exponent; 0 for kinds that the system lacks. */
+/* Sets OUT to the outputs of the ray at (U, V), one per kind. Outputs are
+ * integers within +-2^30; their values are integer * 2^exponent. Outputs of
+ * kinds that the system lacks are 0. */
 struct glint_outputs {
     int32_t at[GLINT_OUT_KINDS];
 };
 void glint_transfer_ray(const struct glint_transfer *transfer, int32_t u_q30,
                         int32_t v_q30, struct glint_outputs *out);
 
-/* Sets OUT to the outputs of the rays at (U[i], V), by kind; entries of kinds
- * that the system lacks are undefined. IS_NEW may be 0 if V equals V of the
- * last call. */
+/* Sets OUT to the outputs of the rays at (U[i], V), one per kind and ray.
+ * Outputs of kinds that the system lacks are undefined. IS_NEW may be 0 if V
+ * equals V of the previous call. */
 void glint_transfer_rays(struct glint_transfer *transfer, int32_t v_q30,
                          const int32_t u_q30[GLINT_RAYS], int is_new,
                          int32_t out[GLINT_OUT_KINDS][GLINT_RAYS]);
 
 /* How outputs in mm of the sensor map to pixels of the picture. */
 struct glint_place {
-    /* Cosine and sine of the angle by which outputs are rotated: of the azimuth
-     * of the light; in the lens basis SIGN of struct glint_transfer and 0. */
+    /* Cosine and sine of the angle by which outputs are rotated, which is the
+     * azimuth of the light. In the lens basis they are SIGN of struct
+     * glint_transfer and 0. */
     int32_t cos_q30, sin_q30;
     struct glint_real pixels_per_mm;
     int32_t middle_x_q8, middle_y_q8; /* position of the centre of the sensor,
@@ -126,19 +129,20 @@ struct glint_place {
     struct glint_real stop_scale;
 };
 
-/* Return u where X_Q30 = -1 .. 1 runs over the width of the window; and v after
- * J of N equal steps from the lower to the upper end of the upper half of the
- * window, or of the whole window if WHOLE is 1. */
+/* Return coordinates within the window of TRANSFER. glint_transfer_u() returns
+ * u at X_Q30, where -1 .. 1 is the width of the window. glint_transfer_v()
+ * returns v after J of N equal steps from the lower to the upper end of the
+ * upper half of the window, or of the whole window if WHOLE is 1. */
 int32_t glint_transfer_u(const struct glint_transfer *transfer, int32_t x_q30);
 int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 
 /* Sets VERTICES to a grid of N_CELLS cells per side over the window, row by
- * row, [n_cells + 1][n_cells + 1], by rising v and in each row by rising u. The
- * energy 65536 of a vertex stands for 2^(exponent[GLINT_OUT_ENERGY] + 29 -
- * energy_up); larger energies are clamped. A ray with a value that does not fit
- * a vertex becomes invalid. For an annular box N_CELLS must be even and at
- * least 4: the rays of the middle row are invalid, the rows next to it lie on
- * the rim, and the box is covered by n_cells - 2 rows of cells. */
+ * row, [n_cells + 1][n_cells + 1]. v rises from row to row, u rises within a
+ * row. The energy 65536 of a vertex stands for 2^(exponent[GLINT_OUT_ENERGY] +
+ * 29 - energy_up); larger energies are clamped. A ray with a value that does
+ * not fit a vertex becomes invalid. For an annular box N_CELLS must be even and
+ * at least 4. The rays of the middle row are then invalid, the rows next to it
+ * lie on the inner rim, and n_cells - 2 rows of cells cover the box. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);
@@ -148,8 +152,9 @@ void glint_transfer_row(struct glint_transfer *transfer,
                         const struct glint_place *place, int n_cells, int j,
                         struct glint_vertex *row);
 
-/* Sets ROW to row J of that grid and MIRRORED to row N_CELLS - J, its mirror
- * image, for little more time than ROW alone. */
+/* Sets ROW to row J of the grid of glint_transfer_grid(), and MIRRORED to row
+ * N_CELLS - J, the mirror image of row J. This costs little more than ROW
+ * alone. */
 void glint_transfer_rows(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells, int j,
                          struct glint_vertex *row,

@@ -15,20 +15,21 @@ extern "C" {
 struct glint_lamp {
     double theta_deg; /* angle off the axis, 0 .. 89.9 */
     double phi_deg;   /* angle about the axis: 0 = +x, 90 = up */
-    /* Value that the pixels of the lamp's in-focus image would have if the
-     * image covered one pixel, linear; 1 = display white. */
+    /* Brightness of the lamp: the value that the pixels of its in-focus image
+     * would have if the image covered one pixel, linear; 1 = display white. */
     double power;
     double rgb[3]; /* colour, linear BT.709; white is 1 1 1 */
-    /* RMS semi-axes of its extent, the major one first, in tangents of angles
-     * off the axis (image / focal length); 0 0: a point. Only functions that
-     * divide a lamp into points use it; in exact pictures and traced bundles
-     * the lamp is one point. */
+    /* RMS semi-axes of the lamp's extent, the major axis first, as tangents of
+     * angles off the axis (image / focal length); 0 0: a point. Only functions
+     * that divide a lamp into points use them. In exact pictures and traced
+     * bundles the lamp is one point. */
     double axis[2];
     double turn_deg; /* direction of the major axis, 0 = +x, 90 = up */
 };
 
-/* The projection of a lens: the angle off the axis of the light that is imaged
- * at a distance from the axis. With rho = distance / focal length, the angle is
+/* The projection of a lens. It states for each distance of an image from the
+ * axis at which angle the light arrives. With rho = distance / focal length,
+ * the angle off the axis is
  *
  *     theta = atan(rho) (1 + b[0] r^2 + b[1] r^4 + .. ),  r = min(rho, reach)
  *
@@ -59,7 +60,7 @@ double glint_projection_rho(const struct glint_projection *projection,
                             double theta_deg);
 
 /* Returns the largest view of WIDTH x HEIGHT pixels that fits into an image
- * area (film) of this size. */
+ * area (film) of FILM_WIDTH_MM x FILM_HEIGHT_MM. */
 struct glint_view glint_view_fit(int width, int height, double film_width_mm,
                                  double film_height_mm);
 

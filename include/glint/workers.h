@@ -24,7 +24,7 @@ struct glint_workers {
     int n; /* threads that may run jobs at once, 1 .. GLINT_MAX_WORKERS */
 
     /* Calls FN once for each job 0 .. n_jobs - 1, in any order, and returns
-     * when all jobs are done. Never called from inside a job. */
+     * when all jobs are done. Jobs must not call RUN. */
     void (*run)(struct glint_workers *workers, int n_jobs, glint_job_fn *fn,
                 void *ctx);
 };

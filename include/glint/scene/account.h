@@ -6,8 +6,9 @@
  *     glint_scene_begin(scene, &stats);
  *     glint_scene_account(scene, objects, &all, seen);
  *
- * Computes visibility and surfaces again, at about half the cost of a frame;
- * nothing is drawn. Only programs that call these functions link them. */
+ * The functions compute visibility and surfaces of the frame again, at about
+ * half the cost of a frame, and draw nothing. Only programs that call them link
+ * them. */
 #ifndef GLINT_SCENE_ACCOUNT_H
 #define GLINT_SCENE_ACCOUNT_H
 
@@ -31,18 +32,21 @@ enum glint_scene_fate {
 
 /* Items of work in a frame that are counted for each object. */
 enum glint_scene_item {
-    GLINT_SCENE_TRIANGLES, /* entries of the object's triangles in the lists of
-                              tiles */
-    GLINT_SCENE_SAMPLED,   /* samples of pixels that see the object */
-    GLINT_SCENE_COVERING,  /* pixels that see the object */
-    GLINT_SCENE_SHADED,    /* points of the object that are shaded */
-    GLINT_SCENE_SHADOWS,   /* sample points of lights to which shadow rays are
-                              traced */
-    GLINT_SCENE_TEXELS,    /* texels read for the object's textures and light
-                              maps */
-    GLINT_SCENE_LOOKUPS,   /* lookups in an environment, for brushed metal */
-    GLINT_SCENE_BOUNCED,   /* reflected and transmitted rays that start on the
-                              object */
+    /* Number of entries for the object's triangles in the lists of all
+     * tiles. */
+    GLINT_SCENE_TRIANGLES,
+    /* Number of samples of pixels in which the object is visible. */
+    GLINT_SCENE_SAMPLED,
+    /* Number of pixels in which the object is visible. */
+    GLINT_SCENE_COVERING,
+    GLINT_SCENE_SHADED,  /* points of the object that are shaded */
+    GLINT_SCENE_SHADOWS, /* sample points of lights to which shadow rays are
+                            traced */
+    GLINT_SCENE_TEXELS,  /* texels read for the object's textures and light
+                            maps */
+    GLINT_SCENE_LOOKUPS, /* lookups in an environment, for brushed metal */
+    GLINT_SCENE_BOUNCED, /* reflected and transmitted rays that start on the
+                            object */
     GLINT_SCENE_ITEMS
 };
 
@@ -63,17 +67,18 @@ void glint_scene_account(struct glint_scene *scene,
                          struct glint_scene_part *objects,
                          struct glint_scene_part *all, int16_t *seen);
 
-/* Returns the approximate number of tests that reflected, transmitted and
- * shadow rays need in the frame that was begun last; each test is with an
- * object, a cell of a mesh's grid or a triangle. They are counted in about 2000
- * pixels, and scaled to all pixels. The light of one source at a point counts
- * as 4 tests, a pixel of the box around a ball as 3. Ends early if there are
- * more than MOST tests, and returns a number above MOST. The result does not
- * depend on the processor or the number of threads. */
+/* Returns the approximate number of ray tests in the frame that was begun last.
+ * Reflected, transmitted and shadow rays are tested against objects, cells of a
+ * mesh's grid and triangles. The tests of about 2000 pixels are counted and
+ * scaled to all pixels. The light of one source at a point counts as 4 tests, a
+ * pixel of the box around a ball as 3. Ends early if there are more than MOST
+ * tests, and returns a number above MOST. The result does not depend on the
+ * processor or the number of threads. */
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most);
 
-/* Overlays of a recorded motion of one kind: number of shells, lines or box
- * edges in the picture, and number of pixels that they may cover. */
+/* Statistics of one kind of overlays of a recorded motion: number of shells,
+ * lines or box edges in the picture, and number of pixels that they may
+ * cover. */
 struct glint_scene_layered {
     int n;
     int64_t pixels;

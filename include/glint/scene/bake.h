@@ -7,9 +7,9 @@
  *     glint_scene_bake(&scene, "shop", key, &data, &bytes, &report, &error);
  *     glint_scene_open(&model, data, bytes, &reason);
  *
- * Positions become integers: a unit of the scene is 2^unit_log2 steps, chosen
- * so that all objects lie within a quarter of GLINT_SCENE_SPAN (a 64th, if
- * there is a plane); the rest of the range is for changes of poses and for
+ * Positions become integers, in steps; a unit of the scene is 2^unit_log2
+ * steps. All objects then lie within a quarter of GLINT_SCENE_SPAN (a 64th, if
+ * there is a plane). The rest of the range is for changes of poses and for
  * planes. The same description gives the same bytes. */
 #ifndef GLINT_SCENE_BAKE_H
 #define GLINT_SCENE_BAKE_H

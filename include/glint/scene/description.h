@@ -12,9 +12,9 @@
  *   out  camera, lights, materials, objects and triangles, all checked
  *
  * Positions are in scene units, colours are linear light with 1 = display
- * white, angles are in degrees if names end in _deg. Each object is defined
- * around its own origin, then rotated and moved by its pose, which may change
- * between frames. */
+ * white, angles are in degrees if names end in _deg. Each object has its own
+ * axes and origin; its pose rotates and moves it, and may change between
+ * frames. */
 #ifndef GLINT_SCENE_DESCRIPTION_H
 #define GLINT_SCENE_DESCRIPTION_H
 
@@ -54,10 +54,13 @@ enum {
 #define GLINT_DESCRIPTION_LEAST 1e-6
 
 enum glint_described_field {
-    GLINT_DESCRIBED_FIELD,   /* horizontal field of view fov_deg */
-    GLINT_DESCRIBED_CORNERS, /* 16 x 9 units across at a distance of 10; samples
-                                at the corners of pixels */
-    GLINT_DESCRIBED_LENS /* the field of view of the flare lens on its sensor */
+    /* A pinhole camera with the horizontal field of view fov_deg. */
+    GLINT_DESCRIBED_FIELD,
+    /* The picture shows 16 x 9 units at a distance of 10; the centres of its
+     * corner pixels are at the corners of this area. */
+    GLINT_DESCRIBED_CORNERS,
+    /* The field of view of the lens that causes the flares, on its sensor. */
+    GLINT_DESCRIBED_LENS
 };
 
 struct glint_described_camera {
@@ -71,12 +74,13 @@ struct glint_described_camera {
 enum glint_described_source { GLINT_DESCRIBED_SUN, GLINT_DESCRIBED_LAMP };
 
 struct glint_described_light {
-    /* generated: sun, lamp, lamp2, ..., environment, environment2, ... */
+    /* Name that the parser generates: sun, lamp, lamp2, ..., environment,
+     * environment2, ... */
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     enum glint_described_source kind;
     double at[3]; /* lamp: position; sun: unit vector towards it */
-    /* Sun: radiance of its disc. Lamp: value of a white surface that faces it
-     * at distance 1: irradiance / pi. */
+    /* Sun: radiance of its disc. Lamp: irradiance / pi at distance 1, which is
+     * the value of a white surface that faces the lamp. */
     double colour[3];
     double radius;     /* lamp: radius, scene units; 0: a point */
     double radius_deg; /* sun: half of its angular diameter */
@@ -84,7 +88,8 @@ struct glint_described_light {
 
 struct glint_described_texture {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
-    /* GLINT_RGB24, sRGB, sides powers of two; plane[0] is malloc'ed. */
+    /* Picture of the texture: GLINT_RGB24, sRGB, sides are powers of two;
+     * plane[0] is malloc'ed. */
     struct glint_image image;
 };
 
@@ -97,18 +102,22 @@ struct glint_described_material {
     double power;                      /* exponent of the specular term */
     double colour[3];
     int texture; /* index of the texture; -1: none */
-    /* Fractions of the light of a mirrored ray and of a transmitted ray, added
-     * to the other terms; their sum is at most 1. */
+    /* Fraction of the light of the mirrored ray (reflect), and of the light of
+     * the transmitted ray (pass). Both are added to the other terms; their sum
+     * is at most 1. */
     double reflect, pass;
     double index; /* index of refraction; 1: rays are not refracted */
-    /* Brushed metal: diffuse is 1, the other weights are 0. */
+    /* true: the material is brushed metal; diffuse is 1, the other weights are
+     * 0 */
     bool is_metal;
     double metal[3]; /* specular colour */
-    /* Roughness of brushed metal: along circles around the y axis of spheres
-     * and meshes, or along the x axis of planes; and perpendicular to that. */
+    /* Roughness of brushed metal in two directions. The first direction is
+     * along circles around the y axis of spheres and meshes, or along the x
+     * axis of planes. The second is perpendicular to it. */
     double alpha[2];
     enum glint_described_norm norm;
-    /* Translucent: all weights are 0; brushed metal, if any, is the coat. */
+    /* true: the material is translucent; all weights are 0. If is_metal is set,
+     * too, the brushed metal is a coat on the surface. */
     bool is_stone;
     int stone;    /* index of the translucent medium, if is_stone */
     bool fresnel; /* true: light that enters and leaves is reduced by Fresnel
@@ -131,9 +140,9 @@ struct glint_described_environment {
     double scale;    /* factor on all light of the environment */
 };
 
-/* A recorded motion, and how it is shown: a body with sensors, and food items
- * that the sensors may see. Lengths are in units of the scene, which equal the
- * units of the recording; objects of length 0 are not shown. */
+/* A recorded motion, and how it is shown. A body with sensors moves among food
+ * items, which the sensors may see. Lengths are in units of the scene, which
+ * equal the units of the recording. Elements of length 0 are not shown. */
 struct glint_described_motion {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     uint8_t *data; /* a baked motion, malloc'ed; NULL: there is no motion */
@@ -145,7 +154,7 @@ struct glint_described_motion {
     double shells;         /* (radius of a shell) / (radius of the food item
                               that it surrounds) */
     double lines, box;     /* widths of lines and of the edges of the box */
-    /* true: sensors detect only food items whose intensity is above LEAST. */
+    /* true: a sensor sees only food items whose intensity is above LEAST */
     bool both;
     double least;           /* threshold of intensity, 0 .. 1 */
     int body, sensor, food; /* index of the first object of each kind; -1:
@@ -177,9 +186,9 @@ struct glint_described_object {
                          axes */
     double catcher;   /* plane: fraction by which a shadow darkens the picture
                          behind it; 0: not a shadow catcher */
-    int material;     /* index of the material; -1 for a catcher, which has
-                         none. For a mesh: material of triangles whose file
-                         names no other material */
+    /* Index of the material; -1 for a shadow catcher. A mesh uses this material
+     * for triangles whose file names no other material. */
+    int material;
     int first_triangle, n_triangles;
 };
 
@@ -202,9 +211,9 @@ enum glint_described_background {
 
 enum glint_described_flare {
     GLINT_DESCRIBED_FLARE_OFF,
-    GLINT_DESCRIBED_FLARE_LIGHTS, /* lights of the scene that the camera sees
-                                     cause flares */
-    /* These lights and highlights on objects cause flares. */
+    /* Lights of the scene cause flares where the camera sees them. */
+    GLINT_DESCRIBED_FLARE_LIGHTS,
+    /* Lights of the scene and highlights on objects cause flares. */
     GLINT_DESCRIBED_FLARE_HIGHLIGHTS
 };
 
@@ -214,8 +223,9 @@ struct glint_description {
     enum glint_described_background background;
     double background_colour[3];
     int n_environments; /* number of environments; the first is shown */
-    /* Number of environment lights at the end of LIGHT: the max number over all
-     * environments; the last of them may be dark. */
+    /* Max number of lights over all environments. The last entries of LIGHT are
+     * reserved for these lights; an environment with fewer lights leaves some
+     * entries dark. */
     int n_environment_lights;
     struct glint_described_environment
         environment[GLINT_DESCRIPTION_MAX_ENVIRONMENTS];

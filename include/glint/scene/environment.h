@@ -7,8 +7,8 @@
  *
  * Directions are those of scenes (glint/scene/model.h): x right, y up, z away.
  * They map to a square by the octahedron |x| + |y| + |z| = 1, unfolded around
- * +y: with p, q = -1 .. 1 across and down the square it is x = p, z = q, y = 1
- * - |p| - |q| where that is not negative; elsewhere (p, q) is ((1 - |z|) sign
+ * +y. Let p, q = -1 .. 1 run across and down the square. Where y = 1 - |p| -
+ * |q| is not negative, x is p and z is q. Elsewhere (p, q) is ((1 - |z|) sign
  * x, (1 - |x|) sign z). The middle of texel (i, j) of a side of n is at p = (2
  * i + 1) / n - 1, q = (2 j + 1) / n - 1.
  *
@@ -56,8 +56,9 @@ enum glint_environment_levels {
 };
 
 enum glint_environment_code {
-    /* uint32: mantissas of R (lowest bits), G and B of 9 bits each, and an
-     * exponent e of 5 bits; a mantissa m stands for m 2^(e - 12) units. */
+    /* A texel is a uint32 with the mantissas of R (lowest bits), G and B, of 9
+     * bits each, and an exponent e of 5 bits. A mantissa m stands for m 2^(e -
+     * 12) units. */
     GLINT_ENVIRONMENT_9E5 = 1
 };
 
@@ -73,7 +74,8 @@ struct glint_environment_level {
 struct glint_environment_light {
     int32_t toward_q30[3]; /* unit vector to its middle */
     int32_t radius_q30;    /* sine of its angular radius, 0 .. 2^29 */
-    /* R, G, B of a white surface that faces the light; each is 0 or more. */
+    /* Light of the disc: R, G, B of a white surface that faces it; each is 0 or
+     * more. */
     struct glint_real rgb[3];
 };
 
@@ -94,8 +96,8 @@ struct glint_environment_header {
     int32_t unit_log2;  /* log2 of the unit of light, -160 .. 100 */
     uint32_t n_levels, level_at; /* side_log2 + 1 entries of struct
                                     glint_environment_level */
-    /* Irradiance map: value of a white surface that the levels light, by the
-     * surface's normal, as 9e5 codes; the side is
+    /* Irradiance map: for each normal of a surface, the value of a white
+     * surface that the levels light. Texels are 9e5 codes; the side is
      * 2^GLINT_ENVIRONMENT_IRRADIANCE_LOG2. */
     uint32_t irradiance_at;
     uint32_t n_lights, light_at; /* array of struct glint_environment_light */

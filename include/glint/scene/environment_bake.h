@@ -32,31 +32,34 @@ struct glint_environment_options {
     int side_log2; /* log2 of the side of level 0, GLINT_ENVIRONMENT_LEAST_LOG2
                       .. MOST_LOG2 */
     enum glint_environment_levels levels;
-    int max_lights;   /* max number of lights, 0 .. GLINT_ENVIRONMENT_MAX_LIGHTS
-                       */
-    double light_deg; /* max RMS radius of a light, 0.1 .. 20; wider bright
-                         spots are not lights */
-    double light_above; /* lights are sought at falling thresholds, of which the
-                           lowest is this factor times the mean luminance of
-                           darker texels; 2 .. 1000 */
-    double turn_deg;    /* rotation of the environment about y to the right,
-                           degrees, -360 .. 360 */
-    double scale;       /* factor on all light, 1e-6 .. 1e6 */
+    int max_lights; /* max number of lights, 0 .. GLINT_ENVIRONMENT_MAX_LIGHTS
+                     */
+    /* Max RMS radius of a light, degrees, 0.1 .. 20. Wider bright spots are not
+     * lights. */
+    double light_deg;
+    /* Lowest luminance of lights, 2 .. 1000, as a factor on the mean luminance
+     * of darker texels. Lights are sought at falling thresholds, down to this
+     * one. */
+    double light_above;
+    double turn_deg; /* rotation of the environment about y to the right,
+                        degrees, -360 .. 360 */
+    double scale;    /* factor on all light, 1e-6 .. 1e6 */
 };
 
 /* Results of baking. Luminance is that of BT.709. */
 struct glint_environment_report {
     int width, height; /* size of the picture, pixels */
-    /* Number of pixels that were clamped: negative ones to 0, +inf to the
-     * largest finite value. */
+    /* Number of pixels with negative values, which were clamped to 0; number of
+     * pixels with +inf, which were clamped to the largest finite value. */
     long long negative, not_finite;
     double mean, largest; /* mean and max luminance over the sphere */
-    /* Max luminance of texels after the lights were removed. */
+    /* Max luminance of the texels that remained after the lights were
+     * removed. */
     double residual_largest;
     double light_share; /* fraction of all light that comes from the listed
                            lights */
-    /* Number of spots that were found to be lights; at most max_lights of them
-     * are listed. */
+    /* Number of lights that were found; at most max_lights of them are
+     * listed. */
     int spots;
 };
 

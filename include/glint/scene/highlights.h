@@ -9,13 +9,13 @@
  *     n = glint_lamp_tracker_step(tracks, spots, n, us, ...);    so that none
  *                                                                jumps
  *
- * The linear light of a pixel of an object before saturation counts completely
- * above a luminance of 2, partly above 1, so that highlights appear and vanish
- * gradually. Discs of lights (see glint_scene_lights()) and the background are
- * not highlights. Light and its moments are summed in squares of 8 x 8 pixels.
- * Adjacent squares with light form a highlight; highlights whose middles are
- * within 12 pixels are merged. No result depends on the number of workers, the
- * order of jobs or the tile size. */
+ * Pixels of objects are examined in linear light before saturation. Their light
+ * counts completely above a luminance of 2, partly above 1, so that highlights
+ * appear and vanish gradually. Discs of lights (see glint_scene_lights()) and
+ * the background are not highlights. Light and its moments are summed in
+ * squares of 8 x 8 pixels. Adjacent squares with light form a highlight;
+ * highlights whose middles are within 12 pixels are merged. No result depends
+ * on the number of workers, the order of jobs or the tile size. */
 #ifndef GLINT_SCENE_HIGHLIGHTS_H
 #define GLINT_SCENE_HIGHLIGHTS_H
 
@@ -33,16 +33,16 @@ enum {
 };
 
 struct glint_scene_highlight {
-    /* power equals the flux, at most 2^42 _q16; area is the area of the
-     * highlight's squares; size and axes follow from the moments of its light
-     * and are at least half a pixel. */
+    /* The highlight as a spot. power equals the flux, at most 2^42 _q16. area
+     * is the area of the highlight's squares of pixels. Size and axes follow
+     * from the moments of its light and are at least half a pixel. */
     struct glint_spot spot;
     int object; /* index of the object that the brightest pixel shows */
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights of the picture drawn
- * last, the brightest first, at most as many as the configuration allows;
- * returns their number. */
+ * last, sorted by decreasing brightness. The configuration limits their number.
+ * Returns the number of highlights. */
 int glint_scene_find_highlights(const struct glint_scene *scene,
                                 struct glint_scene_highlight *found);
 

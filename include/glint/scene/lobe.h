@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/lobe.h - data of the kernels for Ward's reflection lobe: the
- * lobe, and the environment's texels that it reads. Functions of
- * glint/scene/ward.h compute lobes; glint/scene/environment.h provides the
- * texels. */
+ * glint/scene/lobe.h - data that the kernels for Ward's reflection lobe read:
+ * the lobe, and the texels of an environment. Functions of glint/scene/ward.h
+ * compute lobes; glint/scene/environment.h provides the texels. */
 #ifndef GLINT_SCENE_LOBE_H
 #define GLINT_SCENE_LOBE_H
 
@@ -19,9 +18,11 @@ enum {
 };
 
 enum glint_ward_norm {
-    GLINT_WARD_BOUNDED, /* normalised so that it reflects no more light than it
-                           receives [Geisler10] */
-    GLINT_WARD_1992     /* normalised as published in [Ward92] */
+    /* Normalisation by which the lobe reflects no more light than it receives
+     * [Geisler10]. */
+    GLINT_WARD_BOUNDED,
+    /* Normalisation as published in [Ward92]. */
+    GLINT_WARD_1992
 };
 
 /* A mip level: a square with a side of 2^side_log2 texel codes, row by row. */
@@ -33,25 +34,27 @@ struct glint_texels_level {
 struct glint_texels {
     const uint32_t *code; /* texels of all levels, RGB9E5 */
     int32_t last;         /* index of the last (coarsest) level */
-    /* The last level is stored twice, so that there is a level after each. */
+    /* the mip levels; the last level is stored twice, so that each level has a
+     * successor */
     struct glint_texels_level level[GLINT_TEXELS_LEVELS + 1];
 };
 
 struct glint_ward_lobe;
 struct glint_ward_place;
 
-/* Sets SUM_Q12 to the sum over the samples of LOBE of the light that TEXELS (in
- * their unit) have at each sample, multiplied by the sample's weight, 0 .. 8.
- * The sum is below 2^48. */
+/* Sets SUM_Q12 to a weighted sum of light over the samples of LOBE. The light
+ * of a sample is looked up in TEXELS and is in their unit; its weight is 0 ..
+ * 8. The sum is below 2^48. */
 typedef void glint_ward_sum_fn(const struct glint_ward_lobe *lobe,
                                const struct glint_texels *texels,
                                const struct glint_ward_place *place,
                                uint64_t sum_q12[3]);
 
-/* A reflection lobe, as a set of sampled half vectors. Those from index N on
- * face away from the eye, so they add no light. Each sample reads mip level l
- * with 4^l = (variance of its blur) / (variance of level 0) = SPAN_Q14 *
- * 2^span_log2 * (cosine between half vector and direction to the eye). */
+/* A reflection lobe: a set of sampled half vectors. Half vectors from index N
+ * on face away from the eye and add no light. Each sample reads mip level l,
+ * with 4^l = (variance of the blur of level l) / (variance of level 0) =
+ * SPAN_Q14 * 2^span_log2 * (cosine between half vector and direction to the
+ * eye). */
 struct glint_ward_lobe {
     glint_ward_sum_fn *sum;
     int n; /* number of samples */
@@ -70,9 +73,9 @@ struct glint_ward_lobe {
 };
 
 /* A shaded point. Rows of FRAME are tangent, bitangent and normal in the axes
- * of the environment; OUT is the direction to the eye in that frame, with
- * OUT_Q14[2] at least 1. For GLINT_WARD_1992, 1 / sqrt(OUT[2]) = ROOT_Q14
- * 2^root_log2, with ROOT_Q14 in 1 .. 2. */
+ * of the environment. OUT is the direction to the eye in the axes tangent,
+ * bitangent and normal; OUT_Q14[2] is at least 1. For GLINT_WARD_1992, 1 /
+ * sqrt(OUT[2]) = ROOT_Q14 * 2^root_log2, with ROOT_Q14 in 1 .. 2. */
 struct glint_ward_place {
     int32_t frame_q14[3][3], out_q14[3];
     int32_t root_q14, root_log2;

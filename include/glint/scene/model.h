@@ -46,8 +46,9 @@ extern "C" {
 #define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* stands for no index */
 
 enum {
-    GLINT_SCENE_SPAN = 1 << 28, /* number of steps: every coordinate is smaller
-                                   in magnitude */
+    /* Limit of coordinates, steps: the magnitude of every coordinate is
+     * smaller. */
+    GLINT_SCENE_SPAN = 1 << 28,
     GLINT_SCENE_MAX_OBJECTS = 4095,
     GLINT_SCENE_MAX_LIGHTS = 32, /* max number of lights, including those of the
                                     environment */
@@ -72,9 +73,10 @@ enum glint_scene_camera_kind {
                              centres of pixels */
     GLINT_CAMERA_CORNERS, /* the centres of the corner pixels are at (+-tan_x,
                              +-tan_y) */
-    GLINT_CAMERA_LENS     /* square pixels; the focal length is focal_q16 of
-                             struct glint_scene_config, as of the lens of the
-                             flare */
+    /* Square pixels. The focal length is focal_q16 of struct
+     * glint_scene_config, so that the camera can have the focal length of the
+     * lens that causes the flares. */
+    GLINT_CAMERA_LENS
 };
 
 /* A pinhole camera. A point P has the camera coordinates (x, y, z) = axis (P -
@@ -109,9 +111,9 @@ struct glint_scene_light {
     /* Sun: sine of its angular radius, _q30, 0 .. 2^29. Lamp: its radius,
      * steps, 0 .. GLINT_SCENE_SPAN. 0: a point. */
     int32_t radius;
-    /* R, G, B of a white surface that faces the light (for a lamp: at a
+    /* Light: R, G, B of a white surface that faces the light (for a lamp: at a
      * distance of one unit of the scene); each is 0 or more. The radiance of
-     * the light's disc is rgb / sine^2 of its angular radius. */
+     * the light's disc is rgb / (sine of its angular radius)^2. */
     struct glint_real rgb[3];
 };
 
@@ -137,8 +139,8 @@ struct glint_scene_texture {
  * (R.V)^k. */
 struct glint_scene_material {
     char name[GLINT_SCENE_NAME]; /* terminated */
-    /* Weights, 0 .. 32768. The sum of the three weights of the next line, and
-     * of the two weights after it, is at most 32768. */
+    /* Weights, 0 .. 32768. The sum of ambient, diffuse and specular is at most
+     * 32768; so is the sum of reflect and pass. */
     int32_t ambient_q15, diffuse_q15, specular_q15;
     int32_t reflect_q15, pass_q15;
     int32_t rgb_q15[3]; /* colour, each channel 0 .. 32768; multiplied by the
@@ -162,9 +164,9 @@ struct glint_scene_ward {
     uint32_t norm;           /* enum glint_ward_norm of glint/scene/ward.h */
 };
 
-/* A translucent medium. Light that enters spreads below the surface; the light
- * that leaves is multiplied by the colour of the material. Above it the surface
- * may have a coat, the brushed metal of the material. Ambient, diffuse and
+/* A translucent medium. Light that enters spreads below the surface; light that
+ * leaves is multiplied by the colour of the material. The surface may have a
+ * coat, which is the brushed metal of the material. Ambient, diffuse and
  * specular weights are 0. */
 struct glint_scene_stone {
     uint32_t material;
@@ -175,20 +177,21 @@ struct glint_scene_stone {
                          reflection at the surface; 0: all light passes */
 };
 
-/* The light map of a translucent object: the point of the surface at each
- * texel. */
+/* The light map of a translucent object, which states for each texel to which
+ * point of the surface it belongs. */
 struct glint_scene_skin {
     /* Indices of the object (a sphere or a mesh with uv, in at most one skin)
      * and of its translucent medium. */
     uint32_t object, stone;
-    /* Mesh: uint32 [side][side], the triangle at or nearest to each texel, or
-     * GLINT_SCENE_NONE. Texel (i, j) is at u = (i + 1/2) / side, v = (j + 1/2)
-     * / side. Sphere: int32 _q30 [2 side][2], then [side][2]: cosine and sine
-     * of the longitude of each column, where 0 is in front of a camera that is
-     * not rotated; then of the angle of each row from the upper pole. */
+    /* Mesh: uint32 [side][side]: index of the triangle at or nearest to each
+     * texel, or GLINT_SCENE_NONE. Texel (i, j) is at u = (i + 1/2) / side, v =
+     * (j + 1/2) / side. Sphere: int32 _q30, two tables of cosines and sines.
+     * The first, [2 side][2], has the longitude of each column; longitude 0 is
+     * in front of a camera that is not rotated. The second, [side][2], has the
+     * angle between each row and the upper pole. */
     uint32_t texel_at;
-    uint32_t closed; /* for a mesh, 1: the backs of its triangles are never
-                        visible; else 0 */
+    /* Mesh: 1 if the backs of its triangles are never visible. Else 0. */
+    uint32_t closed;
 };
 
 struct glint_scene_triangle {
@@ -230,8 +233,8 @@ struct glint_scene_mesh {
 
 enum {
     GLINT_SCENE_MARGIN = 16
-}; /* margin of the bounding boxes of triangles,
-      steps */
+}; /* margin by which the bounding boxes of triangles are enlarged in the lists
+      of a grid, steps */
 
 enum glint_scene_object_kind {
     GLINT_OBJECT_SPHERE,
@@ -247,9 +250,9 @@ struct glint_scene_object {
     uint32_t material;
     uint32_t mesh;  /* index of the mesh; 0 if the object is not a mesh */
     int32_t radius; /* sphere: 1 .. GLINT_SCENE_SPAN / 2 steps; else 0 */
-    /* Shadow catcher, a plane that only receives shadows: fraction by which a
-     * shadow darkens the picture onto which the scene is drawn, 1 .. 32768; 0:
-     * not a catcher. */
+    /* Fraction by which a shadow darkens the picture onto which the scene is
+     * drawn, 1 .. 32768, for a shadow catcher. A shadow catcher is a plane that
+     * only receives shadows. 0: the object is not a shadow catcher. */
     int32_t catcher_q15;
     uint32_t hidden; /* 1: the object is not shown */
     /* The initial pose: point p of the object is at AT + TURN p. */
@@ -276,14 +279,15 @@ enum glint_scene_detect {
                            that are also brighter than a threshold */
 };
 
-/* How a recorded motion is shown: a body with sensors, and food items that the
- * sensors may see. The file of the motion (glint/scene/motion.h) follows; its
- * axes are those of the scene's text. */
+/* A recorded motion, and how it is shown. A body with sensors moves among food
+ * items, which the sensors may see. The file of the motion
+ * (glint/scene/motion.h) follows this struct; its axes are those of the scene's
+ * text. */
 struct glint_scene_motion {
     char name[GLINT_SCENE_NAME]; /* terminated */
-    /* Index of the first object of each kind, or GLINT_SCENE_NONE: the body,
-     * the sensors and the food items. All are spheres; there are as many
-     * sensors and food items as in the motion's file. */
+    /* Index of the body, of the first sensor and of the first food item, or
+     * GLINT_SCENE_NONE. All are spheres. There are as many sensors and food
+     * items as in the file of the motion. */
     uint32_t body, sensor, food;
     int32_t size;  /* radius of the body, steps; sensors lie on its surface */
     int32_t shell; /* radius of the shell around a food item that a sensor sees,
@@ -292,13 +296,14 @@ struct glint_scene_motion {
                       them, steps; 0: no lines */
     int32_t box;   /* width of the edges of the bounding box of all frames,
                       steps; 0: no box */
-    /* Indices of materials: of shells, whose fraction of transmitted light is
-     * used; and of lines and of the box, for which only the colour matters. */
+    /* Indices of materials: of shells, for which only the fraction of
+     * transmitted light matters; of lines and of the box, for which only the
+     * colour matters. */
     uint32_t shell_material, line_material, box_material;
     uint32_t detect; /* enum glint_scene_detect */
     uint32_t least;  /* threshold of intensity for GLINT_DETECT_BOTH, 255ths */
-    uint32_t camera; /* index of the sensor in which the camera is, or
-                        GLINT_SCENE_NONE */
+    /* Index of the sensor that is the camera, or GLINT_SCENE_NONE. */
+    uint32_t camera;
     /* Bit mask, by index, of lamps that move with the body; their positions are
      * in the axes of the body. */
     uint32_t riders;
@@ -306,8 +311,9 @@ struct glint_scene_motion {
     uint32_t zero;
 };
 
-/* Handedness of the text that the scene was baked from, and of its poses; the
- * file is always left-handed (z runs away from the camera). */
+/* Handedness of the axes in the scene's text, which also applies to the poses
+ * that programs pass. The file is always left-handed (z runs away from the
+ * camera). */
 enum glint_scene_hand { GLINT_HAND_LEFT, GLINT_HAND_RIGHT };
 
 /* The header. Its first members are those of all baked files (src/base/blob.h).
@@ -319,7 +325,7 @@ struct glint_scene_header {
                          0xedb88320, reflected; initial value and final XOR
                          are all ones */
     uint32_t variant; /* enum glint_scene_hand */
-    /* Key (hash) of all texts and of the files that they name, low word
+    /* Key (hash) of the scene's text and of all files that it names, low word
      * first. */
     uint32_t key[2];
     char name[64]; /* name of the scene, terminated */
@@ -342,9 +348,9 @@ struct glint_scene_header {
     uint32_t n_wards, ward_at;               /* struct glint_scene_ward */
     uint32_t n_environments, environment_at; /* struct
                                                 glint_scene_environment */
-    /* Number of suns at the end of the list of lights that stand for the bright
-     * lights of the environment that is shown: the max over all environments of
-     * their number. */
+    /* Max number of bright lights over all environments. As many suns, at the
+     * end of the list of lights, stand for the bright lights of the environment
+     * that is shown. */
     uint32_t n_environment_lights;
     uint32_t n_motions, motion_at; /* 0 or 1 struct glint_scene_motion */
     uint32_t n_stones, stone_at;   /* struct glint_scene_stone */

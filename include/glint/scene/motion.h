@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint/scene/motion.h - reads the file of a recorded motion, with
- * reconstructed poses, in blocks of 4 KiB.
+ * glint/scene/motion.h - reads the file of a recorded motion in blocks of 4
+ * KiB. The file has the reconstructed poses of a body.
  *
  *     status = glint_motion_open(&motion, data, bytes, &reason); in memory
  *     status = glint_motion_over(&motion, &blocks, buffer, &reason); elsewhere
@@ -54,14 +54,15 @@ struct glint_motion_pose {
                             of the body to the axes of frame 0 */
 };
 
-/* An event: from frame FRAME on, a new food item at AT replaces the food item
- * with index SLOT. */
+/* An event: in frame FRAME, a new food item at AT replaces the food item with
+ * index SLOT. */
 struct glint_motion_event {
     uint32_t frame, slot;
     int32_t at[3]; /* position, steps */
 };
 
-/* State of the food items at the first frame of a block of poses. */
+/* State of the food items in the first frame of a block of poses, so that
+ * reading a frame need not begin at frame 0. */
 struct glint_motion_index {
     uint32_t event; /* index of the first event after that frame */
     /* Max distance, over the frames of the block, between the stored position
@@ -102,7 +103,7 @@ struct glint_motion_header {
                                 the food items in all frames; steps */
     uint32_t residual;       /* max of residual over all blocks, steps */
     uint32_t residual_frame;
-    /* Number of intensities of a frame, a byte each, in 255ths: one for each
+    /* Number of intensities per frame, a byte each, in 255ths: one for each
      * food item, or one for each pair of food item and sensor. 0: all
      * intensities are 1. */
     uint32_t intensities;
@@ -147,7 +148,7 @@ enum glint_status glint_motion_open(struct glint_motion *motion,
                                     const void *data, size_t bytes,
                                     const char **reason);
 
-/* Opens a file that BLOCKS reads. BLOCKS is copied; BUFFER has
+/* Opens a file of which BLOCKS reads the blocks. BLOCKS is copied. BUFFER has
  * GLINT_MOTION_BLOCK bytes, is aligned to 4 and must outlive MOTION. Each block
  * is checked when it is read. */
 enum glint_status glint_motion_over(struct glint_motion *motion,
@@ -155,9 +156,9 @@ enum glint_status glint_motion_over(struct glint_motion *motion,
                                     uint8_t *buffer, const char **reason);
 
 /* Sets FRAME to frame K, 0 .. header.n_frames - 1. Returns GLINT_E_ARGUMENT if
- * there is no such frame. Returns GLINT_E_IO if a block cannot be read. Returns
- * GLINT_E_FORMAT if a block is damaged. After these two, which do not occur
- * with data in memory, FRAME is undefined. */
+ * there is no such frame, GLINT_E_IO if a block cannot be read, and
+ * GLINT_E_FORMAT if a block is damaged. After GLINT_E_IO or GLINT_E_FORMAT,
+ * which do not occur with data in memory, FRAME is undefined. */
 enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
                                      struct glint_motion_frame *frame);
 
@@ -165,15 +166,15 @@ enum glint_status glint_motion_frame(struct glint_motion *motion, uint32_t k,
 enum glint_status glint_motion_event(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_event *event);
 
-/* Sets INDEX to entry I of the index. The entry is for the block of poses that
- * begins with frame I * glint_motion_per_block(sizeof (struct
+/* Sets INDEX to entry I of the index, the entry for block I of poses. That
+ * block begins with frame I * glint_motion_per_block(sizeof (struct
  * glint_motion_pose)). */
 enum glint_status glint_motion_index(struct glint_motion *motion, uint32_t i,
                                      struct glint_motion_index *index);
 
 /* Returns the checksum of block BLOCK, which is at address AT, without its last
- * 4 bytes, by the method of crc32 of the header. For block 0 the sum starts at
- * the header's member VARIANT. */
+ * 4 bytes. The method is that of crc32 of the header. For block 0 the sum
+ * starts at the header's member VARIANT. */
 uint32_t glint_motion_sum(const uint8_t *at, uint32_t block);
 
 /* Returns the number of records of BYTES each (1 .. GLINT_MOTION_ROOM) in a

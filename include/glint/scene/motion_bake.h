@@ -35,8 +35,8 @@ struct glint_motion_body {
     double size;      /* radius of the body, 0 .. 1e6 */
     double angle_deg; /* angle of view of each sensor, 0.01 .. 360 */
     int n_sensors;
-    /* Axis of each sensor: (sin theta cos phi, sin theta sin phi, cos theta),
-     * angles in radians. */
+    /* Axis of each sensor, given by the angles theta and phi in radians: (sin
+     * theta cos phi, sin theta sin phi, cos theta). */
     double theta[GLINT_MOTION_MAX_SENSORS], phi[GLINT_MOTION_MAX_SENSORS];
 };
 
@@ -50,8 +50,8 @@ struct glint_motion_sight {
     int n_foods;
     double food[GLINT_MOTION_MAX_FOODS][3];
     bool is_new[GLINT_MOTION_MAX_FOODS]; /* ignored in the first frame */
-    /* Number of intensities per food item. 0: all intensities are 1; 1: the
-     * same for all sensors; otherwise one for each sensor. */
+    /* Number of intensities per food item. 0: all intensities are 1; 1: one
+     * intensity for all sensors; otherwise one intensity for each sensor. */
     int n_intensities;
     double intensity[GLINT_MOTION_MAX_FOODS][GLINT_MOTION_MAX_SENSORS];
 };
@@ -66,8 +66,9 @@ struct glint_motion_report {
     long held_intensities;           /* number of intensities that were clamped
                                         to 0 .. 1 */
     /* has_senses: the recording has tv or rv. senses_off, senses_most: distance
-     * between the reconstructed position and the position integrated from tv
-     * and rv; in the last frame, and its max over all frames. */
+     * between the reconstructed position and the position that tv and rv give
+     * when they are added up. senses_off is the distance in the last frame,
+     * senses_most the max over all frames. */
     bool has_senses;
     double senses_off, senses_most;
 };
@@ -78,9 +79,9 @@ struct glint_motion_baker;
 struct glint_motion_baker *glint_motion_baker_open(void);
 void glint_motion_baker_close(struct glint_motion_baker *baker);
 
-/* Set the body, which must be done before glint_motion_baker_finish(), and add
- * the next frame. On GLINT_E_LENS, ERROR states what is wrong, without a
- * position in the file. May return GLINT_E_MEMORY. */
+/* Set the body, and add the next frame. The body must be set before
+ * glint_motion_baker_finish(). On GLINT_E_LENS, ERROR states what is wrong,
+ * without a position in the file. May return GLINT_E_MEMORY. */
 enum glint_status glint_motion_baker_body(struct glint_motion_baker *baker,
                                           const struct glint_motion_body *body,
                                           struct glint_error *error);
@@ -103,9 +104,9 @@ enum glint_status glint_motion_baker_finish(struct glint_motion_baker *baker,
  * on failure. */
 typedef long glint_recording_read_fn(void *ctx, char *to, size_t n);
 
-/* Reads a recording in JSON, with keys of either spelling, and passes it to
- * BAKER frame by frame. Unknown keys are skipped; trailing commas are allowed.
- * On GLINT_E_LENS, ERROR states file, line, column and cause. Returns
+/* Reads a recording in JSON and passes it to BAKER frame by frame. Both
+ * spellings of keys are accepted. Unknown keys are skipped; trailing commas are
+ * allowed. On GLINT_E_LENS, ERROR states file, line, column and cause. Returns
  * GLINT_E_UNSUPPORTED if glint was built without jansson. May return GLINT_E_IO
  * or GLINT_E_MEMORY. */
 enum glint_status glint_recording_read(struct glint_motion_baker *baker,

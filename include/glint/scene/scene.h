@@ -18,7 +18,7 @@
  * on the number of workers, the order of jobs or the tile size.
  *
  * Spheres, planes, Phong shading and shadows are built in. All other modules
- * are members of glint_scene_parts, pointers so that only programs that use a
+ * are pointers in struct glint_scene_parts, so that only programs that use a
  * module link it. */
 #ifndef GLINT_SCENE_SCENE_H
 #define GLINT_SCENE_SCENE_H
@@ -74,8 +74,8 @@ struct glint_scene_config {
     int tile_log2; /* log2 of the side of a tile in pixels, 3 .. 6. The output
                       is the same for any side */
     int edge_samples; /* 1, 4, 8 or 16: samples per pixel */
-    /* Number of sample points of a light with an extent to which shadow rays
-     * are traced: 1, 4 or 16. */
+    /* Number of sample points on a light that is not a point: 1, 4 or 16. A
+     * shadow ray is traced to each of them. */
     int shadow_points;
     /* 1: blocks of 2 x 2 pixels whose samples all see the same object are
      * shaded once, in their middle. */
@@ -88,8 +88,9 @@ struct glint_scene_config {
     int highlights;
     /* For GLINT_CAMERA_LENS: the focal length in pixels, 2^10 .. 2^40 _q16. */
     int64_t focal_q16;
-    /* Max entries in the lists of all tiles, one entry for each triangle and
-     * tile; the statistics report how many a frame needed. */
+    /* Max number of entries in the lists of all tiles. A triangle needs one
+     * entry in each tile that it touches. The statistics report how many
+     * entries a frame needed. */
     int max_refs;
     struct glint_scene_parts parts;
 };
@@ -174,8 +175,8 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
 enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
                                        const struct glint_scene_look *look);
 
-/* Sets the material of object OBJECT to MATERIAL, except for triangles with a
- * material of their own. Returns GLINT_E_ARGUMENT if there is no such object or
+/* Sets the material of object OBJECT to MATERIAL. Triangles with a material of
+ * their own keep it. Returns GLINT_E_ARGUMENT if there is no such object or
  * material, or the material is translucent and the object has no map for it. */
 enum glint_status glint_scene_set_material(struct glint_scene *scene,
                                            int object, int material);
@@ -206,9 +207,9 @@ enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
                                                const int32_t turn_q30[2]);
 
 /* Stores a reduced copy of IMAGE as the background for reflected and refracted
- * rays that hit no object: rays ahead see IMAGE unchanged, rays in other
- * directions see it mirrored. IMAGE has the size of the configuration; NULL,
- * the default, is black. Costs nothing if no visible material reflects or
+ * rays that hit no object. Rays that run ahead see IMAGE unchanged; rays in
+ * other directions see it mirrored. IMAGE has the size of the configuration;
+ * NULL, the default, is black. Costs nothing if no visible material reflects or
  * transmits. Must be called after glint_scene_begin() and before
  * glint_scene_draw() changes IMAGE. */
 void glint_scene_look_around(struct glint_scene *scene,
@@ -234,10 +235,10 @@ enum glint_scene_kind {
 /* Returns the number of frames of SCENE's motion, 0 if it has no motion. */
 uint32_t glint_scene_frames(const struct glint_scene *scene);
 
-/* Moves body, sensors, food items, attached lamps, and a camera in a sensor to
- * their positions in frame FRAME, or in the last frame if there is no frame
- * FRAME. The result does not depend on earlier calls. A scene begins at frame
- * 0. */
+/* Moves all elements of the recorded motion to their positions in frame FRAME:
+ * body, sensors, food items, attached lamps, and a camera in a sensor. If FRAME
+ * exceeds the last frame, the last frame is used. The result does not depend on
+ * earlier calls. A scene begins at frame 0. */
 void glint_scene_seek(struct glint_scene *scene, uint32_t frame);
 
 /* Moves the camera into sensor SENSOR, with the field of view of the sensor;
@@ -278,22 +279,23 @@ int glint_scene_spread(struct glint_scene *scene);
 void glint_scene_draw(struct glint_scene *scene,
                       const struct glint_image *image);
 
-/* Returns the fraction, in 256ths, that objects hide of a disc in the picture
- * drawn last, at a resolution of 8 x 8 pixels; shadows on catchers do not
- * count. (X, Y) is the middle of the disc, pixels from the top left corner. */
+/* Returns the fraction of a disc that objects hide in the picture drawn last,
+ * in 256ths. (X, Y) is the middle of the disc, pixels from the top left corner.
+ * The resolution is 8 x 8 pixels. Shadows on shadow catchers do not count. */
 int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
                       int32_t y_q8, int32_t radius_q8);
 
 /* A light of the scene as the camera sees it. */
 struct glint_scene_lamp {
     int light; /* index of the light in the model */
-    int share; /* number of visible points among 16 sample points of the light's
-                  disc */
+    /* Number of visible points among 16 sample points on the disc of the
+     * light. */
+    int share;
     /* Middle of the disc, pixels from the top left corner, y down. */
     int32_t x_q8, y_q8;
     int32_t radius_q8; /* radius of the disc, pixels, 0 .. 2^22 */
-    /* Light of the whole disc in the picture, by channel, display white times
-     * pixels; the visible fraction is share / 16. */
+    /* Light of the whole disc in the picture, per channel, display white times
+     * pixels. The visible fraction is share / 16. */
     struct glint_real rgb[3];
 };
 

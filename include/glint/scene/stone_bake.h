@@ -10,9 +10,9 @@
  *                      &error);
  *     glint_translucent_open(&stone, data, bytes, &reason);
  *
- * Kernels that are not sums of products of rows and columns are approximated by
- * such sums, optimal under slowly varying light. The same fit gives the same
- * bytes. */
+ * Each kernel is stored as a sum of products of a row and a column. A kernel
+ * that is not such a sum is approximated by one, optimal for slowly varying
+ * light. The same fit gives the same bytes. */
 #ifndef GLINT_SCENE_STONE_BAKE_H
 #define GLINT_SCENE_STONE_BAKE_H
 
@@ -40,12 +40,13 @@ struct glint_stone_text {
 
 /* Results of baking. */
 struct glint_stone_report {
-    double kernel_loss; /* fraction, root mean square, of the response of all
-                           kernels to light that is lost because the rank of
-                           kernels is limited; 0 for factored fits */
-    int tap_bits;       /* number of bits of the largest tap of a column; with
-                           many taps the limit of their sum allows fewer bits
-                           than GLINT_TRANSLUCENT_TAP_BITS */
+    /* Part of the response to light that is lost because the rank of kernels is
+     * limited, as a root mean square fraction over all kernels; 0 for factored
+     * fits. */
+    double kernel_loss;
+    /* Number of bits of the largest tap of a column. With many taps it is below
+     * GLINT_TRANSLUCENT_TAP_BITS, because the sum of taps is limited. */
+    int tap_bits;
 };
 
 /* Sets TEXT to the slab of glint_stone_defaults(), with a clustered fit of rank
@@ -71,9 +72,10 @@ enum glint_status glint_stone_bake(const struct glint_scatter_fit *fit,
                                    struct glint_stone_report *report,
                                    struct glint_error *error);
 
-/* Sets RADIOSITY[side * side][3] to the light that leaves under IRRADIANCE[side
- * * side][3], by the integer arithmetic of STONE; the largest value of
- * IRRADIANCE is mapped to 32767. May return GLINT_E_MEMORY. */
+/* Sets RADIOSITY[side * side][3] to the light that leaves STONE when
+ * IRRADIANCE[side * side][3] enters. The integer arithmetic of STONE is used;
+ * the largest value of IRRADIANCE is mapped to 32767. May return
+ * GLINT_E_MEMORY. */
 enum glint_status glint_stone_light(const struct glint_translucent *stone,
                                     const double *irradiance,
                                     double *radiosity);

@@ -45,15 +45,16 @@ enum {
                                            odd */
     GLINT_TRANSLUCENT_MOST_PLANES = 20,
     GLINT_TRANSLUCENT_MOST_RANK = 8,
-    GLINT_TRANSLUCENT_CODE_BITS = 8, /* number of bits of f and in */
+    /* Number of bits of the codes f and in of the formula above. */
+    GLINT_TRANSLUCENT_CODE_BITS = 8,
     GLINT_TRANSLUCENT_TAP_BITS = 12, /* the magnitude of every tap is below
                                         2^11 */
     GLINT_TRANSLUCENT_COSINES =
         128, /* number of steps of the cosine in the table of transmittance */
-    /* Max sum of the magnitudes of the taps of one row of a kernel, and of
-     * those of the columns of all planes of a channel together. If values are
-     * within +-32767, sums stay below 2^31 - 2^20, so that they can still be
-     * rounded before they are multiplied by codes. */
+    /* Max sum of the magnitudes of taps: of one row of a kernel, and of the
+     * columns of all planes of a channel together. If values are within
+     * +-32767, sums stay below 2^31 - 2^20, so that they can still be rounded
+     * before they are multiplied by codes. */
     GLINT_TRANSLUCENT_MOST_TAPS = 65504
 };
 
@@ -85,21 +86,22 @@ struct glint_translucent_header {
     uint32_t index_q16; /* index of refraction, 1 .. 3 */
     uint32_t code_bits; /* must be GLINT_TRANSLUCENT_CODE_BITS */
     uint32_t tap_bits;  /* must be GLINT_TRANSLUCENT_TAP_BITS */
-    /* f and in, a byte each, padded to whole words. Factored: f_p = code / 128,
-     * signed, [3][n_planes][texels]. Otherwise unsigned, code / 256: f
-     * [3][texels], and for clustered media also in [3][texels]. */
+    /* f and in of the formula above, a byte each, padded to whole words.
+     * Factored media: f_p = code / 128, signed, [3][n_planes][texels]. Others:
+     * code / 256, unsigned: f, [3][texels], and for clustered media then in,
+     * [3][texels]. */
     uint32_t code_at;
     uint32_t cluster_at; /* clustered: uint8 [texels], index of the plane of
                             each texel; else 0 */
-    /* int16 [3][n_planes][rank][2][kernel]: row, then column, both beginning at
-     * y - x = -kernel / 2; padded to whole words. */
+    /* Taps, int16 [3][n_planes][rank][2][kernel]: row, then column. The first
+     * tap of each is for y - x = -kernel / 2. Padded to whole words. */
     uint32_t tap_at;
-    /* uint32 [3][n_planes][rank]: bits by which sums along rows are shifted
-     * before rounding, 0 .. 16. */
+    /* Shifts, uint32 [3][n_planes][rank]: number of bits, 0 .. 16, by which
+     * sums along rows are shifted right before rounding. */
     uint32_t shift_at;
-    /* Fraction of light that passes the surface: uint16 _q15
-     * [GLINT_TRANSLUCENT_COSINES + 1], by the cosine of its direction, padded
-     * to whole words; and the mean over all directions. */
+    /* Fraction of light that passes the surface. transmit_at: for each cosine
+     * of the light's direction, uint16 _q15 [GLINT_TRANSLUCENT_COSINES + 1],
+     * padded to whole words. mean_transmit_q15: mean over all directions. */
     uint32_t transmit_at;
     int32_t mean_transmit_q15;
     struct glint_real gain[3]; /* gain in the formula above, 0 .. 1; its

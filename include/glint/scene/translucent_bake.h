@@ -70,11 +70,13 @@ struct glint_stone {
     double index;    /* index of refraction relative to air, 1 .. 3 */
     struct glint_stone_material material[2];
     enum glint_stone_pattern pattern;
-    /* Number of squares per side of GLINT_STONE_CHESS, 1 .. side. */
+    /* Number of squares along each side of the slab for GLINT_STONE_CHESS, 1 ..
+     * side. */
     int fields;
-    uint32_t seed;      /* seed of GLINT_STONE_VEINS */
-    const double *mask; /* [side][side], 0 .. 1; for GLINT_STONE_MASK, else
-                           NULL */
+    uint32_t seed; /* seed of GLINT_STONE_VEINS */
+    /* Fraction of material 0 at each texel, [side][side], 0 .. 1, for
+     * GLINT_STONE_MASK; else NULL. */
+    const double *mask;
 };
 
 /* Sets STONE to 128 texels per side of 0.61 mm, kernels of 29 texels, a slab of
@@ -93,12 +95,13 @@ struct glint_watch {
     void *ctx;
 };
 
-/* Rows; arrays are malloc'ed, glint_scatter_close() frees them. */
+/* Rows of R_d. Arrays are malloc'ed; glint_scatter_close() frees them. */
 struct glint_scatter_rows {
     int side, kernel;
-    float *r;      /* [side * side][3][kernel * kernel], row by row */
-    double *share; /* [side * side]: fraction of material 0; NULL: rows were
-                      measured */
+    float *r; /* [side * side][3][kernel * kernel], row by row */
+    /* Fraction of material 0 at each texel, [side * side]; NULL: the rows were
+     * measured. */
+    double *share;
 };
 
 /* Computes ROWS of STONE by diffusion in the slab [Jensen01]. Each entry is at
@@ -123,16 +126,17 @@ enum glint_status glint_scatter_read(const struct glint_float_image *picture,
 
 void glint_scatter_close(struct glint_scatter_rows *rows);
 
-/* Sets RADIOSITY[side * side][3] to the light that leaves under IRRADIANCE[side
- * * side][3], by ROWS. */
+/* Sets RADIOSITY[side * side][3] to the light that ROWS make of IRRADIANCE[side
+ * * side][3]. */
 void glint_scatter_light_rows(const struct glint_scatter_rows *rows,
                               const double *irradiance, double *radiosity);
 
 /* ------------------------------------------------------------------ fits */
 
-/* The models. Weights that vary between texels scale the light where it leaves
- * (x_o), where it is visible: weights at x_i would blur the edges of a pattern
- * to the width of a kernel (15 to 20 dB worse on chess). */
+/* Models of a fit. Some weights vary between texels. They scale the light where
+ * it leaves (x_o) and is visible, because weights at x_i would blur the edges
+ * of a pattern to the width of a kernel (15 to 20 dB worse on
+ * GLINT_STONE_CHESS). */
 enum glint_scatter_model {
     /* R' = in(x_i) h_c(d) out(x_o), where c is the cluster of x_o */
     GLINT_SCATTER_CLUSTERED,
@@ -159,11 +163,11 @@ struct glint_scatter_error {
     double entry_db; /* rmse in decibels */
     double light_db; /* error of the radiosity under glint_scatter_test_light(),
                         relative to its peak, in decibels */
-    double albedo;   /* max error of the sum of a row, which is a fraction of
-                        energy */
+    /* Max error of the sum of a row; the sum is a fraction of energy. */
+    double albedo;
 };
 
-/* A fit. All pointers are malloc'ed, or NULL where the model has no such array;
+/* A fit. Arrays are malloc'ed, or NULL if the model does not use them;
  * glint_scatter_fit_close() frees them. */
 struct glint_scatter_fit {
     enum glint_scatter_model model;
@@ -201,8 +205,8 @@ void glint_scatter_fit_close(struct glint_scatter_fit *fit);
 double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
                            int d);
 
-/* Sets RADIOSITY[side * side][3] to the light that leaves under IRRADIANCE[side
- * * side][3], by FIT; values may be negative. */
+/* Sets RADIOSITY[side * side][3] to the light that FIT makes of IRRADIANCE[side
+ * * side][3]; values may be negative. */
 void glint_scatter_light(const struct glint_scatter_fit *fit,
                          const double *irradiance, double *radiosity);
 

@@ -7,10 +7,10 @@
  *     glint_ward_light(&lobe, &environment, frame_q14, view_q14, rgb_q15);
  *
  * Computes the light of an environment that Ward's anisotropic lobe reflects to
- * the eye, by stratified half vectors; each is looked up in the level whose
- * blur matches the solid angle that it represents. Materials may change in
- * every frame: a lobe costs a few thousand instructions. [Ward92],
- * [Krivanek08], [Toral14] */
+ * the eye. The lobe is sampled by stratified half vectors. The light of each is
+ * looked up in the mip level whose blur matches the solid angle that the half
+ * vector represents. Materials may change in every frame: a lobe costs a few
+ * thousand instructions. [Ward92], [Krivanek08], [Toral14] */
 #ifndef GLINT_SCENE_WARD_H
 #define GLINT_SCENE_WARD_H
 
@@ -29,11 +29,11 @@ enum {
 };
 
 enum glint_ward_rule {
-    /* Half vectors are contracted and all read the same level, so that their
-     * spread and the blur of the level together give the lobe. */
+    /* Half vectors are contracted, and all read the same mip level. The spread
+     * of the half vectors and the blur of the level together give the lobe. */
     GLINT_WARD_CONSTANT,
-    /* Each half vector reads the level whose texels have the solid angle that
-     * the half vector represents. */
+    /* Each half vector reads the mip level whose texels have the solid angle
+     * that the half vector represents. */
     GLINT_WARD_PUBLISHED
 };
 
@@ -46,8 +46,8 @@ struct glint_ward_material {
 struct glint_ward_options {
     int samples; /* number of half vectors, 1 .. GLINT_WARD_SAMPLES */
     enum glint_ward_rule rule;
-    /* Number of mip levels added to the level that the rule selects, -2^12 ..
-     * 2^12. */
+    /* Offset, -2^12 .. 2^12, that is added to the mip level that the rule
+     * selects. */
     int32_t bias_q8;
     unsigned sets; /* instruction sets of kernels, GLINT_SET_ bits
                       (glint/kernels.h) */
@@ -56,8 +56,8 @@ struct glint_ward_options {
 /* Sets OPTIONS to 8 samples with GLINT_WARD_CONSTANT. */
 void glint_ward_defaults(struct glint_ward_options *options);
 
-/* Raises the smaller alpha to a tenth of the larger if it is below that;
- * returns 1 if it was raised. */
+/* Raises the smaller of the two alphas to a tenth of the larger if it is below
+ * that. Returns 1 if it was raised, else 0. */
 int glint_ward_hold(int32_t alpha_q24[2]);
 
 /* Computes the reflection lobe LOBE of MATERIAL for ENVIRONMENT. Returns 1 if
@@ -81,9 +81,9 @@ void glint_ward_light(const struct glint_ward_lobe *lobe,
 void glint_environment_irradiance(const struct glint_environment *environment,
                                   const int32_t normal[3], int32_t rgb[3]);
 
-/* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to its light from direction
- * TOWARD, of any length up to 2^16, in level LEVEL_Q8, which is clamped to the
- * existing levels. */
+/* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to the light of ENVIRONMENT
+ * from direction TOWARD. TOWARD may have any length up to 2^16. The light is
+ * read in mip level LEVEL_Q8, which is clamped to the existing levels. */
 void glint_environment_look(const struct glint_environment *environment,
                             const int32_t toward[3], int32_t level_q8,
                             int32_t rgb[3]);
