@@ -18,7 +18,8 @@ void *glint_arena_allocate(struct glint_arena *arena, size_t count,
     const size_t at = arena->used;
 
     if (bytes > 0 && count > (room - GLINT_ALIGN) / bytes) {
-        /* Makes all later allocations from the arena fail. */
+        /* A block whose size overflows marks the arena as full, so that all
+         * later allocations fail, too. */
         arena->used = SIZE_MAX - GLINT_ALIGN;
         return NULL;
     }

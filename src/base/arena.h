@@ -16,10 +16,11 @@
 #define GLINT_ALIGN 64 /* alignment of base and of every allocation, bytes */
 
 struct glint_arena {
-    uint8_t *base; /* GLINT_ALIGN-aligned, or NULL to measure */
-    size_t size;   /* number of bytes at base; SIZE_MAX while measuring */
-    size_t used;   /* number of bytes allocated so far; if it exceeds SIZE, an
-                      allocation has failed */
+    /* Memory aligned to GLINT_ALIGN, or NULL if the arena only counts bytes. */
+    uint8_t *base;
+    size_t size; /* number of bytes at base; SIZE_MAX if base is NULL */
+    size_t used; /* number of bytes allocated so far; if it exceeds SIZE, an
+                    allocation has failed */
 };
 
 /* Returns an arena that only counts bytes: base is NULL. */

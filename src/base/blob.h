@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Container of all baked files: one block of little-endian 32-bit words that is
- * validated once and then used in place, in ROM or in a mapped file.
+ * Container format of all baked files. A file is one block of little-endian
+ * 32-bit words, which is validated once and then used in place, in ROM or in a
+ * mapped file.
  *
  *     fault = glint_blob_open(&blob, &kind, data, bytes);
  *     table = glint_blob_find_section(&blob, at, n, sizeof *table);
@@ -9,8 +10,7 @@
  * The header of every file type begins with struct glint_blob_header and
  * continues with fields of its own type. The sections follow: tables in any
  * order. Header fields hold their offsets in bytes from the start of the file,
- * which are multiples of 4. The magic number identifies the file type.
- */
+ * which are multiples of 4. The magic number identifies the file type. */
 #ifndef GLINT_BASE_BLOB_H
 #define GLINT_BASE_BLOB_H
 
@@ -21,20 +21,21 @@
 
 struct glint_blob_header {
     uint32_t magic, version;
-    uint32_t bytes; /* size of the file including the header, bytes */
-    uint32_t crc32; /* CRC-32 of all bytes after this word: polynomial
-                       0xedb88320, reflected, initial value and final XOR all
-                       ones */
-    uint32_t
-        variant; /* variant of the file; each file type defines its values */
-    uint32_t key[2]; /* hash of the source and of the options of the bake, low
-                        word first */
-    char name[64];   /* name of the baked object, zero-terminated */
+    uint32_t bytes;   /* size of the whole file, header included, bytes */
+    uint32_t crc32;   /* CRC-32 of all bytes after this word: polynomial
+                         0xedb88320, reflected, initial value and final XOR all
+                         ones */
+    uint32_t variant; /* enum value of the file type: which variant of its
+                         format the file has */
+    uint32_t key[2];  /* hash of the source and of the options of the bake, low
+                         word first */
+    char name[64];    /* name of the baked object, zero-terminated */
 };
 
 struct glint_blob_kind {
     uint32_t magic, version;
-    /* size of the header, including the fields of the file type, bytes */
+    /* size of the file type's header, bytes; the common header is its
+     * beginning */
     size_t header_bytes;
 };
 
@@ -56,9 +57,9 @@ enum glint_blob_fault {
 };
 
 /* Initialiser of an array of error messages, indexed by enum glint_blob_fault.
- * THING is the name of the file type, THINGS its plural, DONE the participle of
- * the operation that makes it ("baked"). The message of GLINT_BLOB_OK is NULL.
- */
+ * THING names the file type in the messages, and THINGS is its plural. DONE is
+ * the participle of the operation that makes the file ("baked"). The message of
+ * GLINT_BLOB_OK is NULL. */
 #define GLINT_BLOB_FAULT_TEXT(thing, things, done)                            \
     {                                                                         \
         [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes",   \
@@ -78,8 +79,8 @@ enum glint_blob_fault {
         [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                         \
     }
 
-/* Checks at compile time that the struct HEADER begins with the fields of
- * struct glint_blob_header. VARIANT_FIELD is the name of its variant field. */
+/* Checks at compile time that the struct HEADER begins with the members of
+ * struct glint_blob_header. HEADER names the variant VARIANT_FIELD. */
 #define GLINT_BLOB_HEADER(header, variant_field)           \
     GLINT_BLOB_SAME_PLACE(header, magic, magic);           \
     GLINT_BLOB_SAME_PLACE(header, version, version);       \
@@ -95,15 +96,14 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* sum of the sizes of all sections that were requested with
-     * glint_blob_find_section(), bytes; a section that is requested twice
-     * counts twice */
+    /* sum of the sizes of all sections that glint_blob_find_section() returned,
+     * bytes; a section counts once for each call */
     uint64_t referred;
 };
 
-/* Checks that DATA[BYTES] is a complete file of KIND, in time proportional to
- * BYTES, and sets BLOB to refer to it. Does not check the header fields after
- * crc32. Sets BLOB only if there is no fault. */
+/* Checks that DATA[BYTES] is a complete file of the type KIND, in time
+ * proportional to BYTES. Does not check the header members after crc32. Sets
+ * BLOB to refer to the file only if there is no fault. */
 enum glint_blob_fault glint_blob_open(struct glint_blob *blob,
                                       const struct glint_blob_kind *kind,
                                       const void *data, size_t bytes);

@@ -12,7 +12,8 @@
 #define BYTES_LOW  (0x7f * BYTES_EACH)
 #define BYTES_HIGH (0x80 * BYTES_EACH)
 
-/* Returns the eight bytes at P; compilers turn this form into one load. */
+/* Returns the eight bytes at P as a word. Compilers turn this form into one
+ * load. */
 static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
 {
     return (uint64_t)p[0] | (uint64_t)p[1] << 8 | (uint64_t)p[2] << 16 |
@@ -20,10 +21,9 @@ static WHOLLY_INLINE uint64_t bytes_load(const uint8_t *p)
            (uint64_t)p[6] << 48 | (uint64_t)p[7] << 56;
 }
 
-/* Compares the eight bytes of V with CODE: returns a word in which the high bit
- * of each byte is set if that byte of V is at least CODE. CODE must be 1 ..
- * 128, or 129 .. 256 if IS_ABOVE_128. No byte carries into the next, as both
- * addends are below 128. */
+/* Returns a word in which the high bit of each byte is set if that byte of V is
+ * at least CODE. CODE must be 1 .. 128, or 129 .. 256 if IS_ABOVE_128 is 1. No
+ * byte carries into the next one, because both addends are below 128. */
 static WHOLLY_INLINE uint64_t bytes_find_at_or_above(uint64_t v, int code,
                                                      int is_above_128)
 {
@@ -35,7 +35,7 @@ static WHOLLY_INLINE uint64_t bytes_find_at_or_above(uint64_t v, int code,
 }
 
 /* Packs the high bits of the eight bytes of HIGH into bits 0 .. 7 of the
- * result; bit 0 is that of the lowest byte. */
+ * result. Bit 0 is the high bit of the lowest byte. */
 static WHOLLY_INLINE uint32_t bytes_pack_high_bits(uint64_t high)
 {
     return (uint32_t)((high >> 7) * UINT64_C(0x0102040810204080) >> 56);

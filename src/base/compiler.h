@@ -13,11 +13,12 @@
 #define STATIC_ASSERT(condition) \
     __extension__ _Static_assert(condition, #condition)
 
-/* Right shifts of negative numbers are arithmetic wherever glint runs. */
+/* The code requires arithmetic right shifts of negative numbers, which C99 does
+ * not guarantee. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Hides the value of pointer P from the optimiser, which then reloads values
- * from memory instead of keeping them in spilled registers. */
+/* Hides the value of pointer P from the optimiser. It then reloads what P
+ * points to, instead of computing it early and spilling it to the stack. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
 /* Prefetches the memory at P into the cache. */

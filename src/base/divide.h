@@ -55,8 +55,8 @@ static inline int q_count_normalising_shift(uint64_t x)
     return 32 - bit_length(x | 1);
 }
 
-/* Returns N / D for 0 <= N <= D, D not 0. The result is in 0 .. 1, at most
- * 2^-30 too high or 2^-29 too low. */
+/* Returns N / D for 0 <= N <= D with D not 0. The result lies in 0 .. 1; it is
+ * at most 2^-30 too high or 2^-29 too low. */
 static inline int32_t q_divide_to_fraction_q30(uint64_t n, uint64_t d)
 {
     const int up = q_count_normalising_shift(d);

@@ -8,8 +8,9 @@
 
 #include "base/q.h"
 
-/* Returns log2(X) for X >= 1; the error is below 2^-14. With X = 2^n (1 + f)
- * the result is n + f + f (1 - f) p(f), where p is a minimax polynomial. */
+/* Returns log2(X) for X >= 1; the error is below 2^-14. For X = 2^n (1 + f) the
+ * result is n + f + f (1 - f) p(f), where p is a minimax polynomial and f is in
+ * 0 .. 1. */
 static inline int32_t q_log2_q16(uint64_t x)
 {
     const int whole = bit_length(x) - 1;

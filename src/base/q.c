@@ -12,6 +12,7 @@ void glint_q_abort_on_overflow(const char *operation, int64_t exact)
     __builtin_trap();
 }
 #else
-typedef int glint_q_is_all_inline; /* C99 requires a declaration in each
-                                      translation unit */
+typedef int glint_q_is_all_inline; /* C99 requires at least one declaration in
+                                      each translation unit, and all functions
+                                      of q.h may be inline */
 #endif

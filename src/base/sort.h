@@ -10,14 +10,14 @@
 
 #include <stdint.h>
 
-/* Returns whether item A comes before item B. With a total order the result
- * does not depend on the initial order. */
+/* Returns whether item A is sorted before item B. If this is a total order, the
+ * result of sorting does not depend on the initial order. */
 typedef int glint_sort_fn(const void *ctx, int32_t a, int32_t b);
 
 void glint_sort(int32_t *order, int n, glint_sort_fn *before, const void *ctx);
 
-/* A heap of objects at indices 0 .. n - 1: the object at index i does not come
- * after the object at index (i - 1) / 2. So the object that comes last in
+/* A heap of objects at indices 0 .. n - 1. The object at index i never comes
+ * after the object at index (i - 1) / 2 in sorting order. So the last object in
  * sorting order is at index 0. */
 struct glint_heap {
     int (*before)(const void *things, int a,
