@@ -3,8 +3,9 @@
 
 enum { WIDTH = GLINT_CODES_WIDTH };
 
-/* Copies N samples whose addresses are TO_STEP and FROM_STEP bytes apart.
- * Common steps have loops of their own, which compilers can vectorise. */
+/* Copies N samples. TO_STEP and FROM_STEP are the distances between samples in
+ * bytes. Common steps have loops of their own, which compilers can
+ * vectorise. */
 static inline void copy_strided_samples(uint8_t *restrict to, int to_step,
                                         const uint8_t *restrict from,
                                         int from_step, int n)
@@ -68,8 +69,8 @@ static void read_565_row(struct glint_codes *c, const uint8_t *px, int n,
         repeat_last_group(c->sample[k][row], n, 1);
 }
 
-/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded: the exact inverse of
- * the expansion of MOST + 1 codes to 8 bits in read_565_row(). */
+/* Returns CODE, 0 .. 255, scaled to 0 .. MOST and rounded. read_565_row()
+ * expands codes of 0 .. MOST to 8 bits; this function is the exact inverse. */
 static int scale_code_to_max(int code, int most)
 {
     return (code * most + 127) / 255;
@@ -165,8 +166,8 @@ static void write_chroma_row(const struct glint_layout *l,
 
 /* -------------------------------------------------------------------- rows */
 
-/* Returns the number of channels that have one sample per pixel. The channels
- * with fewer samples come after them. */
+/* Returns the number of channels that have one sample per pixel. These channels
+ * come first; channels of lower resolution follow. */
 static int count_full_resolution_channels(const struct glint_layout *l)
 {
     return l->kind == GLINT_LAYOUT_GREY || l->log2_x ? 1 : 3;

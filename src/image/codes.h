@@ -13,11 +13,11 @@
 enum { GLINT_CODES_WIDTH = 64 };
 
 struct glint_codes {
-    /* [channel][row]: R, G, B, or Y, Cb, Cr of each pixel. Cb and Cr are 128
-     * in grey pictures. */
+    /* Samples of each pixel, [channel][row]. Channels are R, G, B, or Y, Cb,
+     * Cr; in grey pictures Cb and Cr are 128. */
     uint8_t sample[3][2][GLINT_CODES_WIDTH];
-    /* Chroma of pairs of pixels, Cb and Cr interleaved. In 4:2:0 both rows
-     * share row 0. */
+    /* Chroma of pairs of pixels, Cb and Cr interleaved, [row]. In 4:2:0 both
+     * rows use row 0. */
     uint8_t chroma[2][GLINT_CODES_WIDTH];
 };
 

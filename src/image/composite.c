@@ -13,7 +13,8 @@ struct glint_composite {
 };
 
 /* Allocates a composite from arena A. Called twice: first with an arena that
- * only counts bytes, when it returns NULL, then to allocate. */
+ * only counts bytes, where it returns NULL; then with an arena that has
+ * memory. */
 static struct glint_composite *allocate_composite(struct glint_arena *a)
 {
     struct glint_composite measured = {0}, *placed;
@@ -53,8 +54,8 @@ enum glint_status glint_composite_init(struct glint_composite **composite,
     return GLINT_OK;
 }
 
-/* Copies the light of N_X x N_Y pixels from LAYER; returns whether any of it is
- * not 0. */
+/* Copies the light of N_X x N_Y pixels from LAYER; returns whether the light of
+ * any pixel is not 0. */
 static int copy_light_of_layer(struct glint_composite *c,
                                const struct glint_layer *layer, int x, int y,
                                int n_x, int n_y)

@@ -24,7 +24,7 @@ static void hide_background_of_rgb_pixels(const struct stretch *s,
                                s->cover->cover_q8[row], s->n_x, &mix->tone);
 }
 
-/* Returns the row of interleaved Cb and Cr that the pixel pairs of ROW use. */
+/* Returns the row of interleaved Cb and Cr that belongs to pixel row ROW. */
 static uint8_t *get_shared_chroma_row(const struct stretch *s, int row)
 {
     return s->codes->chroma[s->layout->log2_y ? 0 : row];

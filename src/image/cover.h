@@ -8,9 +8,9 @@
  *   code = encode(decode(code) (1 - cover) + light)
  *
  * A fully hidden pixel becomes the light alone. The code of a pixel that is not
- * hidden does not change until light is added (resolve.h). Chroma that several
- * pixels share becomes the mean of their chroma. The remaining background is
- * rounded to codes before light is added. */
+ * hidden does not change until light is added (resolve.h). If several pixels
+ * share a chroma sample, it becomes the mean of their new chroma values. The
+ * background that remains is rounded to codes before light is added. */
 #ifndef GLINT_IMAGE_COVER_H
 #define GLINT_IMAGE_COVER_H
 

@@ -3,10 +3,9 @@
 
 #include "base/compiler.h"
 
-/* The transfer curve of a standard, from a code to linear light; v = code /
- * 255:
- *   v * toe_divisor^-1                     up to code last_toe
- *   u^(2 + 2 / root), u = (v + a) / (1 + a)  above */
+/* The transfer curve of a standard: linear light as a function of v = code /
+ * 255. Up to code last_toe (the toe), light is v / toe_divisor. Above it, light
+ * is u^(2 + 2 / root), where u = (v + a) / (1 + a). */
 struct standard {
     int last_toe;
     int toe_divisor_100; /* 100 times the divisor of the toe */
@@ -15,9 +14,9 @@ struct standard {
                  / 0.45) */
 };
 
-/* toe up to v = 0.04045 */
+/* sRGB; the toe ends at v = 0.04045 */
 static const struct standard srgb = {10, 1292, 55, 5};
-/* toe below v = 0.081 */
+/* BT.709; the toe ends below v = 0.081 */
 static const struct standard bt709 = {20, 450, 99, 9};
 
 static uint64_t multiply_q30(uint64_t a_q30, uint64_t b_q30)
@@ -35,8 +34,8 @@ static uint64_t raise_to_power_q30(uint64_t x_q30, int n)
 }
 
 /* Returns the n-th root of x, rounded down: the largest r with r^n <= x.
- * Rounding moves r by at most 2^-27 in the range that is used: r >= 0.38 for n
- * = 5, r >= 0.67 for n = 9. */
+ * Rounding of x and r^n changes r by at most 2^-27 where the function is used:
+ * for r >= 0.38 with n = 5, and r >= 0.67 with n = 9. */
 static uint64_t compute_root_q30(uint64_t x_q30, int n)
 {
     uint64_t r_q30 = 0;
@@ -83,8 +82,8 @@ static int32_t divide_to_fraction(int64_t n, int64_t d, int frac)
                                 : -((-twice + 2 * d - 1) / (2 * d)));
 }
 
-/* Sets the matrix from Y'CbCr to R'G'B': B' - Y' is 2 (1 - kb) Cb, R' - Y' is 2
- * (1 - kr) Cr, and G' is such that the luma of the result is Y'. */
+/* Sets the matrix from Y'CbCr to R'G'B'. B' - Y' is 2 (1 - kb) Cb, and R' - Y'
+ * is 2 (1 - kr) Cr. G' follows because the luma of R', G', B' is Y'. */
 static void set_ycc_to_rgb_matrix(struct glint_ycc *ycc, int64_t kr, int64_t kb,
                                   int y_steps, int c_steps)
 {

@@ -28,8 +28,8 @@ struct glint_curve {
                                 end of the last interval */
 };
 
-/* Fills the table CURVE for transfer function TRANSFER; finds 256 roots by
- * bisection over their bits. */
+/* Fills the table CURVE for the transfer function TRANSFER. Computes 256 roots
+ * by bisection, bit by bit. */
 void glint_curve_init(struct glint_curve *curve, enum glint_tone transfer);
 
 /* Returns the linear light of CODE_Q7, which must be in 0 .. CODE_WHITE_Q7. */
@@ -41,8 +41,8 @@ static inline int32_t curve_decode_to_light(const struct glint_curve *curve,
     return at_q20[0] + (((at_q20[1] - at_q20[0]) * (code_q7 & 127) + 64) >> 7);
 }
 
-/* Matrices between Y'CbCr and R'G'B'. Equal R', G', B' give Cb = Cr = 128
- * exactly, as the sums of the rows are exact. */
+/* Matrices between Y'CbCr and R'G'B'. The sums of the rows are exact, so that
+ * equal R', G', B' give exactly Cb = Cr = 128. */
 struct glint_ycc {
     int black;                /* code of Y' = 0 */
     int32_t to_rgb_q16[3][3]; /* change of R', G', B' per code of Y - black, Cb
@@ -50,13 +50,13 @@ struct glint_ycc {
     int32_t to_ycc_q15[3][3]; /* change of Y, Cb, Cr per code of R', G', B' */
 };
 
-/* Fills YCC for MATRIX and RANGE. For grey pictures only its first columns
- * are used. */
+/* Fills YCC for MATRIX and RANGE. Grey pictures use only the first columns of
+ * the matrices. */
 void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range);
 
-/* Sets RGB to the R'G'B' of 8-bit codes, not clamped: the range is -290 .. 550
- * codes. */
+/* Sets RGB to R', G', B' of the 8-bit codes Y, CB and CR. The result is not
+ * clamped; its range is -290 .. 550 codes. */
 static inline void convert_ycc_to_rgb(const struct glint_ycc *ycc, int y,
                                       int cb, int cr, int32_t rgb_q7[3])
 {

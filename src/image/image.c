@@ -58,7 +58,8 @@ size_t glint_image_row_bytes(enum glint_pixel_format format, int plane,
 
     if (plane > 0)
         return (l->log2_x ? across : (size_t)width) * (size_t)l->sample[1].step;
-    /* A plane of such a format has pairs of pixels that share chroma. */
+    /* A plane of a packed format such as YUYV consists of pairs of pixels that
+     * share chroma. */
     if (l->planes == 1 && l->log2_x)
         return across * (size_t)l->sample[1].step;
     return (size_t)width * (size_t)l->sample[0].step;

@@ -28,8 +28,8 @@ struct glint_layout {
 
 const struct glint_layout *glint_get_layout(enum glint_pixel_format format);
 
-/* Returns whether luma and chroma share a plane, as in YUYV: every other byte
- * is luma, the bytes between alternate Cb and Cr. */
+/* Returns whether luma and chroma are in the same plane, as in YUYV: every
+ * second byte is luma, and the bytes between are Cb and Cr in turn. */
 static inline int glint_layout_is_packed(const struct glint_layout *layout)
 {
     return layout->planes == 1 && layout->log2_x;

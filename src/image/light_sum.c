@@ -66,8 +66,8 @@ static inline struct chroma compute_chroma_offsets(const struct glint_ycc *ycc,
 }
 
 /* Adds the light of a row of a Y'CbCr picture to RGB. Sums stay below 2^27,
- * as a call adds at most GLINT_CODES_WIDTH pixels. The contribution of Cb
- * and Cr is computed once for all pixels that share them. */
+ * because a call adds at most GLINT_CODES_WIDTH pixels. The chroma terms are
+ * computed once for all pixels that share Cb and Cr. */
 static void add_ycc_light(const struct glint_light_sum *s,
                           const struct glint_codes *codes, int row, int from,
                           int to, int64_t rgb_q20[3])
@@ -111,8 +111,8 @@ static void add_565_light(const struct glint_light_sum *s,
             rgb_q20[c] += s->curve->curve.decode_q20[codes->sample[c][row][x]];
 }
 
-/* Adds the light of a row of a picture in R, G, B to RGB. Sums stay below
- * 2^27, as a call adds at most GLINT_CODES_WIDTH pixels. */
+/* Adds the light of a row of an R'G'B' picture to RGB. Sums stay below 2^27,
+ * because a call adds at most GLINT_CODES_WIDTH pixels. */
 static void add_rgb_light(const struct glint_light_sum *s, int y, int from,
                           int to, int64_t rgb_q20[3])
 {

@@ -12,13 +12,13 @@
 #include "image/codes.h"
 #include "image/curve.h"
 
-/* Range of R'G'B' codes that Y, Cb and Cr convert to before clamping, -296
- * .. 559; see convert_ycc_to_rgb(). */
+/* Range of the codes R', G', B' before clamping: codes Y, Cb and Cr convert to
+ * -296 .. 559; see convert_ycc_to_rgb(). */
 enum { GLINT_LIGHT_BELOW = 296, GLINT_LIGHT_CODES = GLINT_LIGHT_BELOW + 560 };
 
-/* A table from codes to linear light, also for codes outside 0 .. 255: entry I
- * holds the light of code I - BELOW, clamped, and the difference from the light
- * of the next code. */
+/* A table from codes to linear light, also for codes outside 0 .. 255. Entry I
+ * is for code I - GLINT_LIGHT_BELOW, clamped to 0 .. 255. It holds the light of
+ * that code and the difference to the light of the next code. */
 struct glint_light_curve {
     struct glint_curve curve;
     struct glint_light_code {
@@ -42,9 +42,9 @@ void glint_light_sum_init(struct glint_light_sum *sum,
                           const struct glint_image *image,
                           const struct glint_light_curve *curve);
 
-/* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1, under the limits
+/* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1. The limits are those
  * of glint_codes_read_pixels(). Linear pictures and pictures with separate R,
- * G, B samples are not copied to CODES; glint_light_sum_add_row() reads these
+ * G, B samples are not copied to CODES; glint_light_sum_add_row() reads them
  * directly. */
 void glint_light_sum_read_pixels(struct glint_light_sum *sum,
                                  struct glint_codes *codes, int x, int y,

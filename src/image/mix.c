@@ -12,8 +12,8 @@
             (int16_t)(x), (int16_t)(x), (int16_t)(x)                          \
     }
 
-/* factor 32640 / 32768 converts units of R'G'B', 255 / 32767 of a code, to
- * _q7 */
+/* Factors of kernels/tone.h. A unit of R'G'B' is 255 / 32767 of a code; the
+ * factor 32640 / 32768 converts it to _q7. */
 #define FACTORS(toe, rise, turn)                                    \
     {                                                               \
         {toe, rise, turn, 32640, 0x0202},                           \
@@ -72,10 +72,10 @@ static int64_t divide_and_round(int64_t n, int64_t d)
     return (2 * n + (n < 0 ? -d : d)) / (2 * d);
 }
 
-/* Sets the factors from Y'CbCr in _q7 to the base (luma) and the tints
- * (chroma), which are half of R'G'B' in _q15. A code of 8 bits is 128.5
- * units of R'G'B', so the factors are 257 / 512 of to_rgb; the factor of
- * blue is halved once more, to fit into 16 bits. */
+/* Sets the factors that convert Y'CbCr in _q7 to half of R'G'B' in _q15: the
+ * base (luma) and the tints (chroma). A code of 8 bits is 128.5 units of
+ * R'G'B', so the factors are 257 / 512 of to_rgb. The factor of blue is halved
+ * once more to fit into 16 bits. */
 static void set_ycc_to_rgb_factors(struct glint_mix *mix,
                                    const struct glint_ycc *ycc)
 {
@@ -112,9 +112,9 @@ static void set_rgb_to_ycc_factors(struct glint_mix *mix,
     for (int c = 0; c < 3; c++)
         set_factor_in_all_lanes(f, GLINT_MIX_LUMA + c,
                                 divide_and_round(m_q15[0][c] * 256, 257));
-    /* Cb is PER (B' - Y'), Cr is PER (R' - Y'). Y' contains a fraction of B'
-     * and R', so PER is larger than the factor of B' in Cb, or R' in Cr, alone.
-     */
+    /* Cb is PER (B' - Y'), and Cr is PER (R' - Y'). Y' contains a fraction of
+     * B' and R'. Therefore PER is larger than the factor of B' in Cb, or of R'
+     * in Cr, in the matrix. */
     for (int k = 0; k < 2; k++) {
         const int own = k ? 0 : 2;
         const int64_t own_q15 = m_q15[k + 1][own];

@@ -3,8 +3,7 @@
 
 enum {
     STEP = 2 * GLINT_LANES
-}; /* number of pixels that kernels process at a
-      time */
+}; /* step of the kernels: number of pixels that they process at a time */
 
 /* A run of pixels of two rows of a picture, or of its last row alone. */
 struct stretch {

@@ -6,8 +6,8 @@
  *    in linear light, _q16, one value per 2 x 2 pixels
  *    out the picture's own codes, changed in place
  *
- * If pixel pairs share chroma in Y'CbCr, the change by the light is computed
- * once, for the mean of the four pixels, which is a quarter of the work. Each
+ * In Y'CbCr formats whose pixel pairs share chroma, the change is computed
+ * once, for the mean of the 2 x 2 pixels. This is a quarter of the work. Each
  * pixel then changes in proportion to its distance from white. If the four
  * pixels are equal, the result equals that of resolve.h. In other formats light
  * is added pixel by pixel. */
@@ -26,10 +26,10 @@ struct glint_quads_rows {
 
 /* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) to the right and down. X
  * must be a multiple of 8 and Y even. N_X is at most GLINT_CODES_WIDTH, and may
- * be odd only at the right side of the picture; N_Y is 2, or 1 in the picture's
- * last row. A quad is 2 x 2 pixels: LIGHT[c] holds channel c of the row's (N_X
- * + 1) / 2 quads, begins at a 32-byte boundary and has memory for that number
- * of quads rounded up to a multiple of GLINT_LANES. */
+ * be odd only at the right side of the picture. N_Y is 2, or 1 in the picture's
+ * last row. A quad is 2 x 2 pixels. LIGHT[c] holds channel c of (N_X + 1) / 2
+ * quads, is aligned to 32 bytes, and has memory for that number of quads
+ * rounded up to a multiple of GLINT_LANES. */
 typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     const struct glint_image *image, int x,
                                     int y, int n_x, int n_y,

@@ -58,8 +58,8 @@ static void compute_luminance(const struct glint_light_rows *light, int row,
 }
 
 /* Adds light to one row of chroma that has one sample per pixel. OWN is the
- * change of B' (for Cb) or R' (for Cr), LUMA the change of Y'. FACTOR[2] are
- * the factors by which OWN and LUMA change chroma. */
+ * change of B' if the row is Cb, and of R' if it is Cr. LUMA is the change of
+ * Y'. FACTOR[2] are the factors from OWN and LUMA to chroma. */
 static void add_change_to_chroma(uint8_t *code, const int16_t *own,
                                  const int16_t *luma, const int16_t *factor_q15,
                                  int n, const int16_t *round)

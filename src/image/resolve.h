@@ -7,11 +7,11 @@
  *        encode. In every format a pixel without light preserves its code
  *        exactly, and no pixel gets darker.
  *
- * Y'CbCr pictures: the change of R'G'B' is carried over to Y' per pixel, and to
- * Cb and Cr as the mean change over the pixels that share the sample; samples
- * that change by less than half a code stay unchanged. Codes outside the R'G'B'
- * cube are clamped to it only for the sum, so that pixels change continuously
- * as light rises from 0.
+ * Y'CbCr pictures: the change of R'G'B' is added to Y' per pixel. Cb and Cr
+ * change by the mean over the pixels that share the sample. Samples that would
+ * change by less than half a code stay unchanged. Codes outside the R'G'B' cube
+ * are clamped to it only to compute the change, so that pixels change
+ * continuously as light rises from 0.
  *
  * Grey pictures: the luminance of the light is added, with the weights of
  * BT.709, as linear light has the primaries of BT.709; the picture's matrix is
@@ -33,9 +33,9 @@ struct glint_resolve {
     struct glint_mix mix;
     const struct glint_kernels *kernels;
     unsigned sets;
-    /* The fraction of a code that is added before rounding down: 1/2 for all
-     * pixels, or an 8 x 8 dither pattern whose mean is 1/2 and whose values are
-     * below 1, so that integer codes do not change. */
+    /* Fraction of a code that is added before rounding down. It is 1/2 for all
+     * pixels, or an 8 x 8 dither pattern whose mean is 1/2. Values are below 1,
+     * so that codes without light do not change. */
     int16_t round_q7[8][8];
 };
 
@@ -62,17 +62,17 @@ void glint_resolve_init(struct glint_resolve *resolve,
                         unsigned sets);
 
 /* Adds LIGHT to pixels X .. X + N_X - 1 of N_Y rows (1 or 2) of IMAGE, from row
- * Y down. IMAGE must not be LINEAR_Q20. X must be a multiple of 8 and Y even;
- * N_X must be even except at the picture's right side, and N_Y must be 2 except
- * in its last row. So calls share no sample, and may run in any order or
- * concurrently. */
+ * Y down. IMAGE must not be LINEAR_Q20. X must be a multiple of 8 and Y even.
+ * N_X must be even except at the picture's right side; N_Y must be 2 except in
+ * its last row. So no two calls change the same sample, and calls may run in
+ * any order or concurrently. */
 void glint_resolve_add_to_run(const struct glint_resolve *resolve,
                               const struct glint_image *image, int x, int y,
                               int n_x, int n_y, struct glint_light_rows *light,
                               struct glint_resolve_rows *rows);
 
-/* Adds LIGHT to the pixels that were read to rows->codes, without writing them
- * to IMAGE. */
+/* Adds LIGHT to the pixels in rows->codes, which the caller has read, without
+ * writing them to IMAGE. */
 void glint_resolve_add_to_codes(const struct glint_resolve *resolve,
                                 const struct glint_image *image, int y, int n_x,
                                 int n_y, struct glint_light_rows *light,

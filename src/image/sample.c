@@ -18,8 +18,8 @@ static void convert_ycc_sample(const struct glint_ycc *ycc, int y, int cb,
         rgb[c] = clamp_to_code(rgb_q7[c]);
 }
 
-/* Widens five or six bits to eight by repeating the upper bits, so that white
- * stays white. */
+/* Expands a pixel of 5, 6 and 5 bits to 8 bits per channel. The upper bits are
+ * repeated, so that white stays white. */
 static void read_565_pixel(const uint8_t *p, uint8_t rgb[3])
 {
     const int code = p[0] | p[1] << 8;
