@@ -14,8 +14,8 @@ void glint_bins_init(struct glint_bins *bins, struct glint_box region,
     bins->ref = ref;
 }
 
-/* Returns the range of columns and rows of the tiles that BOX overlaps; an
- * empty box if there is none. */
+/* Returns the columns and rows of the tiles that BOX overlaps, as a box in
+ * units of tiles; the box is empty if BOX overlaps no tile. */
 static struct glint_box find_tile_range(const struct glint_bins *bins,
                                         struct glint_box box)
 {

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sorts items into tiles by their bounding boxes in pixels: the list of a tile
- * has the indices of all items whose boxes overlap the tile.
+ * Sorts items into tiles by their bounding boxes in pixels. Each tile gets a
+ * list of the indices of all items whose boxes overlap the tile.
  *
- * Three steps: entries per tile are counted, a prefix sum converts counts to
- * the beginnings of the lists, items are added to the lists. So lists need no
- * spare memory, and they are sorted by item whatever the order in which workers
- * add items. The same code serves both levels: a frame is binned into large
- * tiles, and a large tile into small tiles. */
+ * There are three steps: count the entries of each tile; convert the counts to
+ * start indices of the lists by a prefix sum; add the items to the lists. So
+ * lists need no spare memory. The same code is used twice: it bins a frame into
+ * large tiles, and a large tile into small tiles. */
 #ifndef GLINT_TILE_BINS_H
 #define GLINT_TILE_BINS_H
 
@@ -19,8 +18,8 @@ struct glint_bins {
     struct glint_box region; /* pixels that the tiles cover */
     int tile_log2;
     int tiles_x, tiles_y;
-    /* [tiles_x * tiles_y + 1]: for each tile, the index in ref at which its
-     * list begins; before the prefix sum, the length of its list */
+    /* start index of each tile's list in ref, [tiles_x * tiles_y + 1]; before
+     * the prefix sum, the length of the list */
     int32_t *start;
     int32_t *ref; /* lists of all tiles, one after the other: indices of items,
                      rising within a list */
@@ -36,15 +35,15 @@ void glint_bins_init(struct glint_bins *bins, struct glint_box region,
 int glint_bins_count_overlapped_tiles(const struct glint_bins *bins,
                                       struct glint_box box);
 
-/* glint_bins_clear_counts() sets the counts of all tiles to 0;
- * glint_bins_count_box() increments the counts of the tiles that BOX overlaps
- * and is called once per item. */
+/* Count the entries of lists. glint_bins_clear_counts() sets the counts of all
+ * tiles to 0. glint_bins_count_box() is called once per item and increments the
+ * counts of the tiles that BOX overlaps. */
 void glint_bins_clear_counts(struct glint_bins *bins);
 void glint_bins_count_box(struct glint_bins *bins, struct glint_box box);
 /* Converts the counts to start indices of the lists. */
 void glint_bins_convert_counts_to_starts(struct glint_bins *bins);
-/* Appends ITEM to the lists of the tiles that BOX overlaps. Items must be added
- * in the order that the lists are to have. */
+/* Appends ITEM to the lists of the tiles that BOX overlaps. Lists have the
+ * order in which items are appended. */
 void glint_bins_put_item(struct glint_bins *bins, struct glint_box box,
                          int32_t item);
 /* Resets the start indices, which glint_bins_put_item() advanced, to the

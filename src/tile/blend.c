@@ -3,8 +3,8 @@
 
 #include "base/q.h"
 
-/* Returns the light that a layer with COVER lets through from behind it: LIGHT
- * (1 - COVER). */
+/* Returns the part of LIGHT that passes through a layer in front of it, whose
+ * cover is COVER: LIGHT (1 - COVER). */
 static int64_t attenuate_light(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
@@ -46,8 +46,8 @@ static void blend_linear_light(const struct glint_pass_rows *rows, int n_x,
 }
 
 /* Combines the cover of the current pass with the total cover of the passes
- * behind it: 1 - (1 - cover) (1 - cover of this pass). COVERED is 0 if no
- * earlier pass gave cover; the total is then not yet initialised. */
+ * behind it: 1 - (1 - total) (1 - cover). If no earlier pass gave cover,
+ * COVERED is 0 and the total is not initialised yet. */
 static void add_pass_cover_to_total(struct glint_blend_rows *s, int row,
                                     int n_x, int covered)
 {
@@ -92,7 +92,7 @@ static enum glint_given blend_pass(const struct glint_pass *pass, void *state,
 
 /* ------------------------------------------------------------------- cover */
 
-/* Copies each of the PART cover values of a row at half resolution to 2 x 2
+/* Copies each of PART cover values of a row at half resolution to 2 x 2
  * pixels. */
 static void upsample_cover_row(const uint16_t *from_q8, int part,
                                struct glint_cover_rows *to)

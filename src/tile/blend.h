@@ -11,8 +11,8 @@
 
 #include "tile/pass.h"
 
-/* The functions that blend several passes: set the member blend of struct
- * glint_tiles to the address of this variable. */
+/* Table of the functions that blend several passes. Programs that blend set
+ * member blend of struct glint_tiles to its address. */
 extern const struct glint_blend glint_blend;
 
 #endif

@@ -15,7 +15,7 @@ struct visit {
 };
 
 /* Draws ROWS with all passes that are active in this tile, from back to front.
- * Returns the type of their combined output. */
+ * Returns whether their combined output has light or cover. */
 static enum glint_given call_active_passes(const struct visit *v,
                                            struct glint_pass_rows *rows)
 {
@@ -46,7 +46,8 @@ static void attenuate_picture_row(const struct visit *v, enum glint_given given,
 
 /* ------------------------------------------------------------------ linear */
 
-/* Expands N values to 2 N in place by repeating each value. */
+/* Expands N values to 2 N in place by repeating each value. Iterates backwards,
+ * so that no value is overwritten before it is read. */
 static void repeat_each_row_value(int32_t *row, int n)
 {
     for (int i = n - 1; i >= 0; i--)
@@ -96,8 +97,8 @@ static void resolve_code_rows(const struct visit *v, enum glint_given given,
                                  rows->light, &v->scratch->codes->rows);
 }
 
-/* Draws a tile of a picture in codes two rows at a time, as 4:2:0 rows share
- * their chroma in pairs. */
+/* Draws a tile of a picture in codes, two rows at a time, because two rows
+ * share chroma in 4:2:0. */
 static void draw_code_tile(const struct visit *v)
 {
     struct glint_pass_rows rows = {.light = v->scratch->light};

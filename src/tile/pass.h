@@ -2,8 +2,8 @@
  *
  * Draws passes (flare, scene, stars ...) onto a picture, tile by tile.
  *
- *   in   passes, from the hindmost to the foremost; the picture as it is so far
- *   out  its pixels, changed in place
+ * in   passes, from back to front; the picture behind them out  its pixels,
+ * changed in place
  *
  * The driver processes a row of tiles from left to right, so that a pass may
  * carry state from tile to tile. Within a tile it draws two pixel rows at a
@@ -32,14 +32,14 @@ enum { GLINT_MAX_PASSES = 4 };
  * light_q20, and N is 1; otherwise it writes LIGHT. */
 struct glint_pass_rows {
     int y, n;
-    struct glint_light_rows *light; /* light, _q16; rows padded to GLINT_LANES
-                                     */
+    /* Light, _q16; rows are padded to a multiple of GLINT_LANES values. */
+    struct glint_light_rows *light;
     int32_t *light_q20[3];          /* R, G and B: one value per pixel of the
                                        row */
     struct glint_cover_rows *cover; /* if NULL, passes must not give cover */
 };
 
-/* What a pass has written for its rows. */
+/* Output of a pass for its rows. */
 enum glint_given {
     GLINT_GIVES_NOTHING,
     GLINT_GIVES_LIGHT, /* light in all three channels */
@@ -48,14 +48,14 @@ enum glint_given {
 
 struct glint_pass {
     const void *self;
-    /* Begins row ROW of tiles on worker WORKER. Returns the STATE that the
-     * functions below get. */
+    /* Begins row ROW of tiles on worker WORKER. Returns the STATE that is
+     * passed to the functions below. */
     void *(*begin)(const void *self, struct glint_box row, int worker);
-    /* Begins tile TILE. Returns 0 if the pass draws nothing in it; rows is
-     * not called then. */
+    /* Begins tile TILE. Returns 0 if the pass draws nothing in the tile; ROWS
+     * is then not called. */
     int (*tile)(void *state, struct glint_box tile);
-    /* Draws rows of the current tile. It is called once for each row, from
-     * top to bottom, even if the light is discarded. */
+    /* Draws rows of the current tile. Called from the top row to the bottom row
+     * of the tile, once for each row, even if the light is discarded. */
     enum glint_given (*rows)(void *state, const struct glint_pass_rows *rows);
 };
 
