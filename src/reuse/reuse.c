@@ -8,21 +8,23 @@
 #include "flare/state.h"
 
 struct reuse {
-    int n_lights; /* number of lights stored; -1: none, as the frame had more
-                     than reuse_lights lights */
+    /* Number of lights stored; -1: none, because the frame had more than
+     * reuse_lights lights. */
+    int n_lights;
     struct glint_flare_frame frame;
     uint64_t digest; /* digest of the waves, wave sets and tints that FRAME
                         points to */
     struct glint_light *light;
-    /* [max_bundles], NULL unless cfg.reuse_gains is set: colours of the bundles
-     * before the multiplication by gain_q14; set in the first frame that has
-     * gains */
+    /* Colours of the bundles before they are multiplied by gain_q14,
+     * [max_bundles]. Set in the first frame that has gains; NULL unless
+     * cfg.reuse_gains is set. */
     int32_t (*rgb_q14)[3];
     int has_rgb;
 };
 
-/* Allocates the reuse state from arena A. Called twice: with an arena that only
- * measures (returns NULL), then to allocate. */
+/* Allocates the reuse state from arena A. Called twice: first with an arena
+ * that only counts bytes, where it returns NULL; then with an arena that has
+ * memory. */
 static void *allocate_reuse_state(struct glint_arena *a,
                                   const struct glint_flare_config *c)
 {

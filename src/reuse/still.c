@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Static lights: each light of a frame is assigned to a light that was planned
- * in an earlier frame, whose rays are drawn again. A change of brightness
- * becomes a factor on the colours of the light's bundles. */
+ * Matches the lights of a frame to lights that were planned in an earlier frame
+ * (static lights). The rays of the static lights are then drawn again. A change
+ * of brightness becomes a factor on the colours of the light's bundles. */
 #include "flare/dim.h"
 #include "flare/state.h"
 
@@ -36,7 +36,8 @@ static int find_nearest_planned_light(const struct glint_still *s,
     return at;
 }
 
-/* Returns the power of light B in channel C / the power UNIT; at most 2^4. */
+/* Returns (power of light B in channel C) / UNIT, at most 2^4. UNIT is a
+ * power. */
 static int64_t compute_channel_over_power_q20(const struct glint_light *b,
                                               int c, struct glint_real unit)
 {
@@ -46,9 +47,9 @@ static int64_t compute_channel_over_power_q20(const struct glint_light *b,
     return real_integer(real_over(x, unit), 20, INT64_C(1) << 24);
 }
 
-/* Sets the gains of planned light I to the power that was assigned to it
- * (sum_q20) divided by its planned power. Returns 0 if a gain would exceed 1.5,
- * or would change the colour by more than 1/64. */
+/* Sets the gains of planned light I to (power that was assigned to it, sum_q20)
+ * / (its planned power). Returns 0 if a gain would exceed 1.5, or if the gains
+ * would change the colour by more than 1/64. */
 static int compute_light_gain(struct glint_still *s, int i)
 {
     const int64_t *sum_q20 = s->sum_q20[i];
