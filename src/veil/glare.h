@@ -14,8 +14,8 @@
  * 9358 measures the veiling glare index V: the fraction of white light in the
  * image of a small black spot on a wide white background. If the fraction V of
  * all light is scattered, a scene P becomes (1 - V) P + V K P, where K is a
- * kernel with integral 1. With the exposure corrected such that the direct
- * image stays unchanged, the veil adds
+ * convolution with a kernel of integral 1. The exposure is corrected so that
+ * the direct image stays unchanged. The veil then adds
  *
  *     V / (1 - V) K P
  *
@@ -24,12 +24,11 @@
  * picture, plus the light of lamps above white. K is a sum of Gaussians,
  * mirrored at the picture's borders, so that no light is lost. Quadratic
  * splines interpolate the light of the cells without visible steps. Light
- * scattered by dirt on the front element has cells of its own; these are
- * multiplied by a table of the covered fraction of the front element for each
- * pixel. [Talvala, Adams, Horowitz, Levoy, Veiling glare in high dynamic range
- * imaging, ACM TOG 26(3), 2007; McCann, Rizzi, Camera and visual veiling glare
- * in HDR images, J. SID 15(9), 2007]
- */
+ * scattered by dirt on the front element has cells of its own. They are
+ * multiplied by the fraction of the front element that dirt covers, from a
+ * table over the pixels. [Talvala, Adams, Horowitz, Levoy, Veiling glare in
+ * high dynamic range imaging, ACM TOG 26(3), 2007; McCann, Rizzi, Camera and
+ * visual veiling glare in HDR images, J. SID 15(9), 2007] */
 #ifndef GLINT_VEIL_GLARE_H
 #define GLINT_VEIL_GLARE_H
 
@@ -49,12 +48,13 @@ enum {
     GLINT_VEIL_LEAST_PX = 4 /* min side of a cell, pixels */
 };
 
-/* A Gaussian kernel over cells, separable in x and y. */
+/* A Gaussian kernel by which the light of cells is scattered, separable in x
+ * and y. */
 struct glint_veil_spread {
-    /* [D], D = 0 .. n: the fraction of its light that a cell scatters to a cell
-     * at a distance of D cells, in a row of n cells that is continued by
-     * mirroring with period 2 n. Entry 0 plus entry n plus twice all others is
-     * 2^30. */
+    /* Scattered fractions for a row of n cells, which is continued by mirroring
+     * with period 2 n. Entry D, D = 0 .. n, is the fraction of its light that a
+     * cell scatters to a cell at a distance of D cells. Entry 0 plus entry n
+     * plus twice all others is 2^30. */
     int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
     /* fraction of all light that this kernel scatters, above 0 */
     struct glint_real share;
@@ -68,8 +68,8 @@ struct glint_veil_config {
                       scatters */
 };
 
-/* Distance in pixels between the nodes of the cover table of the front element;
- * and number of nodes along a side of SIDE pixels. */
+/* Distance in pixels between the nodes of the cover table of the front element.
+ * GLINT_VEIL_FRONT_NODES(side) is the number of nodes along SIDE pixels. */
 enum { GLINT_VEIL_FRONT_PX = 4 };
 #define GLINT_VEIL_FRONT_NODES(side) \
     (((side) + GLINT_VEIL_FRONT_PX - 1) / GLINT_VEIL_FRONT_PX + 1)
@@ -80,13 +80,13 @@ typedef void glint_veil_front_fn(const struct glint_veil_row *row,
                                  const struct glint_pass_rows *rows, int k);
 glint_veil_front_fn glint_veil_add_front_row;
 
-/* Table of cover: the fraction of the beam of each pixel that dirt on the front
- * element covers. A program links the drawing code only if it refers to
+/* Cover table of the front element: for each pixel, the fraction of its beam of
+ * light that dirt covers. A program links the drawing code only if it refers to
  * glint_veil_add_front_row. */
 struct glint_veil_front {
     glint_veil_front_fn *row; /* glint_veil_add_front_row() */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of width and height */
-    /* [n_y][n_x]: cover / max cover, at the top left corner of every fourth
+    /* Cover / max cover, [n_y][n_x], at the top left corner of every fourth
      * pixel in every fourth row. Must stay valid while the veil is drawn. */
     const uint16_t *part_q16;
 };
@@ -109,9 +109,9 @@ enum glint_status glint_veil_init(struct glint_veil **veil,
                                   const struct glint_veil_config *cfg,
                                   void *mem, size_t bytes);
 
-/* Sets the light of the cells to the sums over the pixels of IMAGE, whose white
- * has the linear light WHITE. Removes the lamps of earlier frames. IMAGE may be
- * NULL for a black picture, WORKERS NULL for a single thread. */
+/* Sets the light of each cell to the sum over its pixels of IMAGE. WHITE is the
+ * linear light of the white of IMAGE. Removes the lamps of earlier frames.
+ * IMAGE may be NULL for a black picture, WORKERS NULL for a single thread. */
 void glint_veil_read_picture(struct glint_veil *veil,
                              const struct glint_image *image,
                              struct glint_real white,
@@ -128,10 +128,10 @@ void glint_veil_add_lamp(struct glint_veil *veil, int32_t x_q8, int32_t y_q8,
 void glint_veil_spread_light(struct glint_veil *veil,
                              const struct glint_veil_spread *spreads, int n);
 
-/* Computes the light that dirt on the front element scatters: convolves the
- * light of the cells with N Gaussians, whose shares apply where the cover is at
- * its max. FRONT must stay valid while the veil is drawn; NULL, the initial
- * state: no dirt. Requires has_front in the configuration. */
+/* Computes the light that dirt on the front element scatters, by convolving the
+ * light of the cells with N Gaussians. Their shares are the scattered fractions
+ * where the cover is at its max. FRONT must stay valid while the veil is drawn;
+ * NULL, the initial state: no dirt. Requires has_front in the configuration. */
 void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n);
@@ -143,8 +143,8 @@ void glint_veil_draw(struct glint_veil *veil, const struct glint_pass *over,
                      struct glint_flare *flare,
                      const struct glint_image *image);
 
-/* Draws the veil without the ghosts of FLARE, whose workers and tiles are used.
- */
+/* Draws the veil onto IMAGE, with the workers and tiles of FLARE but without
+ * its ghosts. */
 void glint_veil_draw_alone(struct glint_veil *veil, struct glint_flare *flare,
                            const struct glint_image *image);
 

@@ -9,21 +9,21 @@
 #include "tile/blend.h"
 #include "veil/glare.h"
 
-/* Number of pixels that are computed per vector operation; tables have as many
- * extra entries. */
+/* Number of pixels that are computed per vector operation. Tables have this
+ * number of extra entries at their end. */
 enum { GLINT_VEIL_LANES = 8 };
 
-/* For each pixel along one axis of the picture: its cell, and the weights with
- * which it interpolates between cells. */
+/* Position of the pixels of one axis (columns or rows) among the cells: for
+ * each pixel, its cell and the weights for interpolation between cells. */
 struct glint_veil_axis {
     uint8_t *cell;  /* [side]: index of the cell of each pixel */
     int32_t *start; /* [cells + 1]: index of the first pixel of each cell */
-    /* [side + LANES]: quadratic spline weights of the previous cell, the
-     * pixel's cell and the next cell: (1 - t)^2 / 2, 1 minus both others,
-     * t^2 / 2, where t = 0 .. 1 is the position in the cell. */
+    /* Quadratic spline weights of each pixel, [side + LANES]. With t = 0 .. 1,
+     * the position in the cell, they are (1 - t)^2 / 2 for the previous cell,
+     * t^2 / 2 for the next cell, and the rest to 1 for the pixel's cell. */
     uint16_t *share_q16[3];
-    /* for each cell: its exact width in pixels / number of pixels summed, so
-     * that a uniform picture gives uniform cells */
+    /* for each cell, (exact width in pixels) / (number of pixels that are
+     * summed), so that a uniform picture gives uniform cells */
     uint32_t *fill_q16;
 };
 
@@ -46,10 +46,11 @@ struct glint_veil {
      */
     int64_t *light_q16;
     int32_t *narrow, *along;
-    int64_t *sum_q30;   /* veil of each cell, 1 = white */
-    int32_t *cell_q20;  /* veil of each cell, 1 = white, clamped to 0 .. 2^28 */
-    int is_linear, any; /* is_linear: 1 if the picture is linear; any: 1 if the
-                           veil is not dark */
+    int64_t *sum_q30;  /* veil of each cell, 1 = white */
+    int32_t *cell_q20; /* veil of each cell, 1 = white, clamped to 0 .. 2^28 */
+    /* is_linear: 1 if the picture is linear. any: 1 if the veil is not
+     * black. */
+    int is_linear, any;
     const struct glint_veil_front *front; /* cover table of the front element,
                                              or NULL */
     int32_t *front_q20; /* light that dirt on the front element scatters to each
@@ -72,8 +73,8 @@ int glint_veil_spread_light_to(struct glint_veil *veil,
                                int32_t *cell_q20);
 
 /* Interpolates channel C of CELL for the pixels of row Y of the tile. Writes
- * TO, in units of white 2^(DOWN - 20) and clamped to 65534, or TO_Q20; the
- * other pointer is NULL. */
+ * the result to TO, in units of white 2^(DOWN - 20) and clamped to 65534; or to
+ * TO_Q20. The pointer that is not used is NULL. */
 void glint_veil_interpolate_row(const struct glint_veil_row *row,
                                 const int32_t *cell_q20, int c, int y, int down,
                                 uint16_t *to, int32_t *to_q20);

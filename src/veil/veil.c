@@ -45,8 +45,9 @@ static void allocate_cell_axis(struct glint_arena *a,
     axis->fill_q16 = glint_arena_allocate(a, N, sizeof *axis->fill_q16);
 }
 
-/* Allocates a veil and its arrays from arena A. Called twice: with an arena
- * that only measures (returns NULL), then to allocate. */
+/* Allocates a veil and its arrays from arena A. Called twice: first with an
+ * arena that only counts bytes, where it returns NULL; then with an arena that
+ * has memory. */
 static struct glint_veil *allocate_veil(struct glint_arena *a,
                                         const struct glint_veil_config *c)
 {
@@ -88,8 +89,8 @@ size_t glint_veil_count_bytes(const struct glint_veil_config *cfg)
     return arena.used;
 }
 
-/* Sets fill_q16 of each of N cells along SIDE pixels: the cell's exact width /
- * number of pixels summed in it. Pixels are read in groups of STEP, and a group
+/* Sets fill_q16 of each of N cells along SIDE pixels: (the cell's exact width)
+ * / (number of pixels summed in it). Pixels are read in groups of STEP; a group
  * belongs to the cell of its first pixel. */
 static void compute_cell_fill_factors(struct glint_veil_axis *axis, int side,
                                       int n, int step)
@@ -114,7 +115,7 @@ static void set_axis_weights(struct glint_veil_axis *axis, int side, int n)
     uint32_t next = 0;
 
     for (int i = 0; i < side; i++) {
-        /* the pixel's centre, in units of 1 / TWICE cells */
+        /* position of the pixel's centre, in units of 1 / TWICE cells */
         const uint32_t at = (uint32_t)(2 * i + 1) * (uint32_t)n;
         const uint32_t cell = at / twice;
         const uint64_t t_q16 = ((uint64_t)(at - cell * twice) << 16) / twice;
@@ -184,7 +185,8 @@ static int compute_shift_to_30_bits(const int64_t *light_q16, int n)
 }
 
 /* Sets SHARE[i], for each of N cells in a row, to the fraction of its light
- * that cell i scatters to cell TO, directly or mirrored at a border. */
+ * that cell i scatters to cell TO. It includes the light that is mirrored at a
+ * border. */
 static void
 compute_spread_fractions_to_cell(const int32_t *table_q30, int n, int to,
                                  int32_t share_q30[GLINT_VEIL_CELLS])

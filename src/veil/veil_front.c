@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws light that dirt on the front element scatters: interpolated cells times
- * the covered fraction of the front element, as each pixel sees it.
- */
+ * Draws the light that dirt on the front element scatters: for each pixel, the
+ * interpolated light of the cells times the fraction of its beam that dirt
+ * covers. */
 #include "base/q.h"
 #include "veil/parts.h"
 
@@ -26,9 +26,9 @@ void glint_veil_front(struct glint_veil *veil,
         veil->front_down++;
 }
 
-/* Interpolates the covered fraction of the front element bilinearly for pixels
- * X0 .. X1 - 1 of row Y, and a few more. X0 must be a multiple of PX. Nodes lie
- * at the top left corners of every PX-th pixel. */
+/* Interpolates the cover of the front element bilinearly for pixels X0 .. X1 -
+ * 1 of row Y, and a few more. X0 must be a multiple of PX. Nodes lie at the top
+ * left corners of every PX-th pixel. */
 static void interpolate_front_cover(const struct glint_veil_front *front, int y,
                                     int x0, int x1, uint16_t *part_q16)
 {

@@ -12,16 +12,16 @@ struct look {
     struct glint_real white;
 };
 
-/* Adds SUM, the light of the pixels read in cell (X, Y), to the cell, scaled to
- * the cell's exact area. */
+/* Adds SUM to cell (X, Y), scaled to the cell's exact area. SUM is the light of
+ * the pixels that were read in the cell. */
 static void add_light_to_cell(const struct look *l, int x, int y,
                               const int64_t sum_q20[3])
 {
     const struct glint_veil *v = l->veil;
 
     for (int c = 0; c < 3; c++) {
-        /* in units of 2^-11: 2^16 white pixels need 28 bits; larger sums are
-         * clamped to 31 bits */
+        /* In units of 2^-11, 2^16 white pixels need 28 bits. Larger sums are
+         * clamped to 31 bits. */
         const int64_t seen = q_clamp_sat(q_shift(sum_q20[c], 9), 0, INT32_MAX);
         const int64_t part =
             q_clamp_sat(q_shift(q_shift(seen * v->across.fill_q16[x], 16) *

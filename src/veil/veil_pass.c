@@ -24,8 +24,9 @@ static int begin_veil_tile(void *state, struct glint_box tile)
     return r->veil->any || r->veil->any_front;
 }
 
-/* Interpolates channel C of N cells, from column FIRST on, vertically to pixel
- * row Y. The unit of LIGHT is white 2^(DOWN - 20); it is clamped to MOST. */
+/* Interpolates channel C of N cells, from column FIRST on, vertically at pixel
+ * row Y. Sets LIGHT to the result, in units of white 2^(DOWN - 20), clamped to
+ * MOST. */
 static void interpolate_cells_vertically(const struct glint_veil *v,
                                          const int32_t *cell_q20, int c, int y,
                                          int first, int n, int down,
@@ -60,10 +61,10 @@ static inline uint16_t multiply_high(uint16_t a, uint16_t b)
     return (uint16_t)((uint32_t)a * b >> 16);
 }
 
-/* Interpolates LIGHT of three neighbouring cells, 0 .. 65534, to the N pixels
- * from X on; also writes pixels up to the end of the last vector. Each product
- * is truncated and loses 2^-17 on average; adding 2^-16 where there is light
- * compensates for part of the loss. */
+/* Interpolates between three neighbouring cells with LIGHT, 0 .. 65534, for the
+ * N pixels from X on; also writes pixels up to the end of the last vector. Each
+ * product is truncated and loses 2^-17 on average. Adding 2^-16 where there is
+ * light compensates for part of the loss. */
 static void interpolate_code_pixels(const struct glint_veil_axis *axis, int x,
                                     int n, const int32_t light_q16[3],
                                     uint16_t *restrict to_q16)
