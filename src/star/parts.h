@@ -10,40 +10,45 @@
 #include "tile/blend.h"
 
 enum {
-    /* number of distance zones around a light; each zone ends at four times the
-     * distance of the previous one */
+    /* Number of distance zones around a light. A zone is a range of distances;
+     * it ends at four times the distance of the previous zone's end. */
     GLINT_STAR_ZONES = 8,
-    GLINT_STAR_INVERSES = 128 /* number of steps of the table of 1 / x, x = 1 ..
-                                 2 */
+    /* Number of steps of the table of 1 / x for x = 1 .. 2. */
+    GLINT_STAR_INVERSES = 128
 };
 
 /* A light that is drawn: its position, its power in units of the tables, and
  * the distances up to which it is visible. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
-    uint64_t inner_q16; /* min r^2 in the factor 1 / r^2, pixels^2 */
+    uint64_t inner_q16; /* lower bound of r^2 in the factor 1 / r^2, pixels^2,
+                           where r is the distance from the lamp */
     int is_bare;        /* 1: the picture does not show the lamp, so its core is
                            drawn, too */
     /* Power per channel in three forms. line: light where the line profile is
-     * 1, a mantissa of 15 bits times 2^line_exponent; core: power of the lamp,
-     * a mantissa of 15 bits times 2^core_exponent; halo: log2 of the power. */
+     * 1; each mantissa has 15 bits and counts times 2^line_exponent. core:
+     * power of the lamp, a mantissa of 15 bits times 2^core_exponent. halo:
+     * log2 of the power. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
-    /* Scale of the line profiles after widening by the lamp's radius: profile
-     * steps per pixel, and pixels per profile step. */
+    /* Scale of the line profiles, which the lamp's radius widens: profile steps
+     * per pixel, and pixels per profile step. */
     int32_t per_pixel_q16, pixels_q16;
-    /* Halo tables, [GLINT_STAR_HALO_ROWS] each, for the tabulated lamp radii
-     * below (halo) and above (next_halo) the lamp's radius, and the weight of
-     * next_halo. Both pointers are equal if there is only one table. */
+    /* Tables between which the halo is interpolated: for the nearest tabulated
+     * radius below the lamp's radius (halo) and above it (next_halo).
+     * halo_part_q15 is the weight of next_halo. If there is only one table,
+     * both pointers are equal. */
     const glint_star_halo_row *halo, *next_halo;
     int halo_part_q15;
-    int reach, halo_reach; /* distances from the lamp, pixels, beyond which
-                              lines (reach) and halo are invisible */
-    int smear_reach; /* distance from the lamp, pixels, beyond which diffraction
-                        by dirt in the stop is invisible */
+    /* Distances from the lamp, pixels, up to which the lines (reach) and the
+     * halo are visible. */
+    int reach, halo_reach;
+    /* Distance from the lamp, pixels, up to which the light diffracted by dirt
+     * in the stop (the smear) is visible. */
+    int smear_reach;
     int n_zones;
-    /* Zone i extends from distance start[i] to start[i + 1], where distance
-     * means max(|dx|, |dy|) in pixels. In zone i the profile steps 0 .. seen[i]
-     * - 1 are visible. */
+    /* Zone i extends from distance start[i] to start[i + 1], where distance is
+     * max(|dx|, |dy|) in pixels. In zone i the first seen[i] steps of the line
+     * profiles are visible. */
     int start[GLINT_STAR_ZONES + 1];
     int seen[GLINT_STAR_ZONES];
 };
@@ -78,8 +83,9 @@ struct glint_star {
     struct glint_star_row *worker; /* [n_workers] */
     struct glint_blend_rows *rows; /* [n_workers] */
     uint32_t
-        inverse_q31[GLINT_STAR_INVERSES + 2]; /* [i]: 2^31 / (2^15 (1 + i / n)),
-                                                 n = GLINT_STAR_INVERSES */
+        /* Table of inverses: entry i is 2^31 / (2^15 (1 + i /
+         * GLINT_STAR_INVERSES)). */
+        inverse_q31[GLINT_STAR_INVERSES + 2];
 };
 
 glint_star_part_fn glint_star_add_lines_row, glint_star_add_halo_row,

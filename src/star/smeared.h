@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Table of the light that dust, scratches, smudges and masks in the stop
- * diffract around a lamp (the smear), in nested squares. Each square is twice
- * as wide as the previous one and has the same number of table steps per side.
- * A program links the drawing code only if it refers to
- * glint_star_add_smear_row.
- */
+ * Table of the smear: the light that dust, scratches, smudges and masks in the
+ * stop diffract around a lamp. It consists of nested squares. Each square is
+ * twice as wide as the previous one and has the same number of table steps per
+ * side. A program links the drawing code only if it refers to
+ * glint_star_add_smear_row. */
 #ifndef GLINT_STAR_SMEARED_H
 #define GLINT_STAR_SMEARED_H
 
@@ -36,8 +35,8 @@ struct glint_star_smear {
     glint_star_part_fn *part; /* glint_star_add_smear_row() */
     /* for each square, the light of a table value of 1 */
     struct glint_real step[GLINT_STAR_SMEAR_RINGS];
-    /* [square][row][column][channel], rows for y >= 0 only. The half with y < 0
-     * is its point reflection through the centre. */
+    /* Table values, [square][row][column][channel], rows for y >= 0 only. The
+     * other half is the point reflection of this half through the centre. */
     uint16_t light[GLINT_STAR_SMEAR_RINGS][GLINT_STAR_SMEAR_HALF + 1]
                   [2 * GLINT_STAR_SMEAR_HALF + 1][3];
 };

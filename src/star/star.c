@@ -16,8 +16,9 @@ static int is_valid_config(const struct glint_star_config *c)
            c->max_lights <= GLINT_STAR_MAX_LIGHTS;
 }
 
-/* Allocates a starburst and its arrays from arena A. Called twice: with an
- * arena that only measures (returns NULL), then to allocate. */
+/* Allocates a starburst and its arrays from arena A. Called twice: first with
+ * an arena that only counts bytes, where it returns NULL; then with an arena
+ * that has memory. */
 static struct glint_star *allocate_star(struct glint_arena *a,
                                         const struct glint_star_config *c)
 {
@@ -81,8 +82,8 @@ enum glint_status glint_star_init(struct glint_star **star,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Multiplies each channel of RGB by X: sets PART to mantissas of 15 bits.
- * Returns their common exponent. */
+/* Multiplies each channel of RGB by X. Sets PART to the products as mantissas
+ * of 15 bits, and returns their common exponent. */
 static int multiply_rgb_by_real(const int32_t rgb_q14[3], struct glint_real x,
                                 int32_t part[3])
 {
@@ -124,8 +125,8 @@ static int count_visible_profile_steps(const struct glint_star_tables *t,
 }
 
 /* Divides the distances 0 .. reach around LAMP into zones, and sets the number
- * of visible profile steps in each zone. OVER: log2 of the light at a distance
- * of 1 pixel where the profile is 1 / the min visible light. */
+ * of visible profile steps in each zone. OVER is log2 of a ratio: (light at a
+ * distance of 1 pixel where the profile is 1) / (min visible light). */
 static void divide_distances_into_zones(struct glint_star_lamp *lamp,
                                         const struct glint_star_tables *t,
                                         int32_t over_log2_q16)
@@ -159,8 +160,8 @@ static int compute_halo_reach(const struct glint_star_tables *t,
             t->halo_log2_q16 + t->halo_max[row] * 32 + power_log2_q16;
         const int32_t r2_log2_q16 = light_log2_q16 - min_log2_q16;
 
-        /* row i holds for r^2 from 2^(4 + i / 2) on, the last row for all
-         * larger r^2 */
+        /* Row i covers r^2 from 2^(4 + i / 2) on; the last row covers all
+         * larger r^2. */
         if (row == GLINT_STAR_HALO_ROWS - 1 && r2_log2_q16 > (26 << 16))
             return compute_exp2_ceil(r2_log2_q16 / 2);
         if (r2_log2_q16 >= (4 << 16) + row * 32768)
@@ -203,16 +204,16 @@ static int64_t compute_line_widening_q8(const struct glint_star_tables *t,
     return q_root((uint64_t)(65536 + held_q8 * held_q8));
 }
 
-/* Sets the two halo tables, and the weight, from which the halo of a lamp of
- * RADIUS pixels is interpolated. */
+/* Sets the two halo tables between which the halo of a lamp of RADIUS pixels is
+ * interpolated, and the weight of the second table. */
 static void choose_halo_tables(struct glint_star_lamp *lamp,
                                const struct glint_star_tables *t,
                                int32_t radius_q8)
 {
     const int32_t radius = q_clamp_sat(radius_q8, 0, 1 << 22);
     const int32_t last_q16 = (GLINT_STAR_WIDE - 1) << 16;
-    /* fractional index into the halo tables of extended lamps; -1: table of a
-     * point light */
+    /* fractional index into the halo tables of extended lamps; -1 selects the
+     * table of a point light */
     const int32_t at_q16 =
         radius < 128
             ? (radius - 128) * 512

@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the halo of a starburst, the smooth component of the far field. A table
- * holds log2 of the light, by distance from the lamp (rows) and distance from
- * the nearest line (columns).
- */
+ * holds log2 of the light; its rows are distances from the lamp, its columns
+ * distances from the nearest line. */
 #include "base/log2.h"
 #include "star/parts.h"
 
-/* The halo of one lamp in one row of pixels. */
+/* State for drawing the halo of one lamp in one row of pixels. */
 struct span {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -120,10 +119,10 @@ static int64_t compute_min_magnitude_in_interval(int64_t a, int64_t b)
 }
 
 /* Returns whether the halo between A and B, which are n pixels apart, may be
- * interpolated linearly. Light falls with r^-3 and v^-2 (r: distance from the
- * lamp, v: from the line), so linear interpolation is too bright by at most the
- * fractions 1.5 n^2 / r^2 and 0.75 n^2 / v^2. The test limits these to 0.01 and
- * 0.02. */
+ * interpolated linearly. Let r be the distance from the lamp and v the distance
+ * from the line. Light falls with r^-3 and v^-2. So linear interpolation is too
+ * bright by fractions of at most 1.5 n^2 / r^2 and 0.75 n^2 / v^2. The test
+ * limits these to 0.01 and 0.02. */
 static int is_halo_nearly_linear(const struct span *s, const struct node *a,
                                  const struct node *b)
 {
@@ -134,9 +133,9 @@ static int is_halo_nearly_linear(const struct span *s, const struct node *a,
            dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
 }
 
-/* Returns the length of the run of pixels from FROM, up to X1 at most, over
- * which the halo is interpolated linearly: 8, 4 or 1 pixels. Runs begin at
- * multiples of their length, so that pictures do not depend on tile borders. */
+/* Returns the number of pixels from FROM, up to X1 at most, over which the halo
+ * is interpolated linearly: 8, 4 or 1. Such a run begins at a multiple of its
+ * length, so that pictures do not depend on tile borders. */
 static int choose_interpolated_run_length(const struct span *s,
                                           const struct glint_star_line *line,
                                           const struct node *from, int x1)
@@ -174,10 +173,10 @@ static void add_halo_of_sector(const struct span *s,
     }
 }
 
-/* Adds the halo to pixels X0 .. X1 - 1, sector by sector; a sector is the set
- * of pixels that are nearest to one line. Lines are sorted by angle, so in a
- * row below the lamp their sectors follow each other from right to left, above
- * it from left to right. */
+/* Adds the halo to pixels X0 .. X1 - 1, sector by sector. A sector is the set
+ * of pixels that are nearest to one line. Lines are sorted by angle. In a row
+ * below the lamp, their sectors therefore follow each other from right to left;
+ * above the lamp, from left to right. */
 static void add_halo_of_all_sectors(const struct span *s, int x0, int x1)
 {
     const struct glint_star_tables *t = s->star->tables;

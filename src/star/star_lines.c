@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the lines of a starburst. Each edge of the stop diffracts light at
- * right angles to itself, into a line through the lamp, which is drawn as a
- * strip of pixels.
+ * right angles to itself. The light forms a line through the lamp, which is
+ * drawn as a strip of pixels.
  *
  * A strip covers the pixels in which the line is visible. Light falls with the
  * square of the distance from the lamp, so the strip is narrower in each
  * distance zone than in the previous one. Each zone ends at four times the
- * distance of the previous one.
- */
+ * distance of the previous one. */
 #include "base/q.h"
 #include "star/parts.h"
 
@@ -42,7 +41,8 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Looks up 1 / R2 in pixels^-2. The result times 2^(1 - BITS) is 1 / R2. */
+/* Looks up 1 / R2, where R2 is in pixels^2. Sets *BITS; the result times 2^(1 -
+ * *BITS) is 1 / R2. */
 static uint32_t look_up_inverse_square(const struct glint_star *star,
                                        uint64_t r2_q16, int *bits)
 {
@@ -90,7 +90,8 @@ static void add_line_light_to_pixel_range(const struct strip *s,
 {
     const int64_t step_q16 = s->lamp->per_pixel_q16;
     const int64_t dx_q8 = (int64_t)here.x0 * 256 + 128 - s->lamp->x_q8;
-    /* exact, so that the result does not depend on tile borders */
+    /* computed without rounding, so that the result does not depend on tile
+     * borders */
     int64_t v_q38 =
         s->dy_q8 * (int64_t)s->line->cos_q30 - dx_q8 * s->line->sin_q30;
     const int64_t end_q16 = (int64_t)seen << 16;

@@ -78,7 +78,7 @@ static void add_lamps_to_row(const struct glint_star_row *r,
 }
 
 /* Writes the accumulated light of channel C of ROW to LIGHT, clamped to 16
- * bits, and clears it in ROW. Returns nonzero if any light is nonzero. */
+ * bits, and resets it to 0 in ROW. Returns nonzero if any light was nonzero. */
 static int move_accumulated_light_to_codes(const struct glint_star_stretch *row,
                                            int c, uint16_t *light_q16)
 {

@@ -2,9 +2,8 @@
  *
  * Draws the light that dirt in the stop diffracts around a lamp (the smear),
  * from a table of nested squares (smeared.h). The disc of the lamp blurs this
- * light, so squares whose table steps are finer than half the disc's radius are
- * replaced by coarser ones.
- */
+ * light. Squares whose table steps are finer than half the disc's radius are
+ * therefore replaced by coarser squares. */
 #include "base/compiler.h"
 #include "base/q.h"
 #include "star/parts.h"
@@ -12,8 +11,9 @@
 enum {
     HALF = GLINT_STAR_SMEAR_HALF,
     RINGS = GLINT_STAR_SMEAR_RINGS,
-    /* log2 of the number of table steps per pixel in the first square, and log2
-     * of half the first square's side in pixels, _q8 */
+    /* STEPS_LOG2: log2 of the number of table steps per pixel in the first
+     * square. FIRST_LOG2: log2 of half the side of the first square in pixels,
+     * _q8. */
     STEPS_LOG2 = 2,
     FIRST_LOG2 = 11
 };
@@ -25,9 +25,9 @@ struct span {
     const struct glint_star_lamp *lamp;
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
     int ring;
-    int32_t share[3]; /* light of a table value of 1 per channel, times 2^shift,
-                         _q20 */
-    int shift;        /* right shift for SHARE times a table value */
+    /* Light of a table value of 1 per channel, _q20, times 2^shift. */
+    int32_t share[3];
+    int shift; /* right shift for the product of SHARE and a table value */
 };
 
 static void set_smear_ring(struct span *s, int ring)
@@ -72,7 +72,7 @@ static void add_smear_light_to_pixel(const struct span *s, int at,
 }
 
 /* Returns the index of the ring that contains the distance FAR = max(|dx|,
- * |dy|), pixels, from the lamp, but at least LEAST. Returns RINGS or more
+ * |dy|), pixels, from the lamp; at least LEAST. Returns RINGS or more if FAR is
  * outside all rings. */
 static int find_smear_ring(int64_t far_q8, int least)
 {

@@ -41,12 +41,12 @@ enum {
     GLINT_STAR_PROFILE = 128, /* number of steps of a line profile */
     GLINT_STAR_CORE = 48, /* number of lattice steps from the centre of the core
                              table to its rim */
-    /* rows of a halo table: two per octave of r^2, beginning at r^2 = 2^4
-     * pixels^2 */
+    /* Number of rows of a halo table: two per octave of r^2, where r is the
+     * distance from the lamp. The first row is for r^2 = 2^4 pixels^2. */
     GLINT_STAR_HALO_ROWS = 45,
-    GLINT_STAR_HALO_COLUMNS = 49, /* columns of a halo table: four per octave of
-                                     1 + 4 v / reach, where v is the distance
-                                     from the nearest line */
+    /* Number of columns of a halo table: four per octave of 1 + 4 v / reach,
+     * where v is the distance from the nearest line. */
+    GLINT_STAR_HALO_COLUMNS = 49,
     /* number of halo tables for extended lamps; table i is for a radius of 2^(i
      * - 1) pixels */
     GLINT_STAR_WIDE = 9,
@@ -54,9 +54,8 @@ enum {
 };
 
 /* A line of a starburst: the light diffracted by one edge of the stop, or by a
- * pair of parallel edges. In pixels relative to the lamp, y down, u = x cos + y
- * sin is the coordinate along the line, v = y cos - x sin the coordinate across
- * it. */
+ * pair of parallel edges. Coordinates are in pixels relative to the lamp, y
+ * down. u = x cos + y sin runs along the line, v = y cos - x sin across it. */
 struct glint_star_line {
     /* direction of the line, 0 <= angle < 180 degrees */
     int32_t cos_q30, sin_q30;
@@ -64,9 +63,9 @@ struct glint_star_line {
     int32_t across_q16; /* 1 / sin of the angle, at most 2^12 */
     /* cotangent of the angle midway between this line and the next */
     int32_t border_q16;
-    /* [i]: light at the distance v = i reach / 128 from the line, multiplied by
-     * r^2 / (1 - (v / r)^2), where r is the distance from the lamp; in units of
-     * the tables' member step. Entries from 128 on are 0. */
+    /* Profile across the line. Entry i is the light at v = i reach / 128,
+     * multiplied by r^2 / (1 - (v / r)^2), where r is the distance from the
+     * lamp. The unit is STEP of the tables. Entries from 128 on are 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
@@ -76,13 +75,15 @@ typedef uint16_t glint_star_halo_row[GLINT_STAR_HALO_COLUMNS][3];
 /* Tables of the starburst of a light of power 1, for one stop, f-number and
  * pixel size. */
 struct glint_star_tables {
-    int n_lines; /* 1 .. GLINT_MAX_BLADES, sorted by angle */
+    int n_lines; /* number of lines, 1 .. GLINT_MAX_BLADES; LINE is sorted by
+                    angle */
     const struct glint_star_line *line;
     int first; /* index of the line nearest to angle 0: 0 or n_lines - 1 */
-    /* light where the line profile is 1 */
+    /* unit of the line profiles: light where a profile is 1 */
     struct glint_real step;
-    uint16_t line_max[GLINT_STAR_PROFILE]; /* for each profile step, the max
-                                              over all lines and channels */
+    /* For each step of the profiles, the max value over all lines and
+     * channels. */
+    uint16_t line_max[GLINT_STAR_PROFILE];
     int32_t reach_q8;           /* distance from the line at which profiles end,
                                    1 .. 2^14 pixels */
     int32_t reach_log2_q16;     /* log2 of reach_q8 */
@@ -94,32 +95,33 @@ struct glint_star_tables {
     int32_t width_q8;
     int32_t inner_q8; /* distance from the lamp, pixels, within which the factor
                          1 / r^2 is constant */
-    /* Halo of a point light: log2 of light times r^2 (r: distance from the
-     * lamp, pixels) is halo_log2_q16 plus the entry of HALO, _q11. halo_max:
-     * the max of each row. */
+    /* Halo of a point light. With r, the distance from the lamp in pixels, log2
+     * of light times r^2 is halo_log2_q16 plus the entry of HALO, _q11.
+     * halo_max: max of each row. */
     int32_t halo_log2_q16;
     uint16_t halo[GLINT_STAR_HALO_ROWS][GLINT_STAR_HALO_COLUMNS][3];
     uint16_t halo_max[GLINT_STAR_HALO_ROWS];
-    /* [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]: halos blurred by the discs of
-     * lamps; table i is for a radius of 2^(i - 1) pixels. NULL for stops with
-     * straight hard edges, which diffract no fans: their halos are not blurred.
-     */
+    /* Halos that are blurred by the discs of lamps,
+     * [GLINT_STAR_WIDE][GLINT_STAR_HALO_ROWS]; table i is for a radius of 2^(i
+     * - 1) pixels. NULL for stops with straight hard edges: their halos have no
+     * fans of light and are not blurred. */
     const glint_star_halo_row *wide;
     /* Diffraction by dirt in the stop, or NULL. */
     const struct glint_star_smear *smear;
-    /* Core table, rows for y >= 0 only. The half with y < 0 is its point
-     * reflection through the centre. Entries are 16-bit floating-point numbers,
-     * _q40: a sign, five bits e, ten bits m; the value is (m + 1024) 2^(e - 1),
-     * or m if e is 0. */
+    /* Core table, rows for y >= 0 only. The other half is the point reflection
+     * of this half through the centre. Entries are 16-bit floating-point
+     * numbers, _q40, with a sign, five bits e and ten bits m. The value is (m +
+     * 1024) 2^(e - 1), or m if e is 0. */
     uint16_t core[GLINT_STAR_CORE + 1][2 * GLINT_STAR_CORE + 1][3];
 };
 
 /* A lamp at its position in the picture. */
 struct glint_star_light {
     int32_t x_q8, y_q8; /* pixels from the top left corner */
-    int32_t radius_q8;  /* radius of the lamp's disc, 0 .. 2^14 pixels, which
-                           widens lines. Negative if the lamp itself is not
-                           visible in the picture: its core is drawn, too */
+    /* Radius of the lamp's disc, 0 .. 2^14 pixels; a larger disc has wider
+     * lines. Negative if the picture does not show the lamp: its core is then
+     * drawn, too. */
+    int32_t radius_q8;
     /* power, display white times pixels; clamped to 2^30 */
     struct glint_real power;
     int32_t rgb_q14[3]; /* colour, 0 .. 2^14 */
@@ -155,9 +157,9 @@ void glint_star_set_lights(struct glint_star *star,
                            const struct glint_star_light *lights, int n,
                            struct glint_real faintest);
 
-/* Estimates the number of pixels that lines, halos, smears and cores light, to
- * which the drawing time is proportional. A pixel lit by several of them counts
- * several times. */
+/* Estimates the number of pixels that lines, halos, smears and cores light. A
+ * pixel lit by several of them counts several times. The drawing time is
+ * proportional to this number. */
 int64_t glint_star_estimate_pixels(const struct glint_star *star);
 
 /* Draws the starburst and the binned ghosts of FLARE onto IMAGE, in place of
@@ -171,8 +173,8 @@ void glint_star_draw(struct glint_star *star, struct glint_flare *flare,
 struct glint_pass glint_star_make_pass(struct glint_star *star,
                                        const struct glint_image *image);
 
-/* Draws the starburst onto IMAGE without the ghosts of FLARE, whose workers and
- * tiles are used. */
+/* Draws the starburst onto IMAGE, with the workers and tiles of FLARE but
+ * without its ghosts. */
 void glint_star_draw_alone(struct glint_star *star, struct glint_flare *flare,
                            const struct glint_image *image);
 
