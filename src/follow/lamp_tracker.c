@@ -2,10 +2,10 @@
  *
  * Tracks lamps over time, from the spots of successive pictures.
  *
- * For each picture: predicts the position of every track, assigns spots to
- * tracks (match.h), updates each track with its spot or without one (record.h),
- * starts new tracks for unmatched spots, and selects the strongest tracks to be
- * shown. */
+ * The tracker processes each picture in five steps. It predicts the position of
+ * every track and assigns spots to tracks (match.h). It updates each track with
+ * its spot or without one (record.h), and starts new tracks for unmatched
+ * spots. Finally it selects the strongest tracks to be shown. */
 #include "glint/lamp_tracker.h"
 
 #include "base/arena.h"
@@ -23,12 +23,12 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-/* The search radius of a lost lamp grows by reach_q8 in this time, us, up to
- * MAX_REACHES times reach_q8. */
+/* Growth of the search radius of a lost lamp: it grows by reach_q8 in each
+ * REACH_US (us), up to MAX_REACHES times reach_q8. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
-/* time in which the remembered white level falls to 1/e, us: one stop per
- * second */
+/* Time in which the remembered white level falls to 1/e, us; this is a fall of
+ * one stop per second. */
 #define WHITE_US 1442695
 
 struct glint_lamp_tracker {
@@ -39,8 +39,8 @@ struct glint_lamp_tracker {
     struct glint_record_step step;
     struct glint_record *record; /* [max_tracks] */
     struct glint_match match;
-    int32_t *owner; /* [max_tracks]: for each element of match.seeker, the index
-                       of its record */
+    /* Index of the record of each element of match.seeker, [max_tracks]. */
+    int32_t *owner;
     int32_t *order; /* [MAX_SPOTS]: indices of spots or records */
 };
 
@@ -63,8 +63,8 @@ static int is_valid_config(const struct glint_lamp_tracker_config *c)
            is_valid_duration(c->memory_ms) && is_valid_duration(c->smooth_ms);
 }
 
-/* Allocates a tracker from arena A. Returns NULL if A only measures or is full.
- */
+/* Allocates a tracker from arena A. Returns NULL if A only counts bytes or is
+ * full. */
 static struct glint_lamp_tracker *
 allocate_tracker(struct glint_arena *a,
                  const struct glint_lamp_tracker_config *c)
@@ -197,9 +197,10 @@ static void set_matcher_input_from_tracks(struct glint_lamp_tracker *t)
     }
 }
 
-/* Returns the max squared distance, pixels^2, of a matched spot from the
- * predicted position for it to count as the same lamp in a picture of N spots.
- * It shrinks with N: among many spots one is near by chance. */
+/* Returns the max squared distance, pixels^2, between a matched spot and the
+ * predicted position at which both count as the same lamp. It shrinks with N,
+ * the number of spots in the picture, because among many spots one is near by
+ * chance. */
 static int64_t
 compute_same_lamp_distance2_q16(const struct glint_lamp_tracker *t, int n)
 {
@@ -208,9 +209,9 @@ compute_same_lamp_distance2_q16(const struct glint_lamp_tracker *t, int n)
     return n > FEW_SPOTS ? reach2_q16 * FEW_SPOTS / n : reach2_q16;
 }
 
-/* Returns the smaller flux of spot NOW and of BEFORE, the last spot of the same
- * lamp; 0 if NOW is farther than sqrt(LIMIT2) from the predicted position in S.
- */
+/* Returns the smaller flux of spot NOW and spot BEFORE, the last spot of the
+ * same lamp. Returns 0 if the distance of NOW from the predicted position in S
+ * exceeds sqrt(LIMIT2). */
 static int64_t compute_common_flux(const struct glint_seeker *s,
                                    const struct glint_spot *before,
                                    const struct glint_spot *now,
@@ -226,17 +227,17 @@ static int64_t compute_common_flux(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* All lamps of the picture before or of the picture after a possible cut: their
- * total flux, the part of it that also occurs in the other picture (kept), and
- * their number n. */
+/* Sums over all lamps of one picture, before or after a possible cut: their
+ * flux, the flux that also occurs in the other picture (kept), and their number
+ * n. */
 struct side {
     int64_t flux, kept;
     int n;
 };
 
-/* Returns whether at least the fraction cut_q15 of the flux of A does not occur
- * in B. If A has no flux, returns whether B has at least MANY_LIGHTS lamps:
- * that many appear or vanish at once only at a cut. */
+/* Returns whether at least the fraction cut_q15 of the flux of A is missing in
+ * B. If A has no flux, returns whether B has at least MANY_LIGHTS lamps,
+ * because so many lamps appear or vanish at once only at a cut. */
 static int is_flux_mostly_unmatched(const struct glint_lamp_tracker *t,
                                     const struct side *a, const struct side *b)
 {
@@ -292,9 +293,9 @@ static void match_spots_to_tracks(struct glint_lamp_tracker *t,
 
 /* --------------------------------------------------------------------- new */
 
-/* Returns whether a new lamp gets the record P rather than the record Q.
- * Records of lost lamps are replaced first, then those of fainter lamps, then
- * those of younger ones. */
+/* Returns whether record P is replaced rather than record Q when a new lamp
+ * needs a record. Records of lost lamps are replaced first, then records of
+ * fainter lamps, then records of younger lamps. */
 static int is_record_replaced_before(const struct glint_record *p,
                                      const struct glint_record *q)
 {
@@ -306,9 +307,9 @@ static int is_record_replaced_before(const struct glint_record *p,
     return p_q16 != q_q16 ? p_q16 < q_q16 : p->id > q->id;
 }
 
-/* Returns a record for a new lamp of POWER: a free one, or else that of a track
- * that is not shown and whose lamp is lost or fainter. Returns NULL if there is
- * none. */
+/* Returns a record for a new lamp of POWER. It is a free record, or else the
+ * record of a track that is not shown and whose lamp is lost or fainter.
+ * Returns NULL if there is no such record. */
 static struct glint_record *
 find_record_for_new_lamp(struct glint_lamp_tracker *t, int64_t power_q16)
 {
@@ -371,9 +372,9 @@ static void begin_tracks_of_unmatched_spots(struct glint_lamp_tracker *t,
 
 /* -------------------------------------------------------------------- shown */
 
-/* Returns the power by which R is ranked: that of a track that is already shown
- * counts a quarter more, so that two tracks of similar power do not alternate.
- */
+/* Returns the power by which track R is ranked. The power of a track that is
+ * already shown counts a quarter more, so that two tracks of similar power do
+ * not alternate. */
 static int64_t compute_rank_power(const struct glint_record *r)
 {
     const int64_t power_q16 = r->of[GLINT_CHANNEL_POWER].value;

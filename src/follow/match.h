@@ -5,13 +5,12 @@
  *    in   spots in any order; the predicted position of each lamp
  *    out  for each lamp its spot, or none; each spot at most once
  *
- * Method: greedy; of all pairs of a lamp and a spot within reach, the nearest
- * is assigned first. The distance counts double if the spot is faint, and
- * double again if the lamp is lost. Spots are sorted by x, so that a lamp
- * visits only spots within reach; it considers only the NEAREST_SPOTS nearest
- * of them. A lamp whose candidates are all assigned to other lamps gets no
- * spot.
- */
+ * The method is greedy: of all pairs of a lamp and a spot within its reach, the
+ * pair with the smallest distance is assigned first. The distance counts double
+ * if the spot is faint, and double again if the lamp is lost. Spots are sorted
+ * by x, so that a lamp visits only spots within reach; it considers only the
+ * NEAREST_SPOTS nearest of them. A lamp whose candidates are all assigned to
+ * other lamps gets no spot. */
 #ifndef GLINT_FOLLOW_MATCH_H
 #define GLINT_FOLLOW_MATCH_H
 
@@ -21,8 +20,9 @@ struct glint_arena;
 
 /* A lamp of the previous picture for which a spot is searched. */
 struct glint_seeker {
-    uint32_t id; /* unique number of the lamp; of two pairs of equal cost the
-                    lower id wins */
+    /* Unique number of the lamp. Of two pairs of equal cost, the pair with the
+     * lower number is assigned first. */
+    uint32_t id;
     int32_t x_q8, y_q8;
     int32_t reach_q8;       /* max distance of the spot from (x, y), pixels, 0
                                .. 2^23 */
@@ -37,8 +37,9 @@ struct glint_pair;
 struct glint_match {
     struct glint_seeker *seeker;
     int n_seekers;
-    int32_t *by_x;  /* indices of all spots sorted by x; equal x by the other
-                       members, so that the input order does not matter */
+    /* Indices of all spots sorted by x. Spots with equal x are sorted by their
+     * other members, so that the input order does not matter. */
+    int32_t *by_x;
     uint8_t *taken; /* result: for each spot, 1 if it is assigned to a lamp */
     struct glint_pair *pair;
     int32_t *order; /* indices of pairs */

@@ -20,13 +20,13 @@
  *   out  a number that does not fluctuate, lag or jump
  *
  * Method: the error of a picture is the measured number minus the filter's
- * value. Errors are averaged with their signs (drift) and without (spread). The
- * drift of noise is a small fraction of its spread; the value then moves only
- * by a small fraction of the error, like an average over the pace's time. The
- * errors of a change have one sign, or are far larger than the spread; the
- * value then follows at once. So the filter adapts to the noise of each lamp,
- * and lags behind steady change by at most five times the tolerated error
- * (floor).
+ * value. Drift is the average of the errors with their signs, spread the
+ * average of their magnitudes. If drift is a small fraction of spread, the
+ * errors are noise; the value then moves only by a small fraction of the error,
+ * as an average over time does. If the errors have one sign, or are far larger
+ * than spread, they are a change; the value then follows at once. So the filter
+ * adapts to the noise of each lamp, and lags behind steady change by at most
+ * five times the tolerated error (floor).
  *
  * A change that must not show as a jump is blended: the value changes at once,
  * and the shown number approaches it at a bounded speed.
@@ -37,16 +37,16 @@
  * Limits: numbers are below 2^43 in magnitude, times below 2^26 us. */
 #define SETTLE_US 60000
 
-/* Errors are noise if drift / spread is at most NOISE, change if it is CHANGE
- * or more, and a mixture in between. A single error of more than SUDDEN times
- * the spread is also a change. Gaussian noise exceeds NOISE in one picture of
- * 100, and SUDDEN in one of 1000. */
+/* Limits of drift / spread. Errors are noise up to NOISE, change from CHANGE
+ * on, and a mixture in between. A single error of more than SUDDEN times the
+ * spread is also a change. Gaussian noise exceeds NOISE in one picture of 100,
+ * and SUDDEN in one of 1000. */
 #define NOISE_Q15  Q_CONST(0.8, 15)
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
 
-/* Returns X times GAIN, rounded away from 0, so that an error reaches 0 after
- * repeated corrections. */
+/* Returns X times GAIN, rounded away from 0. An error that is corrected
+ * repeatedly therefore reaches 0. */
 static int64_t multiply_rounding_away(int64_t x, int32_t gain_q15)
 {
     return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
@@ -90,14 +90,14 @@ struct glint_pace glint_pace_compute_for_interval(int32_t elapsed_us,
         .settle_q15 = glint_pace_compute_fraction_q15(elapsed_us, SETTLE_US)};
 }
 
-/* Initialises a filter with VALUE. SPREAD is the assumed magnitude of errors
- * until some have been measured. */
+/* Initialises a filter with VALUE. SPREAD is the magnitude that errors are
+ * assumed to have until some are measured. */
 static void start_filter(struct glint_follow *f, int64_t value, int64_t spread)
 {
     *f = (struct glint_follow){.value = value, .spread = spread};
 }
 
-/* Moves the shown number towards the filter's value by stride ELAPSED_US /
+/* Moves the shown number towards the filter's value by stride * ELAPSED_US /
  * TIME_US. */
 static void blend_filter_offset(struct glint_follow *f, int32_t elapsed_us,
                                 int32_t time_us)
@@ -111,8 +111,7 @@ static void blend_filter_offset(struct glint_follow *f, int32_t elapsed_us,
         f->offset -= f->offset < 0 ? -step : step;
 }
 
-/* Returns to what degree the averaged errors are a change: 0 (noise) .. 1.
- */
+/* Returns how much of the averaged errors is a change: 0 (only noise) .. 1. */
 static int32_t compute_change_degree_q15(const struct glint_follow *f,
                                          int64_t floor)
 {
@@ -124,8 +123,8 @@ static int32_t compute_change_degree_q15(const struct glint_follow *f,
                        0, ONE_Q15);
 }
 
-/* Adds ERROR to the averages drift and spread. Returns to what degree ERROR is
- * a change: 0 (noise) .. 1. */
+/* Adds ERROR to the averages drift and spread. Returns how much of ERROR is a
+ * change: 0 (only noise) .. 1. */
 static int32_t add_filter_error_q15(struct glint_follow *f, int64_t error,
                                     int64_t floor, int32_t smooth_q15,
                                     enum follow_as as)
@@ -145,7 +144,7 @@ static int32_t add_filter_error_q15(struct glint_follow *f, int64_t error,
 
 /* Moves the filter's value towards TARGET, the measured number: slowly if the
  * error is noise, at once if it is a change. FLOOR is the tolerated error, at
- * least 1. Returns to what degree the error is a change, 0 .. 1. */
+ * least 1. Returns how much of the error is a change, 0 .. 1. */
 static int32_t step_filter_q15(struct glint_follow *f, int64_t target,
                                int64_t floor, const struct glint_pace *pace,
                                enum follow_as as)
@@ -195,7 +194,7 @@ static void set_value_and_blend(struct glint_follow *f, int64_t value,
 
 /* ----------------------------------------------------------------- one lamp */
 
-/* A spot that is repeated in this many consecutive pictures counts as
+/* Number of consecutive pictures after which an unchanged spot counts as
  * noise-free; a single repetition may be chance. */
 enum { REPEATS = 2 };
 
@@ -319,10 +318,10 @@ static void slow_unseen_lamp(struct glint_record *r,
     r->velocity_q16[axis] -= r->velocity_q16[axis] * part_q15 / (1 << 15);
 }
 
-/* Updates the lamp's velocity along AXIS, an average, with the motion from
- * position BEFORE. Motion that is noise has half the weight of a change; the
- * first change of a new lamp sets the velocity. Velocities are clamped to 16
- * picture widths per second. */
+/* Updates the average velocity of the lamp along AXIS with the motion from
+ * position BEFORE. Motion that is noise has half the weight of motion that is a
+ * change. The first change of a new lamp sets the velocity. Velocities are
+ * clamped to 16 picture widths per second. */
 static void update_velocity(struct glint_record *r,
                             const struct glint_record_step *step, int axis,
                             int64_t before_q16, int32_t change_q15)
@@ -472,7 +471,8 @@ static void follow_light_channel(struct glint_record *r,
     const int64_t before = f->value, shown = get_shown_value(f);
     const int64_t larger =
         channel == GLINT_CHANNEL_COS2 || channel == GLINT_CHANNEL_SIN2
-            ? ONE_Q15 /* orientation: full scale, whatever the current angle */
+            ? ONE_Q15 /* the full scale of an orientation does not depend on its
+                         current value */
         : target > before ? target
                           : before;
     const int64_t floor = compute_tolerated_error(channel, larger);

@@ -15,8 +15,8 @@
 /* The state of the filter of one number of a lamp (record.c). */
 struct glint_follow {
     int64_t value;
-    /* averages of the errors: signed (drift), and of their magnitudes (spread)
-     */
+    /* Averages of the errors: with their signs (drift), and of their magnitudes
+     * (spread). */
     int64_t drift, spread;
     int64_t offset; /* shown number minus value */
     int64_t stride; /* max change of offset in one attack or release time */
@@ -38,8 +38,8 @@ struct glint_pace glint_pace_compute_for_interval(int32_t elapsed_us,
  * average over TIME_US corrects. TIME_US must be at least 1. */
 int32_t glint_pace_compute_fraction_q15(int32_t elapsed_us, int32_t time_us);
 
-/* The numbers of a lamp that are filtered: positions in _q16, all others in the
- * units of struct glint_spot. */
+/* The numbers of a lamp that are filtered. Positions are in _q16, all others in
+ * the units of struct glint_spot. */
 enum glint_record_channel {
     GLINT_CHANNEL_X,
     GLINT_CHANNEL_Y,
@@ -64,8 +64,7 @@ struct glint_record {
     int n_same; /* number of consecutive pictures whose spot equals the one
                    before */
     int is_new; /* number of further pictures in which the first motion sets the
-                 * velocity; 0: the velocity is known or 0
-                 */
+                   velocity; 0: the velocity was set, or stays 0 */
     int64_t velocity_q16[2]; /* pixels per second */
     int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
     int32_t level_q30;
@@ -82,8 +81,8 @@ struct glint_record_step {
     int is_fresh; /* 1: new lamps are shown at full fade level at once */
 };
 
-/* Returns the flux of a spot, clamped to 0 .. 2^42, the flux of the largest
- * picture if all white. */
+/* Returns the flux of SPOT, clamped to 0 .. 2^42. The limit is the flux of an
+ * all-white picture of the max size. */
 int64_t glint_record_clamp_flux_q16(const struct glint_spot *spot);
 
 /* Returns the power of a spot, clamped to 0 .. 2^42. */
