@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Mixes the polynomials of a ghost at two neighbouring positions of a zoom.
+ * Interpolates the polynomials of a ghost between two neighbouring positions of
+ * a zoom lens.
  *
  *   in   two transfers of the same ghost, angle and wavelength
  *   out  one transfer: each coefficient and the box interpolated linearly
  *
  * In the coordinates of its box a ghost changes slowly with the zoom. Between
- * both positions the weights are not negative and sum to 1. So the sum of
- * magnitudes of each mixed output is at most the larger sum of the two, and the
+ * both positions the weights are 0 or more and sum to 1. The sum of magnitudes
+ * of each mixed output is then at most the larger of the two sums, so the
  * bounds on which the transfer relies hold. In extrapolation the weights are up
  * to 2 and -1, so sums may triple; two bits are reserved for this. Each
- * coefficient is rounded once. The unit of the result is the coarser unit of
- * both.
+ * coefficient is rounded once. The unit of the result is the coarser of the two
+ * units.
  *
  * Each barrel is mixed with its partner, which pair.c finds at the other
- * position. A barrel without a partner preserves its position in the stop,
- * because boxes may change faster than the visible rays, and is widened towards
- * the position that lacks it, until it blocks nothing.
- */
+ * position. A barrel without a partner stays at its place in the stop, because
+ * boxes may change faster than the visible rays. It is widened towards the
+ * position that lacks it, where it blocks nothing. */
 #include "lens/blend.h"
 
 #include "base/q.h"
@@ -30,14 +30,15 @@ enum {
     /* value of a barrel's polynomial at the barrel's centre, where all light
      * passes */
     OPEN_Q16 = 1 << 15,
-    /* min exponent of a barrel's unit, relative to 2^-46: OPEN_Q16 is then
-     * below 2^30 units */
+    /* Min exponent of the unit of a barrel's polynomial, relative to 2^-46.
+     * With it, OPEN_Q16 is below 2^30 units. */
     LEAST_UP = 16,
     MOST_HEAD = 28,
-    /* max move for which first-order terms suffice: 1/2 of a half width */
+    /* Max move of a box for which first-order terms are exact enough: 1/2 of a
+     * half width. */
     NEAR_Q24 = 1 << 23,
-    /* fraction of the distance between both positions from which on a barrel
-     * opens */
+    /* Fraction of the distance between both positions at which a barrel begins
+     * to open. */
     LATE_Q30 = 3 << 28,
     MOST_MOVE = 8, /* max distance between both boxes, in half widths */
     /* number of bits reserved for extrapolation, which triples sums */
@@ -56,7 +57,7 @@ static uint8_t get_max_u8(uint8_t a, uint8_t b)
 }
 
 /* Returns A (1 - PART) + B PART, rounded, in units of 2^E. A is in units of
- * 2^EA, B in units of 2^EB; EA and EB are at most E. */
+ * 2^EA, B in units of 2^EB. EA and EB are at most E. */
 static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
                                int32_t e, int32_t part_q30)
 {
@@ -89,9 +90,9 @@ static int32_t compute_box_move_q24(int64_t b, int32_t eb, int64_t a,
     return *far ? 0 : (int32_t)q;
 }
 
-/* Sets the moves of BLEND: from BOX, the box of this position in units of
- * 2^EXPONENT, to the box of the transfer, which still is that of the other
- * position. */
+/* Sets the moves of BLEND between two boxes. The first is BOX, the box of this
+ * position in units of 2^EXPONENT. The second is the box of the transfer, which
+ * is still that of the other position. */
 static void set_box_moves(struct glint_zoom_mix *blend, const int32_t box[3],
                           int32_t exponent)
 {
@@ -115,8 +116,8 @@ static void set_box_moves(struct glint_zoom_mix *blend, const int32_t box[3],
     blend->far = far;
 }
 
-/* Returns whether each component of M is at most NEAR_Q24, 1/2 of the box's
- * half width or half height. */
+/* Returns whether each component of M is at most NEAR_Q24, which is 1/2 of the
+ * box's half width or half height. */
 static int is_box_move_small(const struct glint_blend_move *m)
 {
     return q_magnitude(m->along_q24) <= NEAR_Q24 &&
@@ -124,8 +125,8 @@ static int is_box_move_small(const struct glint_blend_move *m)
            q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
-/* Records where rays pass the stop if O is an output for the position in the
- * stop. */
+/* If O is an output for the position in the stop, records in STOP where rays
+ * pass the stop. */
 static void record_stop_position(struct glint_blend_stop *stop,
                                  const struct glint_blend_output *o)
 {
@@ -171,8 +172,8 @@ int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
             t->box[1] > 0 && t->box[2] > 0);
 }
 
-/* Returns the first-order change of the coefficient of u^A v^B in ROW when
- * points of the box move by M. */
+/* Returns the change of the coefficient of u^A v^B in ROW when points of the
+ * box move by M, to first order. */
 static int64_t compute_coefficient_change(int32_t (*row)[GLINT_TABLE_WIDTH],
                                           int a, int b,
                                           const struct glint_blend_move *m)
@@ -185,10 +186,10 @@ static int64_t compute_coefficient_change(int32_t (*row)[GLINT_TABLE_WIDTH],
     return q_shift(sum, 24);
 }
 
-/* Sets TO to the changes of coefficients, in units of 2^E, that make output
- * KIND of the transfer (unit 2^EXPONENT) and output O refer to the same point
- * of the pupil. Returns whether the sums of the changes are small enough for
- * the transfer. */
+/* Sets TO to changes of the coefficients of output O, in units of 2^E. With
+ * them, O and output KIND of the transfer (unit 2^EXPONENT) refer to the same
+ * points of the pupil. Returns whether the sums of the changes are small enough
+ * for the transfer. */
 static int compute_coefficient_changes(const struct glint_zoom_mix *blend,
                                        int kind, int32_t exponent,
                                        const struct glint_blend_output *o,
@@ -228,7 +229,7 @@ static int32_t mix_polynomial(const struct glint_zoom_mix *blend, int kind,
                               const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    /* reserves one bit for the moves, or BEYOND bits for extrapolation */
+    /* One bit is reserved for the moves, or BEYOND bits for extrapolation. */
     const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
                       (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
@@ -259,8 +260,9 @@ static int32_t compute_energy_exponent(const struct glint_transfer *t)
     return e + t->head;
 }
 
-/* The head of an energy is the max exponent by which all values can be scaled
- * without overflow; a coarser unit allows a larger head. */
+/* Mixes the energy output O into the transfer. The head of an energy is the max
+ * exponent by which all values can be scaled without overflow; a coarser unit
+ * allows a larger head. */
 static void mix_energy_output(const struct glint_zoom_mix *blend,
                               const struct glint_blend_output *o)
 {
@@ -298,9 +300,9 @@ void glint_blend_scale_energy(struct glint_transfer *t, int32_t share_q30)
 
 /* ----------------------------------------------------------------- barrels */
 
-/* Opens barrel KIND by the fraction SHARE_Q30: interpolates towards a barrel
- * that blocks nothing. A barrel whose unit is so fine that sums would reach
- * 2^30 stays unchanged; no lens has one. */
+/* Widens barrel KIND by the fraction SHARE_Q30: interpolates between the barrel
+ * and a barrel that blocks nothing. A barrel with a very fine unit, with which
+ * sums would reach 2^30, stays unchanged; no lens has such a barrel. */
 static void widen_barrel_opening(struct glint_transfer *t, int kind,
                                  int32_t share_q30)
 {
@@ -323,9 +325,10 @@ static int32_t compute_signed_box_move_q24(int64_t b, int32_t eb, int64_t a,
                     : compute_box_move_q24(b, eb, a, ea, size, es, far);
 }
 
-/* Sets M to the move between boxes, from the mixed one to that of one position
- * (stop positions MIXED and OF), that preserves positions in the stop. Returns
- * whether M is small enough for first-order terms. */
+/* Sets M to the move from the mixed box to the box of one position that
+ * preserves positions in the stop. OF and MIXED state where the rays of both
+ * boxes pass the stop. Returns whether M is small enough for first-order
+ * terms. */
 static int compute_move_preserving_stop(const struct glint_blend_stop *of,
                                         const struct glint_blend_stop *mixed,
                                         struct glint_blend_move *m)
@@ -345,7 +348,7 @@ static int compute_move_preserving_stop(const struct glint_blend_stop *of,
 }
 
 /* Returns the max value of the polynomial of BARREL at the rim of the stop or
- * at the rim of the box, whichever is nearer. */
+ * at the rim of the box; the nearer rim is used. */
 static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
                                    const struct glint_blend_stop *stop)
 {
@@ -370,9 +373,9 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
     return most;
 }
 
-/* Moves barrel KIND, which only position SIDE (0: this one, 1: the other one)
- * has, such that it preserves its place in the stop, if it then blocks less and
- * sums stay small enough for the transfer. */
+/* Moves barrel KIND so that it stays at its place in the stop. Only position
+ * SIDE (0: this one, 1: the other one) has the barrel. Does nothing if the
+ * barrel would then block more, or sums would be too large for the transfer. */
 static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
                                              int side, int kind)
 {
@@ -403,8 +406,8 @@ static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
             own.row[b][a] = kept.row[b][a];
 }
 
-/* Adds barrel O, which only the other position has, opened in proportion to the
- * zoom's distance from that position. */
+/* Adds barrel O, which only the other position has. The barrel is widened in
+ * proportion to the distance of the zoom from that position. */
 static void add_unmatched_barrel(struct glint_zoom_mix *blend,
                                  const struct glint_blend_output *o)
 {

@@ -11,33 +11,34 @@ enum {
     GLINT_BLEND_PLACES = 6
 };
 
-/* A transfer that is interpolated, output by output, with the transfer at
- * another zoom position: 1 - part of its own output plus part of the other.
- * part < 0, down to -1, extrapolates away from the other position. */
+/* A transfer into which the transfer at another zoom position is mixed, output
+ * by output. The result is 1 - part of its own output plus part of the other
+ * output. part < 0, down to -1, extrapolates away from the other position. */
 struct glint_zoom_mix {
     struct glint_transfer *to;
     int32_t part_q30;
-    /* Difference between the boxes of both positions (other - this), in half
-     * widths and half heights of this position's box (move[0]) or of the other
-     * one's (move[1]). along: displacement of the middle along u; wider,
-     * higher: differences in size. All are 0 if one of them exceeds a few half
-     * widths. */
+    /* Difference between the boxes of both positions (other - this). move[0] is
+     * in half widths and half heights of this position's box, move[1] in those
+     * of the other position's box. along: displacement of the middle along u;
+     * wider, higher: differences in size. All are 0 if one of them exceeds a
+     * few half widths. */
     struct glint_blend_move {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
     /* 1: the boxes are too far apart to interpolate; all moves are 0 */
     int far;
     /* Where rays pass the stop, in stop radii, at this position ([0]) and at
-     * the other one ([1]): position of the box's middle, and its change with u
-     * and v. */
+     * the other position ([1]). middle: ray at the middle of the box; across,
+     * up: change with u and with v. */
     struct glint_blend_stop {
         int32_t middle, across, up;
         int32_t x_exponent, y_exponent;
     } stop[2];
-    /* Values, _q16, of all barrels. First index: 0 for barrels of this
-     * position, 1 for those of the other one. Third index: 0 at sample points
-     * of the barrel's own box, 1 at points of the pupil inside both boxes.
-     * n_others: number of barrels of the other position. */
+    /* Values of the polynomials of all barrels, _q16. First index: 0 for
+     * barrels of this position, 1 for barrels of the other position. Third
+     * index: 0 at sample points of the barrel's own box, 1 at points of the
+     * pupil inside both boxes. n_others: number of barrels of the other
+     * position. */
     int32_t barrel_q16[2][GLINT_BLEND_BARRELS][2][GLINT_BLEND_PLACES];
     int n_others, n_mixed;
     /* Bit masks. partners: for each barrel of the other position, the barrels
@@ -56,9 +57,9 @@ struct glint_blend_output {
     uint8_t degree_u, degree_v;
 };
 
-/* Mixes the box of the transfer, which must be that of the other position, with
- * BOX, the box of this position in units of 2^EXPONENT. Returns 0 if part is
- * below 0 and the boxes are too far apart to extrapolate. */
+/* Mixes BOX, the box of this position in units of 2^EXPONENT, into the box of
+ * the transfer, which must still be that of the other position. Returns 0 if
+ * part is below 0 and the boxes are too far apart to extrapolate. */
 int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
                         int32_t exponent);
 
@@ -66,9 +67,10 @@ int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
 struct glint_blend_output glint_blend_get_output(struct glint_transfer *t,
                                                  int kind);
 
-/* Returns the value, _q16, of the polynomial O at point (U, V) of its box.
- * Barrels so far away that their value is clamped block nothing or everything.
- * Units coarser than 2^-16, which no barrel has, are not distinguished. */
+/* Returns the value, _q16, of the polynomial O of a barrel at point (U, V) of
+ * its box. If the barrel is so far away that the value is clamped, it blocks
+ * nothing or everything. Units coarser than 2^-16, which no barrel has, are not
+ * distinguished. */
 int32_t glint_blend_evaluate_q16(const struct glint_blend_output *o,
                                  int64_t u_q24, int64_t v_q24);
 

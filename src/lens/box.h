@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The pupil box of a system: each middle and half size is a polynomial of
- * angle and wavelength. Used for drawing and for checking a model.
- */
+ * Evaluates the pupil box of a system, for drawing and for checking a model.
+ * Middle and half sizes of the box are polynomials of angle and wavelength. */
 #ifndef GLINT_LENS_BOX_H
 #define GLINT_LENS_BOX_H
 

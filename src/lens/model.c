@@ -9,14 +9,14 @@
  * transfer.c relies on these properties:
  *   - every table lies inside the file;
  *   - variables and their powers are within +-2^30, so q_mul by them never
- *     increases a magnitude. As the sum of |coefficient| of an output is below
- *     2^30, no product, row or Horner step exceeds 2^30, whatever the order of
- *     additions;
+ *     increases a magnitude. The sum of |coefficient| of an output is below
+ *     2^30, so no product, row or Horner step exceeds 2^30, whatever the order
+ *     of additions;
  *   - in the auto basis powers of u and v index a table, and powers of v are
  *     all odd or all even.
  *
- * Vertices are shifted by exponents; the limits in this file keep sums of
- * exponents small.
+ * The exponents of outputs determine by how many bits values are shifted when
+ * they become vertices. The limits in this file keep sums of exponents small.
  */
 #include "glint/model.h"
 
@@ -32,12 +32,13 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* The header begins with the members that the header of every baked file has;
- * their member variant is the basis here. */
+/* The header begins with the members of every baked file's header. Its basis is
+ * their member variant. */
 GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum {
-    /* max sum of the magnitudes of an output's coefficients; 1 in _q30 */
+    /* Max sum of the magnitudes of an output's coefficients. It is 1 in
+     * _q30. */
     LIMIT = 1 << 30,
     MAX_REAL_EXPONENT = 200,
     /* max number of bits by which narrow (16-bit) coefficients are shifted */
@@ -48,12 +49,12 @@ enum {
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* log2 of the number of angle intervals at whose ends the half sizes of a
-     * box must not be negative */
+    /* Log2 of a number of intervals of angle. At the ends of all intervals the
+     * half sizes of a box must be 0 or more. */
     BOX_NODES_LOG2 = 5,
-    /* max sum of the sizes of the tables of all systems, in file sizes. Systems
-     * may share tables; without a limit, checking many systems that share large
-     * tables would take quadratic time. */
+    /* Max total size of the tables of all systems, as a multiple of the file
+     * size. Systems may share tables. Without a limit, many systems that share
+     * large tables would take quadratic time to check. */
     MAX_SHARED = 8
 };
 
@@ -183,8 +184,8 @@ static const char *check_direction_range(struct check *c,
                : NULL;
 }
 
-/* Returns whether the half-size polynomial P of a box is negative at any of a
- * series of angles, at either end of the band. */
+/* Returns whether P, the polynomial of a box's half size, is negative at any of
+ * a series of angles, at either end of the band. */
 static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 1);
@@ -199,7 +200,7 @@ static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
     return 0;
 }
 
-/* Returns whether the half-size polynomial P of a box in the lens basis is
+/* Returns whether P, the polynomial of a box's half size in the lens basis, is
  * negative at any of a grid of directions, at either end of the band. */
 static int has_negative_lens_size(const int32_t p[GLINT_BOX_TERMS])
 {
@@ -290,8 +291,8 @@ static const char *check_output_terms(struct check *c,
     return NULL;
 }
 
-/* Checks the coefficients of an output, which are stored in two sizes: see
- * n_narrow in struct glint_model_output. */
+/* Checks the coefficients of an output, which are stored as int32 and int16;
+ * see n_narrow in struct glint_model_output. */
 static const char *check_output_coefficients(struct check *c,
                                              const struct glint_model_output *o)
 {
@@ -402,8 +403,8 @@ static const char *check_system_order(const struct glint_model_system *last,
                : NULL;
 }
 
-/* Checks all ghosts. Their lists of systems must ascend from ghost to ghost, so
- * that one pass shows that no two ghosts share a system. */
+/* Checks all ghosts. Each ghost's list of systems must begin after the list of
+ * the previous ghost. One pass then shows that no two ghosts share a system. */
 static const char *check_ghost_lists(const struct check *c)
 {
     const struct glint_model_header *h = c->header;
@@ -425,8 +426,9 @@ static const char *check_ghost_lists(const struct check *c)
             return "damaged model: two ghosts share a system, or systems are "
                    "unsorted";
         next = g->first_system + g->n_systems;
-        /* in the lens basis directions have two components and no order; where
-         * two systems overlap, the run time uses the first one */
+        /* Directions in the lens basis have two components and no order, so
+         * overlaps are allowed. Where two systems overlap, the run time uses
+         * the first one. */
         for (uint32_t m = g->first_system + 1;
              m < next && !glint_basis_is_lens(h->basis); m++) {
             const char *reason =

@@ -6,14 +6,14 @@
  *   out  for each barrel of the other position, the barrels of this position
  *        with which it is mixed
  *
- * Barrels have no names in a model. Two barrels correspond if their
- * polynomials have nearly the same values, compared either relative to the box
- * of each position, which follows the visible rays, or at equal points of the
- * pupil, as boxes may change faster than barrels move. The pair that differs
- * least is matched first. A barrel without a partner blocks no ray, at the
- * position that lacks it, that the most similar barrel there does not block,
- * too; so it is paired with a copy of that barrel.
- */
+ * Barrels have no names in a model. Two barrels correspond if their polynomials
+ * have nearly the same values in one of two comparisons. The first is at equal
+ * points of each position's box, which follows the visible rays. The second is
+ * at equal points of the pupil, because boxes may change faster than barrels
+ * move. The pair that differs least is matched first. If a barrel has no
+ * partner, every ray that it would block at the other position is also blocked
+ * by the most similar barrel there. It is therefore paired with a copy of that
+ * barrel. */
 #include "base/q.h"
 #include "lens/blend.h"
 #include "lens/terms.h"
@@ -59,9 +59,9 @@ static int64_t get_min_i64(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Finds the overlap of both boxes in the pupil: FIRST .. LAST along u and 0 ..
- * HIGH along v, in half sizes of this position's box. Returns 0 if they do not
- * overlap. */
+/* Finds the overlap of both positions' boxes in the pupil: FIRST .. LAST along
+ * u and 0 .. HIGH along v, in half sizes of this position's box. Returns 0 if
+ * the boxes do not overlap. */
 static int find_box_overlap(const struct glint_zoom_mix *blend, int64_t *first,
                             int64_t *last, int64_t *high)
 {
@@ -92,8 +92,8 @@ static void set_barrel_values(const struct glint_zoom_mix *blend, int side,
         if (side) {
             u = q_shift(u * (one - back->wider_q24), 24) - back->along_q24;
             v = q_shift(v * (one - back->higher_q24), 24);
-            /* moves are rounded, to units that may be as large as a box, so U
-             * and V are clamped to the box */
+            /* U and V are clamped to the box, because moves are rounded to
+             * units that may be as large as a box. */
             u = -get_min_i64(one, -get_min_i64(one, u));
             v = get_min_i64(one, v);
         }
@@ -103,9 +103,9 @@ static void set_barrel_values(const struct glint_zoom_mix *blend, int side,
     }
 }
 
-/* Returns the max difference between the values of two barrels, over sample
- * points of their own boxes or over points of the pupil, whichever max is
- * smaller. */
+/* Returns the difference between two barrels: the max difference of their
+ * values over sample points of their own boxes, or over points of the pupil.
+ * The smaller of these two maxima is returned. */
 static int64_t compute_barrel_difference_q16(const struct glint_zoom_mix *blend,
                                              int ours, int theirs)
 {

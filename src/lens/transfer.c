@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Substitutes angle and wavelength into the polynomials of a bundle. The
- * results are polynomials of the position in the bundle's box, which
- * transfer_rays.c evaluates.
+ * results are polynomials of u and v, the position in the bundle's box;
+ * transfer_rays.c evaluates them.
  *
  *   in   a model, a ghost, the sine of the light's angle, a wavelength
  *   out  struct glint_transfer: tables of coefficients of u^a v^b, and a box
@@ -11,8 +11,7 @@
  * intermediate values of an output are integers in that output's own unit,
  * below 2^30, as the bake has proven (bound in struct glint_model_output). So
  * each product of a variable and a coefficient is below 2^60, and is rounded
- * to the output's unit by a shift of 30.
- */
+ * to the output's unit by a shift of 30. */
 #include "glint/transfer.h"
 
 #include "base/compiler.h"
@@ -60,7 +59,8 @@ static int is_direction_in_range(const struct glint_lens *lens,
     const int32_t *range_q30;
 
     if (!glint_basis_is_lens(lens->header->basis))
-        /* auto basis: across_at has not been validated, so it is not read */
+        /* In the auto basis across_at is not validated, so it is not read
+         * here. */
         return 1;
     range_q30 = get_model_table(lens, s->across_at);
     return y_q30 >= range_q30[0] && y_q30 <= range_q30[1];
@@ -95,8 +95,8 @@ glint_transfer_find_system(const struct glint_lens *lens, int ghost,
     return find_ghost_system(lens, ghost, sine_q30, 0, wave_q24);
 }
 
-/* Angle and wavelength of a bundle, relative to the ranges of its system, as
- * powers 0, 1, 2 ... */
+/* Powers 0, 1, 2 ... of the angle and of the wavelength of a bundle, both
+ * normalised to the ranges of its system. */
 struct substituted_powers {
     int32_t s_q30[TRANSFER_MAX_EXPONENT + 1], w_q30[TRANSFER_MAX_EXPONENT + 1];
     /* 1: the model uses the lens basis (lenses that are not round); 0: auto
@@ -146,8 +146,8 @@ static void evaluate_transfer_box(struct glint_transfer *t,
                                                set->p_q30[1], set->w_q30[1])
                 : evaluate_box_polynomial(side, set->s_q30[1], set->w_q30[1]);
     }
-    /* glint_lens_open() tests half sizes on a grid of angles only; between
-     * these a half size may be negative, so it is clamped to 0. */
+    /* glint_lens_open() tests half sizes only on a grid of angles. Between grid
+     * points a half size may be negative, so it is clamped to 0. */
     for (int k = 1; k < 3; k++)
         t->box[k] = t->box[k] < 0 ? 0 : t->box[k];
 }
@@ -164,8 +164,9 @@ static WHOLLY_INLINE int32_t substitute_auto_term(
     return d ? q_mul(value, set->w_q30[d], 30) : value;
 }
 
-/* glint_lens_open() limits powers of u and v to GLINT_MAX_POWER, and powers in
- * the lens basis to these limits. */
+/* Powers index these tables; glint_lens_open() checks that powers of u and v
+ * are at most GLINT_MAX_POWER, and powers in the lens basis below these
+ * limits. */
 STATIC_ASSERT(GLINT_MAX_POWER < GLINT_TABLE_WIDTH);
 STATIC_ASSERT(GLINT_LENS_POWERS <= TRANSFER_MAX_EXPONENT + 1);
 STATIC_ASSERT(GLINT_LENS_WAVE_POWERS <= TRANSFER_MAX_EXPONENT + 1);
@@ -276,12 +277,12 @@ static void clear_transfer_outputs(struct glint_transfer *t)
     }
 }
 
-/* The direction of a light in the form that systems use. x: the sine of the
- * light's angle; in the lens basis, the direction's x component. */
+/* The direction of a light in the form that systems use. x is the sine of the
+ * light's angle, or in the lens basis the x component of its direction. */
 struct system_direction {
     int32_t x_q30, y_q30;
-    /* 1: the light is on the other side of the plane of symmetry, so the
-     * mirrored system is used */
+    /* 1: the light is on the other side of the plane of symmetry, so that it is
+     * mirrored into the range of the model */
     int mirror_x, mirror_y;
 };
 
@@ -336,7 +337,7 @@ int glint_transfer_init_at(struct glint_transfer *transfer,
     set_substituted_powers(&set, lens, system, d.x_q30, d.y_q30, wave_q24);
     transfer->whole = (uint8_t)set.lens;
     transfer->window = glint_box_whole(transfer);
-    /* mirroring in x equals mirroring in y followed by a half turn */
+    /* Mirroring in x equals mirroring in y and then rotating by 180 degrees. */
     transfer->sign = (int8_t)(d.mirror_x ? -1 : 1);
     transfer->side = (uint8_t)(d.mirror_x != d.mirror_y);
     evaluate_transfer_box(transfer, lens, &set);

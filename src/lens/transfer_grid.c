@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts grids of rays to vertices in the picture: values of the polynomials
- * become pixels, stop radii and energies in fixed formats, rotated by the
- * azimuth of the light. Rays whose values exceed these formats are marked
- * invalid.
- */
+ * Converts grids of rays to vertices in the picture. Values of the polynomials
+ * become pixels, stop radii and energies in fixed-point formats. Positions are
+ * rotated by the azimuth of the light. Rays whose values exceed these formats
+ * are marked invalid. */
 #include "glint/transfer.h"
 
 #include <stddef.h>
@@ -21,14 +20,14 @@ STATIC_ASSERT((int)RAYS == (int)GLINT_TURNED);
 
 /* ---------------------------------------------------------------- vertices */
 
-/* rays that are computed together, before they become vertices */
+/* a block of rays that are computed together, before they become vertices */
 struct block {
     /* x and y of the rays, then x and y of their mirror images */
     int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
     int32_t barrel_q16[2][RAYS];
     int32_t energy_q16[RAYS];
-    /* [0]: rays, [1]: their mirror images; all bits are set if the ray is
-     * invalid */
+    /* Masks of invalid rays, in which all bits are set. [0]: rays, [1]: their
+     * mirror images. */
     int32_t invalid[2][RAYS];
 };
 
@@ -156,8 +155,8 @@ static void convert_ray_block(const struct glint_transfer *t,
                          rays[GLINT_OUT_STOP_Y], b->stop_q16, b->invalid);
 }
 
-/* Writes the first N rays of B as vertices: the rays themselves if SIDE is 0,
- * their mirror images if it is 1. */
+/* Writes the first N rays of B as vertices if SIDE is 0, or their mirror images
+ * if SIDE is 1. */
 static void write_block_vertices(const struct block *b,
                                  const struct glint_place *p, int side, int n,
                                  struct glint_vertex *v)

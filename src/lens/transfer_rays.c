@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Evaluates the polynomials of a bundle, into which transfer.c has substituted
- * angle and wavelength, along rows of a grid of rays: by Horner's rule
- * (kernels/rays), eight rays at once. Formats as in transfer.c.
- */
+ * Evaluates the polynomials of a bundle along rows of a grid of rays, after
+ * transfer.c has substituted angle and wavelength. Uses Horner's rule
+ * (kernels/rays) for eight rays at once. Number formats are those of
+ * transfer.c. */
 #include "glint/transfer.h"
 
 #include "base/q.h"
@@ -12,16 +12,17 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Auto basis: returns whether all terms of output KIND have odd powers of v;
- * otherwise all have even ones. In the lens basis terms have both. */
+/* Returns whether all terms of output KIND have odd powers of v; if not, all
+ * have even powers. Applies to the auto basis; in the lens basis terms have
+ * both. */
 static int is_odd_in_v(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;
 }
 
-/* Sets OF_U to the sum, as a polynomial in u, of those terms of output KIND
- * that have odd (ODD = 1) or even (ODD = 0) powers of v, along the row of rays
- * at V_Q30. */
+/* Sets OF_U to a polynomial in u for the row of rays at V_Q30. It is the sum of
+ * those terms of output KIND that have odd (ODD = 1) or even (ODD = 0) powers
+ * of v. */
 static void sum_powers_of_v(const struct glint_transfer *t,
                             const struct glint_horner *k, int kind, int odd,
                             int32_t v_q30, int32_t v2_q30, int32_t *of_u)

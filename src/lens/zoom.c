@@ -7,13 +7,13 @@
  *        ghosts of all models, and interpolated bundles
  *
  * All models contain the same pairs of surfaces as ghosts, in the same order. A
- * ghost whose pupil is divided has additional parts; the combined list has as
- * many parts as the model with the most. A zoom position lies between two
- * models, one on either SIDE. If both divide the pupil of a ghost in the same
- * way at an angle, their polynomials are mixed; otherwise the nearer model is
- * drawn. If only one of them has light, it is extrapolated using a third model
- * farther away, or faded.
- */
+ * ghost whose pupil is divided has additional parts. The combined list has as
+ * many parts as the model with the largest number of parts. A zoom position
+ * lies between two models, one on either SIDE. If both models divide the pupil
+ * of a ghost in the same way at an angle, their polynomials are mixed;
+ * otherwise the nearer model is drawn. If the ghost has light in only one of
+ * them, that model is extrapolated using a third model farther away, or the
+ * ghost is faded. */
 #include "glint/model.h"
 
 #include "base/blob.h"
@@ -36,7 +36,8 @@ static int count_ghosts_without_parts(const struct glint_lens *lens)
 }
 
 /* Returns the number of additional parts of ghost G in model LENS. Advances
- * *NEXT, the index of the first part that has not been counted, past them. */
+ * *NEXT, the index of the first part that has not been counted, by this
+ * number. */
 static int count_ghost_parts(const struct glint_lens *lens, int g,
                              uint32_t *next)
 {
@@ -96,8 +97,9 @@ static int has_model_ghost(const struct glint_zoom_lens *z, int k, int g)
     return !z->has[k] || (z->has[k][g / 32] >> g % 32 & 1);
 }
 
-/* For each ghost, finds the nearest model on either side of the zoom position
- * that contains it. END receives the first and the last of all these models. */
+/* Finds for each ghost the nearest model on either side of the zoom position
+ * that contains the ghost. END receives the first and the last of all these
+ * models. */
 static void find_neighbour_models(struct glint_zoom_lens *z, int end[2])
 {
     end[0] = z->below;
@@ -126,8 +128,8 @@ static void set_neighbour_indices(struct glint_zoom_lens *z, int side, int g,
         z->place[side][e] = (int16_t)(z->number[e] <= parts ? (int)at++ : -1);
 }
 
-/* Sets the indices in model K of all ghosts and parts for which K is the model
- * on either side. */
+/* Sets the indices in model K of all ghosts and parts for which K is one of the
+ * two neighbour models. */
 static void find_model_indices(struct glint_zoom_lens *z, int k)
 {
     const struct glint_lens *const m = &z->model[k];
@@ -164,8 +166,8 @@ static struct glint_real interpolate_real(struct glint_real a,
     return real_of(x + y, e - 30);
 }
 
-/* Returns the zoom position on a scale from 0 (model FROM) to 1 (model TO),
- * extrapolated: below 0 if FROM lies between the position and TO. */
+/* Returns the zoom position on a scale on which model FROM is at 0 and model TO
+ * at 1. The result is below 0 if FROM lies between the position and TO. */
 static int32_t compute_zoom_position_q30(const struct glint_zoom_lens *z,
                                          int from, int to)
 {
@@ -264,8 +266,8 @@ static int find_system_annulus(const struct glint_zoom_lens *z, int e, int side,
 }
 
 /* Returns whether the models on both sides divide the pupil of ghost G in the
- * same way. Sets LIT[side] to whether light passes any part in that side's
- * model. */
+ * same way. Sets LIT[side] to whether light passes any part of the pupil in
+ * that side's model. */
 static int is_pupil_divided_alike(const struct glint_zoom_lens *z, int g,
                                   int32_t sine_q30, int32_t wave_q24,
                                   int lit[2])
@@ -297,10 +299,11 @@ static int set_transfer_from_neighbour(struct glint_transfer *transfer,
                                z->place[side][e], sine_q30, wave_q24);
 }
 
-/* Let S be the side model on SIDE. Returns the index of the nearest model
- * beyond S that contains ghost G and whose distance from S is at least the
- * distance between both side models, so that extrapolation at most doubles a
- * distance; -1: there is none. */
+/* Finds a model for extrapolation. Let S be the neighbour model on SIDE.
+ * Returns the index of the nearest model, on the far side of S, that contains
+ * ghost G. Its distance from S must be at least the distance between both
+ * neighbour models, so that extrapolation at most doubles a distance. Returns
+ * -1 if there is no such model. */
 static int find_model_behind_neighbour(const struct glint_zoom_lens *z, int g,
                                        int side)
 {
@@ -315,9 +318,9 @@ static int find_model_behind_neighbour(const struct glint_zoom_lens *z, int g,
     return -1;
 }
 
-/* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and one beyond
- * it. The ghost must have light in the model on SIDE only, without additional
- * parts there. Returns whether this is possible. */
+/* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and a model
+ * farther away. G must have light only in the model on SIDE, and no additional
+ * parts there. Returns whether extrapolation is possible. */
 static int extrapolate_ghost_transfer(struct glint_transfer *transfer,
                                       const struct glint_zoom_lens *z, int g,
                                       int side, int32_t sine_q30,
