@@ -12,8 +12,8 @@
 
 #include "glint/kernels.h"
 
-/* NEON kernels are built for every ARM CPU that may have NEON. The compiler
- * or the operating system reports whether the CPU has NEON. */
+/* NEON kernels are built for every ARM CPU that may have NEON. At run time the
+ * compiler's target or the operating system states whether the CPU has NEON. */
 #if defined(__aarch64__) || defined(__ARM_NEON) ||               \
     (defined(__ARM_ARCH_PROFILE) && __ARM_ARCH_PROFILE == 'A' && \
      __ARM_ARCH >= 7)

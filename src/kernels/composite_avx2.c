@@ -49,8 +49,8 @@ static inline void v_load_pairs(const uint16_t *p, V x[1])
         0xd8);
 }
 
-/* Converts codes to _q7. PLACES is a shuffle control that selects, for each
- * half of the result, the bytes of CODES to convert. */
+/* Converts codes to _q7. PLACES is a shuffle control: for each half of the
+ * result it selects the bytes of CODES that are converted. */
 static inline V shuffle_codes_to_q7(__m128i codes, V places)
 {
     return v_right(v_shuffle(_mm256_broadcastsi128_si256(codes), places), 1);
@@ -100,8 +100,8 @@ static inline __m128i b_pack_chroma(const V c[2])
     return interleave_codes(c[0], c[1]);
 }
 
-/* Load eight dither thresholds for sixteen pixels, and for their chroma, Cb
- * and Cr separately. */
+/* Load eight dither thresholds: for sixteen pixels, or for the chroma of
+ * sixteen pixels, where Cb and Cr have thresholds of their own. */
 static inline void v_load_pair_rounding(const int16_t *p, V x[1])
 {
     x[0] = v_shuffle(v_load_repeated(p),
@@ -131,9 +131,9 @@ static inline V v_average_pairs(const V x[1])
     return v_mean(x[0], swap_halves(x[0]));
 }
 
-/* Combine two blocks of quads in one vector, one per half: the means of their
- * pixel pairs, or their chroma. v_copy_quads_of_block() copies the values of
- * block B to both halves. */
+/* Functions that process two blocks of quads in one vector, one per half.
+ * v_join_pairs() combines the means of their pixel pairs, or their chroma.
+ * v_copy_quads_of_block() copies the values of block B to both halves. */
 static inline V v_join_pairs(V x[2][1])
 {
     return v_mean(_mm256_permute2x128_si256(x[0][0], x[1][0], 0x20),
@@ -167,7 +167,8 @@ static inline V w_prefix_sums(V x)
 
     x = OP(add_epi32)(x, _mm256_slli_si256(x, 4));
     x = OP(add_epi32)(x, _mm256_slli_si256(x, 8));
-    /* lower half: 0; upper half: sums of the lower half */
+    /* LOW is 0 in the lower half, and has the sums of the lower half in the
+     * upper half. */
     low = _mm256_permute2x128_si256(x, x, 0x08);
     return OP(add_epi32)(x, _mm256_shuffle_epi32(low, 0xff));
 }

@@ -57,8 +57,8 @@ static int16_t compute_code_change(const struct glint_tone16 *t, int16_t code,
     return lit > code ? (int16_t)(lit - code) : 0;
 }
 
-/* Indices of the three changes on which chroma depends, in the array of the
- * changes of R', G', B' and Y'. */
+/* Indices of the changes on which chroma depends, in the array of the changes
+ * of R', G', B' and Y'. They are those of R', B' and Y'. */
 static const int chroma_changes[3] = {0, 2, 3};
 
 /* Sets RGB to the full-range R', G', B' of a pixel with Y', Cb and Cr, _q7. */
@@ -136,9 +136,9 @@ static int16_t average_rounded_up(int a, int b)
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* Returns the new code of chroma (CODE: the old one), after the mean of its
- * pixels changed by OWN in B' (for Cb) or R' (for Cr), and by LUMA in Y'. K is
- * the index in to_ycc of the factor of OWN; the factor of LUMA follows it. */
+/* Returns the new chroma code. CODE is the old one. The mean of its pixels
+ * changed by OWN in B' (for Cb) or R' (for Cr), and by LUMA in Y'. K is the
+ * index in to_ycc of the factor of OWN; the factor of LUMA follows it. */
 static uint8_t add_change_to_chroma(int code, int own, int luma, int k,
                                     const struct glint_mix *mix,
                                     int16_t round_q7)
@@ -211,8 +211,8 @@ void glint_add_packed_c(uint8_t *pixels, const uint16_t *const light[3], int n,
     }
 }
 
-/* Returns PART / WHOLE as _q15, by Newton's method; the error is below 2^-12.
- * Both must be 0 or more. PART is clamped to WHOLE. */
+/* Returns PART / WHOLE, _q15, by Newton's method with an error below 2^-12.
+ * PART and WHOLE must be 0 or more. PART is clamped to WHOLE. */
 static int16_t divide_clamped_q15(int part, int whole)
 {
     const int zeros = 16 - bit_length((uint32_t)whole);
@@ -233,8 +233,8 @@ static int16_t divide_clamped_q15(int part, int whole)
     return add_saturating(q_q14, q_q14);
 }
 
-/* Adds light to 2 x 2 pixels. Both rows are read before either is written, as
- * they may be the same row. */
+/* Adds light to 2 x 2 pixels. Both rows are read before either is written,
+ * because they may be the same row. */
 static void add_light_to_quad(uint8_t *const luma[2], uint8_t *const chroma[2],
                               const uint16_t light[3],
                               const struct glint_mix *mix,

@@ -53,8 +53,9 @@ static inline int v_is_zero(V x)
 
 /* --------------------------------------------------------------- constants */
 
-/* Factors stay in registers, eight in each. Compilers keep a table in two
- * consecutive registers only if it is a variable, not a member of a struct. */
+/* Factors of a tone curve, which stay in registers of eight factors each.
+ * Compilers keep a table in two consecutive registers only if it is a variable,
+ * not a member of a struct. */
 struct v_tone {
     int16x8_t factor, toe_end, rise[2], turn;
     const uint8x16x2_t *level, *slope, *curve;
@@ -122,8 +123,8 @@ static inline uint8x16x2_t load_table(const int16_t *p)
 /* Number of leading zeros, 0 .. 16. */
 #define v_zeros vclzq_s16
 
-/* Byte offsets of entries of a table; lookups at offsets past the table's
- * end give 0. */
+/* Byte offsets of the entries of a table. A lookup at an offset past the
+ * table's end gives 0. */
 #define PLACES uint8x16_t
 
 static inline PLACES v_table_offsets(const TONE *t, V k)
@@ -150,8 +151,8 @@ static inline V v_look_up_entries(const uint8x16x2_t *table, PLACES at)
         vcombine_u8(vtbl4_u8(quarters, vget_low_u8(at)),
                     vtbl4_u8(quarters, vget_high_u8(at))));
 #else
-    /* Inline assembly, as GCC would copy the four registers of the table
-     * through the stack. */
+    /* Inline assembly is used because GCC would copy the four registers of the
+     * table through the stack. */
     uint8x8x4_t quarters;
     uint8x16_t entry;
 
@@ -164,7 +165,7 @@ static inline V v_look_up_entries(const uint8x16x2_t *table, PLACES at)
 #endif
 }
 
-/* Returns X times 2^ZEROS, read from a table at the offsets AT. */
+/* Returns X times 2^ZEROS. The power is read from a table at the offsets AT. */
 static inline V v_shift_by_zeros(const TONE *t, V x, V zeros, PLACES at)
 {
     (void)t;
@@ -269,9 +270,9 @@ static inline uint16x4_t round_sum_to_q16(uint32x4_t sum, int32x4_t fewer)
     return vqmovun_s32(vrshlq_s32(vreinterpretq_s32_u32(sum), fewer));
 }
 
-/* Computes the prefix sum of sixteen lanes in groups of four: first within
- * each group, then adds the total of all earlier groups. If all sixteen
- * changes are 0, which is common, the additions are skipped. */
+/* Computes the prefix sums of sixteen lanes in groups of four: first within
+ * each group; then adds the total of all earlier groups to each group. If all
+ * sixteen changes are 0, which is common, the additions are skipped. */
 void glint_run_sum_neon(uint32_t *change, uint32_t *carry, uint16_t *light_q16,
                         int n, int more)
 {

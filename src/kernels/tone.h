@@ -6,21 +6,20 @@
  * code is 128.5 units. x is unsigned and may exceed white.
  *
  *   decode: toe v + w^2 (r0 + w (r1 + w r2)). w = max(v - end of the toe, 0),
- * so that the same formula serves the linear toe and the power curve.
+ *   so that the same formula serves the linear toe and the power curve.
  *
- *   encode: a cubic in each octave of light. z = -1 .. 0 from the lower to the
- *   upper end of the octave; code = level + z (slope + z curve (turn0 +
+ *   encode: a cubic in each octave of light. z = -1 .. 0 runs from the lower to
+ *   the upper end of the octave; code = level + z (slope + z curve (turn0 +
  *   z turn1)). Level, slope and curve are looked up by the number of leading
  *   zeros. Where the curve is a power, the cubics of all octaves are
- *   proportional, so that they share turn0 and turn1. In the toe curve is 0,
- *   and above white slope is 0, too.
+ *   proportional, so that they share turn0 and turn1. In the toe, curve is 0.
+ *   Above white, curve and slope are 0.
  *
  * The factors minimise the max error against sRGB and BT.709. In 8-bit codes,
  * over all 32768 codes and lights, it is 0.17 for decode (0.09 without the
  * rounding of light, whose unit is 0.1 code in the toe) and 0.06 for encode.
- * encode is monotone: within an octave because each rounded product is, between
- * octaves by the choice of levels.
- */
+ * encode is monotone: within an octave because each rounded product is
+ * monotone, between octaves by the choice of levels. */
 #ifndef GLINT_KERNELS_TONE_H
 #define GLINT_KERNELS_TONE_H
 
@@ -32,8 +31,8 @@
 
 enum { GLINT_WHITE_Q15 = INT16_MAX };
 
-/* A constant repeated in all lanes of the widest vector, or a table. Vector
- * instructions use it as a memory operand. */
+/* A constant that is repeated in all lanes of the widest vector, or a table of
+ * this size. Vector instructions use it as a memory operand. */
 typedef ALIGNED(32) int16_t glint_lanes[GLINT_LANES];
 
 /* Factors, _q15, in two layouts: ONE has one factor per lane, ALL repeats
@@ -50,8 +49,8 @@ enum {
     GLINT_TONE_TURN, /* turn1 of encode */
     GLINT_TONE_Q7,   /* factor that converts units of R'G'B', 1 / 128.5 code, to
                         _q7 */
-    /* 2: bytes per entry of a table. A variable, as compilers would replace a
-     * product with a constant by slower additions. */
+    /* 2, the number of bytes per entry of a table. It is a variable because
+     * compilers would replace a product with a constant by slower additions. */
     GLINT_TONE_ENTRY
 };
 

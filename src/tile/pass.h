@@ -2,8 +2,8 @@
  *
  * Draws passes (flare, scene, stars ...) onto a picture, tile by tile.
  *
- * in   passes, from back to front; the picture behind them out  its pixels,
- * changed in place
+ *   in   passes, from back to front; the picture behind them
+ *   out  the pixels of the picture, changed in place
  *
  * The driver processes a row of tiles from left to right, so that a pass may
  * carry state from tile to tile. Within a tile it draws two pixel rows at a

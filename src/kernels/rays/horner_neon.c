@@ -20,8 +20,8 @@ static inline struct factor factor_of(W x_q30)
     return (struct factor){x_q30};
 }
 
-/* Returns A BY / 2^30, rounded. vqrdmulh returns the rounded upper half of 2
- * x BY, so A, below 2^30, is doubled first. */
+/* Returns A * BY / 2^30, rounded. vqrdmulh returns the rounded upper half of 2
+ * A BY. Therefore A, which is below 2^30 in magnitude, is doubled first. */
 static inline W w_multiply_q30(W a, struct factor by)
 {
     return vqrdmulhq_s32(vshlq_n_s32(a, 1), by.x);

@@ -3,7 +3,7 @@
 
 #include <arm_neon.h>
 
-/* 64-bit products of each of four lanes with the same factor. */
+/* 64-bit products of four lanes with one factor. */
 struct products {
     int64x2_t low, high;
 };

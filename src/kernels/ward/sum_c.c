@@ -33,9 +33,10 @@ static uint32_t compute_root_q15(uint32_t x_q14)
     return (y_q14 * part_q14 >> 14 << 2) >> (up / 2);
 }
 
-/* A sample of the lobe: the direction i from the surface to the light, in the
- * surface's frame; h.o, the half vector times the direction to the eye; and
- * whether the sample counts: h.o and n.i are positive (n: normal). */
+/* A sample of the lobe. in: direction i from the surface to the light, in the
+ * surface's frame. ho: cosine h.o between the half vector h and the direction o
+ * to the eye. A sample counts if h.o and n.i are positive, where n is the
+ * normal. */
 struct sample {
     int32_t in_q14[3], ho_q14;
     int counts;
@@ -47,7 +48,8 @@ static struct sample compute_lobe_sample(const struct glint_ward_lobe *lobe,
 {
     const int32_t *out_q14 = place->out_q14;
     struct sample s;
-    int32_t ho_q28 = 1 << 13; /* unit vectors: products sum to 2^28 */
+    int32_t ho_q28 = 1 << 13; /* the sum of products of unit vectors, of _q14,
+                                 is 2^28 at most */
 
     for (int j = 0; j < 3; j++)
         ho_q28 += lobe->half_q14[j][k] * out_q14[j];
@@ -122,9 +124,10 @@ static void project_direction_to_map(const struct sample *s,
     *v_q17 = ONE_Q16 + (toward_q14[2] < 0 ? -q_q16 : q_q16);
 }
 
-/* Returns the blurriest mip level that is not blurrier than sample K. Sets
- * *SHARE_Q8 to the weight of the next level, which has four times the variance,
- * such that the blend of both levels has the sample's variance. */
+/* Returns the mip level with the strongest blur that does not exceed the blur
+ * of sample K. Sets *SHARE_Q8 to the weight of the next level, which has four
+ * times the variance of the returned level. The blend of both levels has the
+ * variance of the sample. */
 static int32_t choose_mip_level(const struct glint_ward_lobe *lobe, int k,
                                 int32_t ho_q14, int32_t last,
                                 uint32_t *share_q8)

@@ -78,7 +78,7 @@ static inline void w_gather_levels(const struct glint_texels_level *level, W k,
     first[1] = next.val[1];
 }
 
-/* Three scalars, as operands of multiplications by lane. */
+/* Three scalars, in the form that multiplications by lane accept. */
 struct three {
     int32x2_t low, high;
 };

@@ -13,17 +13,18 @@ struct glint_reads {
     uint32_t at[8], weight_q22[8];
 };
 
-/* Light as RGB with a shared exponent. The unit of RGB is 2^(log2 - 34), where
- * 1 is display white; RGB is at most 2^31, log2 at most 31. */
+/* The light that a lookup found, as RGB with a shared exponent. The unit of RGB
+ * is 2^(log2 - 34), where 1 is display white. RGB is at most 2^31, log2 at most
+ * 31. */
 struct glint_found {
     uint32_t rgb[3];
     int32_t log2;
 };
 
 /* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL nearest to (U,
- * V), 0 .. 1 across and down the square, with total weight SHARE_Q8. A texel
- * beyond an edge is replaced by its mirror image about the middle of that edge,
- * as the octahedron folds. */
+ * V), which is 0 .. 1 across and down the square. Their total weight is
+ * SHARE_Q8. A texel outside the square is replaced by its mirror image about
+ * the middle of the nearest edge, because the octahedron folds there. */
 static inline void
 glint_choose_texels_to_read(const struct glint_texels_level *level,
                             int32_t u_q17, int32_t v_q17, uint32_t share_q8,

@@ -4,11 +4,11 @@
  * Ward lobe. The rules of kernels.h apply, except that texels are gathered from
  * any address.
  *
- * o: direction to the eye; h: half vector; i = 2 (h.o) h - o: direction to the
- * light; n: normal. The weight of a sample is (h.o) (h.n)^3 sqrt(n.i / n.o) in
- * the norm of 1992 [Ward92], and (n.i) / ((h.o) (h.n)) = 2 - (n.o) / ((h.o)
- * (h.n)) in the bounded norm [Geisler10]; clamped to 8.
- */
+ * Let o be the direction to the eye, h the half vector, n the normal, and i = 2
+ * (h.o) h - o the direction to the light. The weight of a sample depends on the
+ * normalisation. With that of 1992 [Ward92] it is (h.o) (h.n)^3 sqrt(n.i /
+ * n.o). With the bounded one [Geisler10] it is (n.i) / ((h.o) (h.n)) = 2 -
+ * (n.o) / ((h.o) (h.n)). Weights are clamped to 8. */
 #ifndef GLINT_KERNELS_WARD_WARD_H
 #define GLINT_KERNELS_WARD_WARD_H
 
