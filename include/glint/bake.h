@@ -39,8 +39,8 @@ struct glint_bake_options {
      * 0.07 pixels for positions, 0.4 pixels for outlines, and 1.2 % for the
      * energy. */
     double tolerance;
-    /* [ghosts of the lens]: true: bake this ghost; NULL: bake all ghosts.
-     * Ghosts that are not baked have no systems in the model. */
+    /* Which ghosts of the lens are baked, [ghosts of the lens]; NULL: all.
+     * Other ghosts have no systems in the model. */
     const bool *ghosts;
     /* [n_beside], at most 2: the same lens at neighbouring zoom positions. The
      * model also includes light and barrels that matter only at these
@@ -49,8 +49,9 @@ struct glint_bake_options {
      * this lens, or not symmetric about the axis. */
     const struct glint_prescription *beside;
     int n_beside;
-    struct glint_workers *workers; /* NULL: one thread. The output is the same
-                                      for any number of threads */
+    /* Worker threads; NULL: one thread. The output is the same for any number
+     * of threads. */
+    struct glint_workers *workers;
     /* Called after each fit with the estimated fraction of the work that is
      * done, which may decrease; may be NULL. */
     glint_progress_fn *progress;

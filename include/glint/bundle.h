@@ -19,8 +19,9 @@ extern "C" {
 /* One ray of a grid: the point where it hits the sensor, and where it crosses
  * the stop and the barrels. */
 struct glint_vertex {
-    int32_t x_q8, y_q8; /* pixels from the top left corner of the picture, y
-                           down; within +-GLINT_VERTEX_LIMIT_Q8 */
+    /* Point on the sensor, pixels from the top left corner of the picture, y
+     * down; within +-GLINT_VERTEX_LIMIT_Q8. */
+    int32_t x_q8, y_q8;
     int32_t stop_x_q16,
         stop_y_q16; /* position in the stop, in stop radii, within +-2^14 */
     /* (1 + r^2) / 2 at each of two barrels that may cut the ray, 0 .. 2^14; 0:

@@ -115,7 +115,7 @@ struct glint_engine_camera {
      * model: &glint_frame_traces of libglint-bake.a. NULL: a model is
      * required. */
     const struct glint_frame_rays *rays;
-    /* [ghosts of the setup]: tints of ghosts, or NULL; must outlive the
+    /* Tints of the ghosts, [ghosts of the setup], or NULL; must outlive the
      * engine. */
     const struct glint_tint *tints;
     /* Dirt on the front element, made by glint_front_make(); must outlive the

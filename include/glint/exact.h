@@ -23,7 +23,7 @@ struct glint_exact_config {
     int grid; /* number of cells per side of the ray grid over each ghost's
                  pupil, even */
     int only_ghost; /* index of the only ghost that is drawn; -1: all ghosts */
-    /* [ghosts of the setup]: tints; NULL: no ghost is tinted. */
+    /* Tints of the ghosts, [ghosts of the setup]; NULL: no ghost is tinted. */
     const struct glint_tint *tints;
     /* Worker threads; NULL: one thread. The output is the same for any number
      * of threads. */

@@ -33,11 +33,11 @@ enum glint_cost_kind {
     GLINT_COST_ROWS,     /* pixel rows that these edges cross */
     /* Parts of cells on which dust or a mask is drawn. */
     GLINT_COST_PARTS,
-    GLINT_COST_LIT,  /* pixels with any light */
-    GLINT_COST_STAR, /* pixels lit by stars; a pixel lit by several parts of
-                        a star is counted several times */
-    GLINT_COST_VEIL, /* pixels that a veil covers; includes the cost of its
-                        blur */
+    GLINT_COST_LIT,  /* number of pixels with any light */
+    GLINT_COST_STAR, /* number of pixels lit by stars; a pixel lit by several
+                        parts of a star counts several times */
+    GLINT_COST_VEIL, /* number of pixels that a veil covers; their cost includes
+                        that of the veil's blur */
     GLINT_COST_KINDS
 };
 
@@ -101,8 +101,8 @@ struct glint_explain {
     /* Length of WAVE: the number of wavelengths or, if each ghost chooses a set
      * of wavelengths, the number of sets. */
     int n_waves;
-    /* [ghosts of the lens, additional pupil regions included]: index of the
-     * pair of surfaces that causes the ghost. */
+    /* For each ghost of the lens or additional pupil region of a ghost: index
+     * of the pair of surfaces that causes the ghost. */
     int *ghost_of;
     struct glint_explain_part all, *ghost, *light, *wave;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles that 0, 1, ...
@@ -111,7 +111,7 @@ struct glint_explain {
     double unit; /* factor from the drawn light to the light that is reported */
     /* Log2 of the side of a tile, and number of tiles. */
     int tile_log2, n_tiles;
-    /* [height][width][3]: light that glint_explain_draw() drew. */
+    /* Picture that glint_explain_draw() drew, [height][width][3]. */
     int32_t *linear_q20;
 };
 

@@ -75,8 +75,8 @@ struct glint_dim {
     /* &glint_dim_method. It is a pointer so that only programs that use the
      * cache link the method. */
     const struct glint_dim_method *method;
-    /* [GLINT_DIM_NODES][ghosts of the lens][GLINT_DIM_VALUES]: log2 of the
-     * brightness */
+    /* Log2 of the brightness of each ghost, [GLINT_DIM_NODES][ghosts of the
+     * lens][GLINT_DIM_VALUES]. */
     int16_t *log2_q8;
     /* 1: the node (angle) is filled. The caller clears all nodes before the
      * first plan, and when lens, stop, waves or size change. */
@@ -93,7 +93,8 @@ struct glint_flare_frame {
     const struct glint_lens *lens;
     const struct glint_wave *wave;
     int n_waves; /* number of waves in all sets together, 1 or more */
-    const struct glint_wave_sets *sets; /* NULL: all waves for every ghost */
+    /* Sets of waves; NULL: every ghost uses all waves. */
+    const struct glint_wave_sets *sets;
     struct glint_real pixels_per_mm;
     /* Number that determines the cells per side of ray grids, 4 ..
      * GLINT_MAX_CELLS. The cells per side of a grid are proportional to
@@ -106,7 +107,8 @@ struct glint_flare_frame {
     /* Index of the only ghost of the lens that is drawn, with its additional
      * pupil regions (parts); -1: all ghosts. */
     int only_ghost;
-    /* [ghosts of the lens, parts included]: tints; NULL: no ghost is tinted. */
+    /* Tints of the ghosts and their parts, [ghosts of the lens, parts
+     * included]; NULL: no ghost is tinted. */
     const struct glint_tint *tints;
     /* For a picture in codes: the max light that changes no pixel, display
      * white. Ghosts fainter than this may be left out. Ghosts not much brighter

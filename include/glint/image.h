@@ -92,7 +92,7 @@ void glint_image_sample(const struct glint_image *image, int columns, int rows,
 /* A picture of linear light, BT.709 primaries, 1 = display white. */
 struct glint_float_image {
     int width, height; /* size of the picture, pixels, 1 .. GLINT_MAX_SIDE */
-    float *rgb;        /* [height][width][3], the top row first */
+    float *rgb;        /* pixels, [height][width][3], the top row first */
 };
 
 #ifdef __cplusplus

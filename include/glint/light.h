@@ -46,7 +46,8 @@ struct glint_shade {
 /* The opening of the aperture stop, in axes fixed to the camera: x right, y up.
  * Its unit is the stop radius: 1 is the circle of the frame's f-number. */
 struct glint_stop {
-    int n_blades; /* 0: circle; else 3 .. GLINT_MAX_BLADES */
+    int n_blades; /* number of blades: 3 .. GLINT_MAX_BLADES; 0: the stop is a
+                     circle */
     /* Unit normal of each side, outwards. */
     int32_t normal_q30[GLINT_MAX_BLADES][2];
     int32_t apothem_q16; /* distance from the centre to each side */

@@ -20,8 +20,9 @@ extern "C" {
 #endif
 
 struct glint_measure {
-    double psnr_db; /* dB, over the three channels; 999 if all values are equal
-                       even before rounding */
+    /* Peak signal-to-noise ratio over the three channels, dB; 999 if all values
+     * are equal even before rounding. */
+    double psnr_db;
     /* Structural similarity of luma, 8 x 8 blocks every 4 pixels. */
     double ssim;
     double p99;      /* 99th percentile of |difference|, codes */

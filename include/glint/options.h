@@ -84,7 +84,7 @@ struct glint_option {
      * Numbers: the unit, to which ", or WORD" may be appended. */
     const char *accepts;
     const char *help; /* description for help, one line */
-    const char *text; /* TEXT: the default, or "" */
+    const char *text; /* default of an option of type TEXT, or "" */
     double low, high; /* range of a number */
     double initial;   /* default of a number or a word; NAN: none */
     enum glint_option_type type;
@@ -181,7 +181,7 @@ int glint_option_numbers(const char *text, double *values, int max);
 
 /* --stop */
 struct glint_stop_shape {
-    int n_blades; /* 3 .. 64; 0: a circle */
+    int n_blades; /* number of blades, 3 .. 64; 0: a circle */
     double rotation_deg;
     double roundness, softness; /* as in struct glint_iris */
 };
@@ -202,7 +202,7 @@ bool glint_option_sensor(const char *text, double mm[2]);
 bool glint_option_threshold(const char *text, double ev[2]);
 
 /* --light-at: x and y in pixels, and power in stops above a white pixel */
-#define GLINT_LIGHT_AT_EV 16 /* default: a street lamp in a night picture */
+#define GLINT_LIGHT_AT_EV 16 /* default power: a street lamp at night */
 bool glint_option_light_at(const char *text, double xy_ev[3]);
 
 /* --light: a lamp, given by its angles */

@@ -41,7 +41,8 @@ struct glint_waves {
     enum glint_waves_kind kind;
     int n;                            /* number of wavelengths; undefined for
                                          AUTO */
-    double nm[GLINT_MAX_WAVELENGTHS]; /* [n] for LIST, otherwise undefined */
+    double nm[GLINT_MAX_WAVELENGTHS]; /* wavelengths of a LIST, [n]; otherwise
+                                         undefined */
 };
 
 /* Sets NM to the wavelengths of WAVES, those of red, green and blue for AUTO.
@@ -66,8 +67,8 @@ struct glint_iris {
      * positions. */
     double dust;
     int dust_seed;
-    /* [mask_height][mask_width]: transmission over a square of +-1 stop radius,
-     * 255: all light; NULL: there is no mask. The mask turns with the blades.
+    /* Transmission over a square of +-1 stop radius, [mask_height][mask_width];
+     * 255: all light. NULL: there is no mask. The mask turns with the blades.
      * It is not copied and must outlive the setup. */
     const uint8_t *mask;
     int mask_width, mask_height; /* sides of the mask, pixels, 2 or more */
@@ -78,7 +79,7 @@ struct glint_dirt; /* opaque */
 /* A wavelength of a set, see set_wave of struct glint_setup. */
 struct glint_set_wave {
     double nm, rgb[3];
-    double direct_flux, unit_flux; /* mm^2, as in struct glint_setup */
+    double direct_flux, unit_flux; /* fluxes, mm^2, as in struct glint_setup */
 };
 
 /* A lens prepared for drawing: values that do not depend on lights or
@@ -173,9 +174,9 @@ struct glint_front {
      * positions. */
     double dust;
     int dust_seed;
-    /* [mask_height][mask_width]: transmission of the square around the front
-     * element, top row first, 255: clear glass, 0: covered; NULL: there is no
-     * mask. Copied. */
+    /* Transmission of the square around the front element,
+     * [mask_height][mask_width], top row first; 255: clear glass, 0: covered.
+     * NULL: there is no mask. The mask is copied. */
     const uint8_t *mask;
     int mask_width, mask_height; /* sides of the mask, pixels, 2 or more */
 };

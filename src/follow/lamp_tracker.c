@@ -41,7 +41,8 @@ struct glint_lamp_tracker {
     struct glint_match match;
     /* Index of the record of each element of match.seeker, [max_tracks]. */
     int32_t *owner;
-    int32_t *order; /* [MAX_SPOTS]: indices of spots or records */
+    int32_t *order; /* scratch, [MAX_SPOTS]: indices of spots or records while
+                       they are sorted */
 };
 
 /* ------------------------------------------------------------------- memory */

@@ -29,7 +29,7 @@ struct glint_seeker {
     int32_t max_faint_area; /* max area of a faint spot that may be assigned,
                                pixels */
     int is_lost;
-    int32_t spot; /* result: index of the assigned spot, or -1 */
+    int32_t spot; /* index of the assigned spot, or -1; set by the matcher */
 };
 
 struct glint_pair;
@@ -40,7 +40,8 @@ struct glint_match {
     /* Indices of all spots sorted by x. Spots with equal x are sorted by their
      * other members, so that the input order does not matter. */
     int32_t *by_x;
-    uint8_t *taken; /* result: for each spot, 1 if it is assigned to a lamp */
+    uint8_t *taken; /* for each spot, 1 if it is assigned to a lamp; set by the
+                       matcher */
     struct glint_pair *pair;
     int32_t *order; /* indices of pairs */
     int n_pairs;

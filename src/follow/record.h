@@ -65,7 +65,7 @@ struct glint_record {
                    before */
     int is_new; /* number of further pictures in which the first motion sets the
                    velocity; 0: the velocity was set, or stays 0 */
-    int64_t velocity_q16[2]; /* pixels per second */
+    int64_t velocity_q16[2]; /* velocity of the lamp, pixels per second */
     int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
     int32_t level_q30;
     int32_t lost_us; /* time since the lamp last had a spot, us; 0: it has one

@@ -20,7 +20,7 @@ enum { GLINT_COVER_ALL = 256 };
 
 /* The cover of the pixels of a run, in two rows. */
 struct glint_cover_rows {
-    /* [row][pixel]: hidden fraction of the pixel, 0 .. 256 */
+    /* Hidden fraction of each pixel, [row][pixel], 0 .. 256. */
     ALIGNED(32) uint16_t cover_q8[2][GLINT_CODES_WIDTH];
 };
 

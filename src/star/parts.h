@@ -59,8 +59,8 @@ struct glint_star_stretch {
     int y, x0, x1; /* row; pixels x0 .. x1 - 1 of the row */
     int lo, hi;    /* range of columns lo .. hi - 1 that may have light; all
                       other columns are 0 */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3][x1 - x0]: linear light per
-                                                channel, 1 = display white */
+    /* Linear light per channel, [3][x1 - x0], 1 = display white. */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH];
 };
 
 /* State of a worker that draws a row of tiles. */
@@ -69,10 +69,10 @@ struct glint_star_row {
     struct glint_box tile;
     int n_near, n_here; /* number of lights that reach the row of tiles (near),
                            and the current tile (here) */
-    uint16_t *near, *here; /* [max_lights] each: indices of the lights that are
-                              counted by n_near and n_here */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH]; /* [3]: buffer for the light of one
-                                                pixel row; all 0 between rows */
+    /* Indices of the lights that n_near and n_here count, [max_lights] each. */
+    uint16_t *near, *here;
+    /* Buffer for the light of one pixel row, [3]; all 0 between rows. */
+    int64_t (*light_q20)[GLINT_CODES_WIDTH];
 };
 
 struct glint_star {

@@ -88,7 +88,7 @@ struct glint_star_tables {
                                    1 .. 2^14 pixels */
     int32_t reach_log2_q16;     /* log2 of reach_q8 */
     int32_t per_pixel_q16;      /* profile steps per pixel, at most 128 */
-    int32_t pixels_q16;         /* pixels per profile step */
+    int32_t pixels_q16;         /* number of pixels per profile step */
     int32_t core_per_pixel_q16; /* lattice steps of the core table per pixel, 1
                                    .. 4 */
     /* full width at half maximum of the profiles, pixels */
@@ -117,7 +117,7 @@ struct glint_star_tables {
 
 /* A lamp at its position in the picture. */
 struct glint_star_light {
-    int32_t x_q8, y_q8; /* pixels from the top left corner */
+    int32_t x_q8, y_q8; /* position, pixels from the top left corner */
     /* Radius of the lamp's disc, 0 .. 2^14 pixels; a larger disc has wider
      * lines. Negative if the picture does not show the lamp: its core is then
      * drawn, too. */
@@ -131,7 +131,7 @@ struct glint_star_config {
     int n_workers;     /* max number of workers of the flare with which the
                           starburst is drawn, 1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
-    int max_lights;    /* 1 .. GLINT_STAR_MAX_LIGHTS */
+    int max_lights;    /* max number of lights, 1 .. GLINT_STAR_MAX_LIGHTS */
 };
 
 /* struct glint_star is opaque, in the caller's memory. */

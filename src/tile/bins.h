@@ -15,7 +15,7 @@
 #include "tile/box.h"
 
 struct glint_bins {
-    struct glint_box region; /* pixels that the tiles cover */
+    struct glint_box region; /* box of pixels that the tiles cover */
     int tile_log2;
     int tiles_x, tiles_y;
     /* start index of each tile's list in ref, [tiles_x * tiles_y + 1]; before

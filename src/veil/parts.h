@@ -16,8 +16,8 @@ enum { GLINT_VEIL_LANES = 8 };
 /* Position of the pixels of one axis (columns or rows) among the cells: for
  * each pixel, its cell and the weights for interpolation between cells. */
 struct glint_veil_axis {
-    uint8_t *cell;  /* [side]: index of the cell of each pixel */
-    int32_t *start; /* [cells + 1]: index of the first pixel of each cell */
+    uint8_t *cell;  /* index of the cell of each pixel, [side] */
+    int32_t *start; /* index of the first pixel of each cell, [cells + 1] */
     /* Quadratic spline weights of each pixel, [side + LANES]. With t = 0 .. 1,
      * the position in the cell, they are (1 - t)^2 / 2 for the previous cell,
      * t^2 / 2 for the next cell, and the rest to 1 for the pixel's cell. */

@@ -78,12 +78,12 @@ struct glint_described_light {
      * environment2, ... */
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     enum glint_described_source kind;
-    double at[3]; /* lamp: position; sun: unit vector towards it */
+    double at[3]; /* position of a lamp, or unit vector towards a sun */
     /* Sun: radiance of its disc. Lamp: irradiance / pi at distance 1, which is
      * the value of a white surface that faces the lamp. */
     double colour[3];
-    double radius;     /* lamp: radius, scene units; 0: a point */
-    double radius_deg; /* sun: half of its angular diameter */
+    double radius;     /* radius of a lamp, scene units; 0: a point */
+    double radius_deg; /* half of the angular diameter of a sun */
 };
 
 struct glint_described_texture {
@@ -181,11 +181,12 @@ struct glint_described_object {
     /* Unit quaternion w, x, y, z: rotation from the object's own axes to the
      * scene's. */
     double turn[4];
-    double radius;    /* sphere: radius, scene units */
-    double normal[3]; /* plane: normal, a unit vector in the object's own
-                         axes */
-    double catcher;   /* plane: fraction by which a shadow darkens the picture
-                         behind it; 0: not a shadow catcher */
+    double radius; /* radius of a sphere, scene units */
+    /* Normal of a plane: a unit vector in the object's own axes. */
+    double normal[3];
+    /* Fraction by which a shadow darkens the picture behind a plane; 0: the
+     * plane is not a shadow catcher. */
+    double catcher;
     /* Index of the material; -1 for a shadow catcher. A mesh uses this material
      * for triangles whose file names no other material. */
     int material;

@@ -106,8 +106,8 @@ enum glint_scene_light_kind {
 struct glint_scene_light {
     char name[GLINT_SCENE_NAME]; /* terminated */
     uint32_t kind;               /* enum glint_scene_light_kind */
-    int32_t at[3];               /* lamp: position, steps; else 0 */
-    int32_t toward_q30[3];       /* sun: unit vector towards it; else 0 */
+    int32_t at[3];               /* position of a lamp, steps; 0 for a sun */
+    int32_t toward_q30[3];       /* unit vector towards a sun; 0 for a lamp */
     /* Sun: sine of its angular radius, _q30, 0 .. 2^29. Lamp: its radius,
      * steps, 0 .. GLINT_SCENE_SPAN. 0: a point. */
     int32_t radius;
@@ -227,8 +227,8 @@ struct glint_scene_mesh {
      * order: all triangles whose bounding box, enlarged by GLINT_SCENE_MARGIN
      * steps on each side, touches the cell. glint_scene_open() rejects
      * incomplete lists. */
-    uint32_t start_at; /* START: uint32 [cells + 1]; the first is 0 */
-    uint32_t ref_at;   /* REF: uint32 [start[cells]] */
+    uint32_t start_at; /* offset of START: uint32 [cells + 1]; START[0] is 0 */
+    uint32_t ref_at;   /* offset of REF: uint32 [start[cells]] */
 };
 
 enum {

@@ -126,7 +126,7 @@ struct glint_motion {
     struct glint_motion_sensor sensor[GLINT_MOTION_MAX_SENSORS];
 
     /* The following members are private. */
-    const uint8_t *data; /* NULL: blocks are read into BUFFER */
+    const uint8_t *data; /* the file; NULL: blocks are read into BUFFER */
     struct glint_motion_blocks blocks;
     uint8_t *buffer;
     uint32_t held; /* number of the block that BUFFER holds; 0: none */

@@ -91,8 +91,9 @@ struct glint_translucent_header {
      * code / 256, unsigned: f, [3][texels], and for clustered media then in,
      * [3][texels]. */
     uint32_t code_at;
-    uint32_t cluster_at; /* clustered: uint8 [texels], index of the plane of
-                            each texel; else 0 */
+    /* Offset of the index of each texel's plane, uint8 [texels], for clustered
+     * media; else 0. */
+    uint32_t cluster_at;
     /* Taps, int16 [3][n_planes][rank][2][kernel]: row, then column. The first
      * tap of each is for y - x = -kernel / 2. Padded to whole words. */
     uint32_t tap_at;
@@ -113,7 +114,8 @@ struct glint_translucent_header {
 struct glint_translucent {
     const struct glint_translucent_header *header;
     const uint8_t *code;
-    const uint8_t *cluster; /* NULL: the medium is not clustered */
+    const uint8_t *cluster; /* index of each texel's plane; NULL: the medium is
+                               not clustered */
     const int16_t *tap;
     const uint32_t *shift;
     const uint16_t *transmit_q15;

@@ -98,7 +98,8 @@ struct glint_watch {
 /* Rows of R_d. Arrays are malloc'ed; glint_scatter_close() frees them. */
 struct glint_scatter_rows {
     int side, kernel;
-    float *r; /* [side * side][3][kernel * kernel], row by row */
+    float *r; /* entries of all rows, [side * side][3][kernel * kernel], row by
+                 row */
     /* Fraction of material 0 at each texel, [side * side]; NULL: the rows were
      * measured. */
     double *share;
@@ -173,15 +174,19 @@ struct glint_scatter_fit {
     enum glint_scatter_model model;
     int side, kernel, kernels, rank;
     double *h;      /* [kernels][3][kernel * kernel] */
-    double *column; /* factored: [kernels][3][rank][kernel], vertical factors */
-    double *row;    /* factored: the same shape, horizontal factors */
-    double *f;      /* factored: [kernels][3][side * side] */
-    double *in;     /* clustered: [side * side][3] */
-    double *out;    /* clustered, albedo: [side * side][3] */
-    double *albedo; /* [side * side][3]: light that leaves each texel under
-                       uniform light of 1; preserved by all fits */
-    uint8_t *cluster; /* clustered: [side * side]: index of the cluster, below
-                         kernels */
+    double *column; /* vertical factors of the factored model,
+                       [kernels][3][rank][kernel] */
+    double *row;    /* horizontal factors of the factored model, likewise */
+    double *f;  /* weights f of the factored model, [kernels][3][side * side] */
+    double *in; /* weights in(x_i) of the clustered model, [side * side][3] */
+    double *out; /* weights out(x_o) of the clustered and albedo models, [side *
+                    side][3] */
+    /* Light that leaves each texel under uniform light of 1, [side * side][3];
+     * the same in all fits of the same rows. */
+    double *albedo;
+    /* Index of each texel's cluster in the clustered model, [side * side],
+     * below kernels. */
+    uint8_t *cluster;
     struct glint_scatter_error error;
 };
 
