@@ -49,8 +49,8 @@ struct glint_area {
 };
 
 /* Rule for the number of points of each lamp. The number is proportional to the
- * square root of the lamp's power, as steps between points are less visible in
- * a faint lamp. */
+ * square root of the lamp's power, because steps between points are less
+ * visible in a faint lamp. */
 struct glint_area_rule {
     double pixels_per_tangent;
     double most;      /* max points of the brightest lamp */

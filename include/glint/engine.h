@@ -145,8 +145,8 @@ struct glint_engine_search {
      * glint_engine_draw() in addition to the lamps found. */
     int more_lamps;
     /* Max number of lamps for which an arena has memory; if there are more,
-     * lamps are merged. 0: 2 * max_found + more_lamps, as lamps that fade out
-     * are drawn in addition to lamps that appear. */
+     * lamps are merged. 0: 2 * max_found + more_lamps, because lamps that fade
+     * out are drawn in addition to lamps that appear. */
     int max_drawn;
     uint64_t reserved[16]; /* must be 0 */
 };
@@ -318,7 +318,7 @@ struct glint_engine_exposure {
     /* Not 0: the light was measured by drawing the flare of this picture at
      * reduced size. */
     int is_drawn;
-    /* Not 0: the exposure restarted in this picture, as after a cut. */
+    /* Not 0: the exposure restarted in this picture, as it does after a cut. */
     int is_new;
 };
 

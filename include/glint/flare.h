@@ -182,9 +182,9 @@ int glint_lights_merge(struct glint_light *lights, int n_lights,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* The edge rasteriser draws the exact area of each cell, with one irradiance
- * per cell; folds and slivers preserve their light. A primitive is an edge
- * across which light changes. */
+/* Each cell of a ray grid is drawn with its exact area and one irradiance, so
+ * that folds and slivers preserve their light. A primitive is an edge across
+ * which light changes. */
 
 /* Frame reuse. If the input of a plan equals the input of the previous plan,
  * the edges and lists of tiles of the previous frame are drawn again. */

@@ -12,18 +12,18 @@
  * one. Thresholds are in stops from white, the light at which codes clip (codes
  * of 250 and above count as clipped). In a picture that does not reach white,
  * regions are also sought relative to the white of the picture: the code that
- * one of 2048 of its pixels reaches, but at least code 64, as noise would
- * otherwise be lamps. Thresholds below the defaults add lamps to those that the
- * defaults find, unless JUDGE is 0.
+ * one of 2048 of its pixels reaches, but at least code 64, because noise would
+ * otherwise count as lamps. Thresholds below the defaults add lamps to those
+ * that the defaults find, unless JUDGE is 0.
  *
  * Skies, clouds, snow, paper and flowers are as bright as lamps. Regions are
  * therefore scored by their appearance and surroundings: contrast, light that
  * falls off equally in all directions, a compact shape, colour, and the
  * fraction of the picture that is equally bright; see lamps/score.h. A region
- * that is not a lamp may contain a lamp, as a bright sky contains the sun, so
- * it is searched again for smaller regions: pixels clipped in one channel, in
- * nearly all channels, and in all channels. At least an eighth of a region must
- * reach the upper threshold.
+ * that is not a lamp may contain a lamp: a bright sky contains the sun. Such a
+ * region is therefore searched again for smaller regions of pixels that are
+ * clipped in one channel, in nearly all channels, and in all channels. At least
+ * an eighth of a region must reach the upper threshold.
  *
  * All results are weighted by flux in linear light and never depend on the
  * brightest pixel alone, so that noise does not move a lamp. Limits of sizes

@@ -243,13 +243,13 @@ uint32_t glint_model_crc32(const void *data, size_t bytes);
  * A zoom is a set of models of one lens at several positions. Between two
  * positions, angle and wavelength are substituted into the polynomials of both
  * models; the results are then interpolated linearly at each point of the
- * pupil. A frame costs 1.3 to 2.1 times as much, as interpolated polynomials
- * have more terms and there are more ghosts. A ghost may exist at only one of
- * the two positions. It is then extrapolated from that position and the next
- * position on the same side, if that is near enough; otherwise the ghost fades.
- * Ghosts change at different rates: positions between the first and the last
- * may have only some of the ghosts, and each ghost is interpolated between the
- * two nearest positions that have it.
+ * pupil. A frame costs 1.3 to 2.1 times as much, because interpolated
+ * polynomials have more terms and there are more ghosts. A ghost may exist at
+ * only one of the two positions. It is then extrapolated from that position and
+ * the next position on the same side, if that is near enough; otherwise the
+ * ghost fades. Ghosts change at different rates: positions between the first
+ * and the last may have only some of the ghosts, and each ghost is interpolated
+ * between the two nearest positions that have it.
  *
  * The file: a header, then for each position an ordinary model at a multiple of
  * 4 bytes. It is used in place. */
@@ -273,10 +273,10 @@ struct glint_zoom_header {
 struct glint_zoom_model {
     int32_t along_q30;
     uint32_t at, bytes; /* offset and size of the model in the file */
-    uint32_t has_at;    /* uint32 [(ghosts + 31) / 32]: a bit for each ghost
-                           (without parts) that the model has, the first ghost
-                           in the lowest bit; 0: the model has all ghosts, as at
-                           the first and the last position */
+    /* Bit mask of the ghosts (without parts) that the model has, uint32
+     * [(ghosts + 31) / 32]; the first ghost is the lowest bit. 0: the model has
+     * all ghosts, as the models of the first and the last position do. */
+    uint32_t has_at;
 };
 
 struct glint_transfer;

@@ -197,7 +197,7 @@ bool glint_option_waves(const char *text, struct glint_waves *waves);
 /* --sensor: width and height, mm */
 bool glint_option_sensor(const char *text, double mm[2]);
 
-/* --threshold: upper and lower threshold, stops from white, as threshold_ev of
+/* --threshold: upper and lower threshold, stops from white; see threshold_ev of
  * struct glint_engine_search */
 bool glint_option_threshold(const char *text, double ev[2]);
 

@@ -105,8 +105,8 @@ void glint_record_update_with_spot(struct glint_record *r,
 void glint_record_update_without_spot(struct glint_record *r,
                                       const struct glint_record_step *step);
 
-/* Raises or lowers the fade level by as much as the elapsed time allows, and
- * sets the lamp's state. */
+/* Raises or lowers the fade level, limited by the elapsed time, and sets the
+ * lamp's state. */
 void glint_record_update_fade_level(struct glint_record *r,
                                     const struct glint_record_step *step);
 

@@ -14,8 +14,8 @@
  * continuously as light rises from 0.
  *
  * Grey pictures: the luminance of the light is added, with the weights of
- * BT.709, as linear light has the primaries of BT.709; the picture's matrix is
- * not used.
+ * BT.709, because linear light has the primaries of BT.709. The picture's
+ * matrix is not used.
  *
  * Before rounding to codes, the error of R', G', B' is below 0.11 code
  * (kernels/tone.h); light is quantised to steps of 0.1 code at most. */

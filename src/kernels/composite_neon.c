@@ -77,8 +77,8 @@ struct v_mix {
     vqrdmulhq_lane_s16(x, (i)&4 ? vget_high_s16(f) : vget_low_s16(f), (i)&3)
 #endif
 
-/* On 64-bit ARM the tables are loaded once, as there are enough registers; on
- * 32-bit ARM they are loaded at each use. */
+/* On 64-bit ARM the tables are loaded once, because there are enough registers;
+ * on 32-bit ARM they are loaded at each use. */
 #if defined(__aarch64__)
 #define TABLES(t, tone)                                       \
     const uint8x16x2_t t##_level = load_table((tone)->level), \

@@ -8,10 +8,10 @@
  *   out  struct glint_transfer: tables of coefficients of u^a v^b, and a box
  *
  * Formats: variables are _q30 and within +-2^30. Coefficients and all
- * intermediate values of an output are integers in that output's own unit,
- * below 2^30, as the bake has proven (bound in struct glint_model_output). So
- * each product of a variable and a coefficient is below 2^60, and is rounded
- * to the output's unit by a shift of 30. */
+ * intermediate values of an output are integers in the unit of that output. The
+ * bake has proven that they are below 2^30 (bound in struct
+ * glint_model_output). So each product of a variable and a coefficient is below
+ * 2^60, and is rounded to the output's unit by a shift of 30. */
 #include "glint/transfer.h"
 
 #include "base/compiler.h"

@@ -2,8 +2,8 @@
  *
  * Detects frames whose inputs equal those of the previous frame. The bundles,
  * edges and tile lists of the previous frame are then drawn again without
- * tracing a ray. Lights and parameters are compared one by one; waves and
- * tints, of which there can be thousands, are compared by a 64-bit digest. */
+ * tracing a ray. Lights and parameters are compared one by one; there can be
+ * thousands of waves and tints, which are compared by a 64-bit digest. */
 #include "base/q.h"
 #include "flare/state.h"
 

@@ -24,8 +24,8 @@ struct glint_star;
 struct glint_star_lamp;
 struct glint_star_stretch;
 
-/* Adds one component of the starburst of LAMP (lines, halo, core or smear) to
- * the pixels of ROW. */
+/* Function that adds one component of the starburst of LAMP (lines, halo, core
+ * or smear) to the pixels of ROW. */
 typedef void glint_star_part_fn(const struct glint_star *star,
                                 const struct glint_star_lamp *lamp,
                                 struct glint_star_stretch *row);

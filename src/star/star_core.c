@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the core of a starburst: the exact diffraction pattern near a light,
- * minus lines and halo. The core table is a lattice finer than pixels. Light is
- * interpolated between lattice nodes, so that the sum over all pixels does not
- * change as the lamp moves.
- */
+ * minus lines and halo. The core table is a lattice whose steps are smaller
+ * than pixels. Light is interpolated between its nodes, so that the sum over
+ * all pixels stays the same when the lamp moves. */
 #include "base/q.h"
 #include "star/parts.h"
 

@@ -7,9 +7,9 @@
  *
  * The driver processes a row of tiles from left to right, so that a pass may
  * carry state from tile to tile. Within a tile it draws two pixel rows at a
- * time, as two rows share chroma in 4:2:0; for linear pictures and at half
- * resolution, one row at a time. Rows of tiles share no state: they may be
- * drawn in any order, or concurrently, each by another worker.
+ * time, because two rows share chroma in 4:2:0. For linear pictures and at half
+ * resolution, it draws one row at a time. Rows of tiles share no state: they
+ * may be drawn in any order, or concurrently, each by another worker.
  *
  * A pass returns light, which is added to the picture. It may also return
  * cover, the fraction of each pixel in which it hides the picture and the light

@@ -84,8 +84,9 @@ struct glint_scene_layered {
     int64_t pixels;
 };
 
-/* Sets OF to the overlays of the frame that was begun last; all are 0 without a
- * motion. Kinds that are drawn as objects have no overlays. */
+/* Sets OF to the statistics of the overlays of the frame that was begun last,
+ * one entry per kind. All are 0 without a recorded motion. Kinds that are drawn
+ * as objects have no overlays. */
 void glint_scene_account_layers(struct glint_scene *scene,
                                 struct glint_scene_layered of[GLINT_KINDS]);
 

@@ -34,7 +34,8 @@ struct glint_scene_bake_report {
     int vertices, triangles, cells, refs; /* numbers of vertices, triangles,
                                              grid cells and their entries, in
                                              all meshes */
-    int flat; /* number of triangles left out, as their area in steps is 0 */
+    int flat; /* number of triangles left out because their area is 0 in steps
+               */
 };
 
 /* Bakes SCENE. The file stores KEY and the first 63 characters of NAME that are

@@ -79,8 +79,8 @@ struct glint_environment_light {
     struct glint_real rgb[3];
 };
 
-/* The header. Its first members are those of all baked files (src/base/blob.h).
- */
+/* The header of the file. It begins with the members that the headers of all
+ * baked files have (src/base/blob.h). */
 struct glint_environment_header {
     uint32_t magic, version;
     uint32_t bytes;     /* bytes of the whole file */

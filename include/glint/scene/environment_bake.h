@@ -46,7 +46,7 @@ struct glint_environment_options {
     double scale;    /* factor on all light, 1e-6 .. 1e6 */
 };
 
-/* Results of baking. Luminance is that of BT.709. */
+/* Results of baking. Luminance has the weights of BT.709. */
 struct glint_environment_report {
     int width, height; /* size of the picture, pixels */
     /* Number of pixels with negative values, which were clamped to 0; number of

@@ -316,8 +316,8 @@ struct glint_scene_motion {
  * camera). */
 enum glint_scene_hand { GLINT_HAND_LEFT, GLINT_HAND_RIGHT };
 
-/* The header. Its first members are those of all baked files (src/base/blob.h).
- */
+/* The header of the file. It begins with the members that the headers of all
+ * baked files have (src/base/blob.h). */
 struct glint_scene_header {
     uint32_t magic, version;
     uint32_t bytes;   /* bytes of the whole file */

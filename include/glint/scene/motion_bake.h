@@ -44,7 +44,7 @@ struct glint_motion_body {
 struct glint_motion_sight {
     long long number; /* number of the frame in the recording; -1: not stated */
     /* Odometry of the body: its translation tv and rotation rv since the
-     * previous frame, in the axes that the body had in that frame. rv is an
+     * previous frame, in the axes of the body in the previous frame. rv is an
      * axis times an angle in radians. */
     double tv[3], rv[3];
     int n_foods;

@@ -64,8 +64,8 @@ enum glint_translucent_model {
     GLINT_TRANSLUCENT_ALBEDO
 };
 
-/* The header. Its first members are those of all baked files (src/base/blob.h).
- */
+/* The header of the file. It begins with the members that the headers of all
+ * baked files have (src/base/blob.h). */
 struct glint_translucent_header {
     uint32_t magic, version;
     uint32_t bytes;     /* bytes of the whole file */
