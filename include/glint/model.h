@@ -273,9 +273,10 @@ struct glint_zoom_header {
 struct glint_zoom_model {
     int32_t along_q30;
     uint32_t at, bytes; /* offset and size of the model in the file */
-    /* Bit mask of the ghosts (without parts) that the model has, uint32
-     * [(ghosts + 31) / 32]; the first ghost is the lowest bit. 0: the model has
-     * all ghosts, as the models of the first and the last position do. */
+    /* Offset of a bit mask of the ghosts (without parts) that the model has,
+     * uint32 [(ghosts + 31) / 32]; the first ghost is the lowest bit. 0: the
+     * model has all ghosts, as the models of the first and the last position
+     * do. */
     uint32_t has_at;
 };
 

@@ -34,8 +34,7 @@ struct glint_scene_bake_report {
     int vertices, triangles, cells, refs; /* numbers of vertices, triangles,
                                              grid cells and their entries, in
                                              all meshes */
-    int flat; /* number of triangles left out because their area is 0 in steps
-               */
+    int flat; /* number of triangles left out: their area in steps is 0 */
 };
 
 /* Bakes SCENE. The file stores KEY and the first 63 characters of NAME that are
