@@ -16,15 +16,16 @@
 
 enum { BLOCKS = 32 }; /* max number of blocks per side */
 
-/* radius of the Gaussian in sigmas; its weight beyond that is 3e-4 */
+/* distance at which the Gaussian is truncated, sigmas; its weight there is
+ * 3e-4 */
 #define REACH 4.0
 
 struct block {
     /* axis and half angle, radians, of a cone that encloses the block's
      * texels */
     double toward[3], angle;
-    /* cosine of the max angle between the cone's axis and a direction to which
-     * the block still contributes */
+    /* The block is skipped for directions whose cosine with the cone's axis is
+     * below this value. */
     double nearest;
 };
 

@@ -19,9 +19,10 @@ enum shape { LATITUDES, CUBE, NO_SHAPE };
 struct panorama {
     const struct glint_float_image *picture;
     enum shape shape;
-    /* cosine and sine of the rotation of the panorama about y */
+    /* rotation of the panorama about the y axis: cosine and sine of the
+     * angle */
     double turn[2];
-    /* factor on all light; max finite sample of the picture */
+    /* scale: factor on all light; largest: max finite sample of the picture */
     double scale, largest;
 };
 
@@ -60,9 +61,9 @@ static double compute_pixel_direction(const struct panorama *p, double x,
         toward[2] = cos(up) * cos(east);
         size = 2 * GLINT_PI / w * GLINT_PI / h * cos(up);
     } else {
-        /* The faces of the cube are seen from its centre, with y up. The -y and
-         * +y faces are oriented such that their edges meet the +z face, as is
-         * usual in cube files. */
+        /* The picture shows the cube's faces as seen from its centre, with y
+         * up. The -y and +y faces are oriented such that their edges meet the
+         * +z face, as is usual in cube files. */
         const int axis = (int)fmin(x / face, 2), sign = y < face ? 1 : -1;
         const double a = 2 * (x / face - axis) - 1;
         const double b = 2 * (y / face - (sign < 0)) - 1;
@@ -138,7 +139,8 @@ static void resample_pixel(const struct panorama *p, int x, int y, int points,
     }
 }
 
-/* Sets texel T, in which no point lies, to the pixel at its centre. */
+/* Sets texel T, in which no point lies, to the picture's pixel at T's
+ * centre. */
 static void fill_empty_texel(const struct panorama *p,
                              struct glint_sphere_texel *t)
 {
@@ -179,8 +181,8 @@ bool glint_sphere_project_panorama(
                          .shape = detect_panorama_shape(picture),
                          .turn = {cos(angle), sin(angle)},
                          .scale = options->scale};
-    /* the smallest texels of an octahedron map of side x side texels are 2 /
-     * side radians wide */
+    /* An octahedron map of side x side texels has texels of at least 2 / side
+     * radians. Points are at most half of that apart. */
     const int across =
         p.shape == CUBE ? 4 * picture->height / 2 : picture->width;
     const int points = (int)ceil(2 * GLINT_PI * sphere->side / (double)across);

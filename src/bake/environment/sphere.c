@@ -16,9 +16,9 @@ double glint_sphere_compute_direction(double u, double v, double toward[3])
                   toward[2] * toward[2]);
     for (int k = 0; k < 3; k++)
         toward[k] /= length;
-    /* solid angle of an area dp dq of an octahedron face = dp dq / length^3:
-     * the face's area factor, sqrt(3), and its distance from the centre, 1 /
-     * sqrt(3), cancel */
+    /* An area dp dq of the square is an area sqrt(3) dp dq of an octahedron
+     * face, whose plane is 1 / sqrt(3) from the centre. The factors cancel: its
+     * solid angle is dp dq / length^3. */
     return 4 / (length * length * length);
 }
 

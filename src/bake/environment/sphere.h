@@ -74,26 +74,27 @@ struct glint_split_light {
 };
 
 /* split.c: moves the brightest lights, at most options->max_lights, from SPHERE
- * to LIGHTS and fills the holes with the mean light around them. Returns the
+ * to LIGHTS. The mean light around each replaces it in SPHERE. Returns the
  * number of lights, or -1 if there is no memory. */
 int glint_sphere_extract_lights(struct glint_sphere *sphere,
                                 const struct glint_environment_options *options,
                                 struct glint_split_light *lights,
                                 struct glint_environment_report *report);
 
-/* levels.c: sets LIGHT[4^SIDE_LOG2][3] to FROM blurred by the kernel exp((cos -
- * 1) / SIGMA^2), where cos is the cosine between two directions. One value per
- * texel centre. Returns false if there is no memory. */
+/* levels.c: sets LIGHT[4^SIDE_LOG2][3], one value per texel, to FROM blurred by
+ * the kernel exp((c - 1) / SIGMA^2), where c is the cosine between two
+ * directions. Returns false if there is no memory. */
 bool glint_sphere_blur_light(const struct glint_sphere *from, double sigma,
                              int side_log2, double (*light)[3]);
 
 /* Sets LIGHT[4^SIDE_LOG2][3] to the light that a white diffuse surface reflects
- * under the environment FROM. The texel is that of the surface's normal. */
+ * under the environment FROM. The direction of a texel is the normal of its
+ * surface. */
 void glint_sphere_compute_irradiance(const struct glint_sphere *from,
                                      int side_log2, double (*light)[3]);
 
 /* Encodes the light of N texels as RGB with a shared exponent (9E5), in
- * multiples of UNIT, rounded to nearest. Max light of a texel: 511 * 2^19
+ * multiples of UNIT, rounded to nearest. Light must be at most 511 * 2^19
  * units. */
 void glint_environment_encode_9e5(const double (*light)[3], size_t n,
                                   double unit, uint32_t *code);

@@ -2,11 +2,11 @@
  *
  * Extracts bright lights from an environment map.
  *
- * A luminance threshold is halved repeatedly, until it is only a given
- * multiple of the mean luminance below it. At each threshold, connected texels
- * above it form a spot. A spot is a light as long as it is small enough; the
- * lowest such threshold determines the light's extent. Lights that merge at a
- * lower threshold stay separate.
+ * A luminance threshold is halved repeatedly. It ends near the mean luminance
+ * of the texels below it, at a given multiple of this mean. At each threshold,
+ * connected texels above it form a spot. A spot is a light if it is small
+ * enough. The lowest threshold at which it is small determines its extent.
+ * Lights that merge at a lower threshold stay separate.
  */
 #include "bake/environment/sphere.h"
 
@@ -29,7 +29,8 @@ enum {
 };
 
 struct spot {
-    /* luminance x sr; 0: merged into another spot, or already extracted */
+    /* luminance x sr of the spot; 0: the spot was merged into another one or
+     * extracted as a light */
     double light;
 };
 
@@ -161,9 +162,9 @@ static void find_bright_spots(struct split *s, int n, double above)
     }
 }
 
-/* Sets MEAN to the mean light of the ring around spot K, excluding texels of
- * other lights; 0 if other lights fill the ring. ROUND: an unused flood-fill
- * number for marking visited texels. */
+/* Sets MEAN to the mean light of the ring around spot K, without texels of
+ * other lights. Sets it to 0 if other lights fill the ring. ROUND: an unused
+ * flood-fill number, which marks visited texels. */
 static void compute_mean_around_spot(struct split *s, int k, int n, int round,
                                      double mean[3])
 {
@@ -204,8 +205,8 @@ static void compute_mean_around_spot(struct split *s, int k, int n, int round,
         mean[c] = weight > 0 ? mean[c] / weight : 0;
 }
 
-/* Moves the light of spot K above MEAN from the map to LIGHT; the map keeps
- * MEAN there. */
+/* Moves the light above MEAN from the texels of spot K to LIGHT. At most MEAN
+ * remains in the map. */
 static void move_spot_to_light(struct split *s, int k, int n,
                                const double mean[3],
                                struct glint_split_light *light)
@@ -233,7 +234,9 @@ static void move_spot_to_light(struct split *s, int k, int n,
                   middle[2] * middle[2]);
     for (int j = 0; j < 3; j++)
         light->toward[j] = middle[j] / length;
-    /* the squared RMS radius of a single texel is 1/6 of its area */
+    /* The squared RMS radius of a uniform square is 1/6 of its area.
+     * Subtracting that of a texel, 4 pi / side^2 sr, removes the blur by
+     * texels. */
     square = 2 * (1 - fmin(length / sum, 1)) -
              4 * GLINT_PI / (6. * s->sphere->side * s->sphere->side);
     light->radius = sqrt(2 * fmax(square, 0));

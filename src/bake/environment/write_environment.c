@@ -148,8 +148,9 @@ static void average_mipmap_level(struct writer *w, int k)
             }
 }
 
-/* Sets level K to the map blurred by a Gaussian. From level 4 on, averages the
- * map to texels of about sigma / 8 first, which is faster. */
+/* Sets level K to the map blurred by a Gaussian of width sigma. From level 4
+ * on, the map is first reduced to texels of about sigma / 8, which is
+ * faster. */
 static bool blur_gaussian_level(struct writer *w, int k)
 {
     const double texel =
@@ -276,8 +277,8 @@ static bool write_environment_tables(struct writer *w)
     for (int k = 0; k < n; k++)
         most =
             fmax(most, find_max_channel(w->level[k], count_level_texels(w, k)));
-    /* The max code is 2^28 - 2^19 units; the unit is the smallest power of two
-     * for which the brightest texel is at most that. */
+    /* A 9E5 code stores at most 2^28 - 2^19 units. The unit is the smallest
+     * power of two for which the brightest texel does not exceed that. */
     w->header.unit_log2 = most > 0 ? (int)floor(log2(most / UNITS_9E5)) + 1 : 0;
     for (int k = 0; k < n; k++)
         if (!write_mipmap_level(w, k, &level[k]))
