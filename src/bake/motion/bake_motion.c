@@ -16,8 +16,8 @@ struct recorded_pose {
     float residual;
 };
 
-/* A food of the recording (a static landmark), from the frame in which it
- * appears. */
+/* A food (static landmark) of the recording: its slot, and the frame in which
+ * it first appears. */
 struct recorded_food {
     uint32_t frame, slot;
     double at[3]; /* final estimate of the food's position */
@@ -38,10 +38,10 @@ struct glint_motion_baker {
     size_t n_bytes, byte_capacity;
     /* intensity codes, [n_frames][n_foods][n_intensities] */
     uint8_t *intensity;
-    /* frame number of the last frame, as stated in the recording */
+    /* number of the last frame added, as stated in the recording */
     long long number;
-    /* pose by the body's own odometry: all its measured motions rv, tv
-     * combined */
+    /* pose of the body by its own odometry: its measured motions rv and tv of
+     * all frames, combined */
     struct glint_rigid sensed;
     struct glint_motion_report report;
 };
@@ -49,8 +49,8 @@ struct glint_motion_baker {
 enum {
     USUAL_UNIT_LOG2 = 24,
     REACH_LOG2 = 29, /* log2 of the max coordinate of a point, steps */
-    /* motions up to this many bits smaller than the max also use
-     * USUAL_UNIT_LOG2 */
+    /* USUAL_UNIT_LOG2 is also used if a unit up to 2^ROOMY_LOG2 times finer
+     * would fit. */
     ROOMY_LOG2 = 3
 };
 
@@ -282,8 +282,8 @@ static bool write_motion_file(const struct glint_motion_baker *baker,
                                    data, bytes);
 }
 
-/* BAD_RESIDUAL: residual of the fitted pose above which a frame counts as bad,
- * as a fraction of the motion's span. REACH: max magnitude of a coordinate. */
+/* BAD_RESIDUAL: max residual of the fitted pose of a good frame, as a fraction
+ * of the motion's span. REACH: max magnitude of a coordinate. */
 #define BAD_RESIDUAL 1e-3
 #define REACH        1e6
 
@@ -405,9 +405,8 @@ static const char *check_frame_values(const struct glint_motion_baker *b,
     return NULL;
 }
 
-/* Adds the motion that the body itself measured in this frame to its odometry,
- * and updates the report's max distance between odometry and the fitted
- * POSE. */
+/* Adds the motion that the body measured in this frame to its odometry. Updates
+ * the report's max distance between the odometry and the fitted POSE. */
 static void accumulate_body_odometry(struct glint_motion_baker *b,
                                      const struct glint_motion_sight *s,
                                      const struct glint_rigid *pose)
@@ -479,7 +478,7 @@ static void store_located_frame(struct glint_motion_baker *b,
                 .frame = b->n_frames, .slot = (uint32_t)i};
             b->report.n_resets += b->n_frames > 0;
         }
-        /* The estimate in the last frame of a food is the most accurate one. */
+        /* The latest estimate of a food's position is the most accurate one. */
         memcpy(b->event[b->lives[i]].at, b->localiser.place[i],
                sizeof b->event->at);
     }

@@ -13,8 +13,8 @@ void glint_localiser_init(struct glint_localiser *localiser, bool average)
 
 /* ------------------------------------------------------------------- rigid */
 
-/* Fits the pose to all foods (landmarks) that are not new in this frame, except
- * food BUT. Returns false if there are fewer than three or they lie on a
+/* Fits POSE to all foods (landmarks) known from earlier frames, except food
+ * BUT. Returns false if there are fewer than three, or if they lie on a
  * line. */
 static bool fit_pose_to_known_landmarks(const struct glint_localiser *l, int n,
                                         const double (*seen)[3],
@@ -35,8 +35,8 @@ static bool fit_pose_to_known_landmarks(const struct glint_localiser *l, int n,
                                   (const double(*)[3])to, pose);
 }
 
-/* Moves the position of each known food towards the position that follows from
- * the pose fitted to all other foods. */
+/* Updates the mean position of each known food. Its position in this frame is
+ * computed with the pose fitted to all other foods. */
 static void update_landmark_positions(struct glint_localiser *l, int n,
                                       const double (*seen)[3],
                                       const bool *is_new)
@@ -96,9 +96,8 @@ static void init_from_first_frame(struct glint_localiser *l, int n,
     l->has_begun = true;
 }
 
-/* Sets the residual of the frame: max distance, over all known foods, between
- * the position seen in this frame and the position estimated from earlier
- * frames. */
+/* Sets the residual of the frame: the max distance, over all known foods,
+ * between the position in this frame and the estimate from earlier frames. */
 static void compute_frame_residual(int n, const double (*places)[3],
                                    const double (*seen)[3], const bool *is_new,
                                    struct glint_located *located)

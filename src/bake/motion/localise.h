@@ -4,14 +4,15 @@
  * landmarks (foods), which are measured in the body's axes.
  *
  *     glint_localiser_init(&localiser, true);
- *     glint_localise_body(&localiser, n, seen, is_new, &located);        each
- * frame
+ *     in each frame:
+ *         glint_localise_body(&localiser, n, seen, is_new, &located);
  *
- * In frame 0 the body is at the origin, not rotated. A pose is fitted to the
- * foods whose positions are known; it then gives the positions of new foods. If
- * averaging is on, the position of a food is the mean over its frames so far,
- * each computed from the pose of the other foods. So the error of a single
- * frame is not passed on from food to food.
+ * In frame 0 the body is at the origin, not rotated. In later frames a pose is
+ * fitted to the foods whose positions are known. The positions of new foods
+ * follow from this pose. If averaging is on, the position of a food is the mean
+ * over all frames so far. The position in each frame follows from the pose
+ * fitted to the other foods. So the error of a single frame is not passed on
+ * from food to food.
  */
 #ifndef GLINT_BAKE_MOTION_LOCALISE_H
 #define GLINT_BAKE_MOTION_LOCALISE_H
@@ -32,8 +33,8 @@ struct glint_localiser {
 struct glint_located {
     struct glint_rigid pose;
     int n_known; /* number of foods to which the pose is fitted */
-    /* max distance of these foods from the positions estimated from earlier
-     * frames */
+    /* max distance between the positions of the known foods in this frame and
+     * their positions estimated from earlier frames */
     double residual;
 };
 

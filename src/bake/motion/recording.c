@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a recorded motion in JSON, with English or Hungarian member names.
- * Recordings may be long: the text is read in pieces, such as single frames,
- * which jansson parses one by one, without trailing commas.
+ * Reads a recorded motion in JSON, with English or Hungarian member names. As
+ * recordings may be long, the text is split into pieces, such as single frames.
+ * jansson parses each piece after trailing commas are removed.
  */
 #include <math.h>
 #include <stdarg.h>
@@ -204,8 +204,8 @@ static bool consume_json_value(struct recording *r)
             close[deep++] = r->c == '{' ? '}' : ']';
         } else if (r->c == '}' || r->c == ']') {
             if (deep == 0)
-                /* a bracket or comma ends a number and belongs to the enclosing
-                 * value */
+                /* This bracket or comma is not part of the value: it follows a
+                 * number or word. */
                 return true;
             if (r->c != close[--deep])
                 return set_error_at_byte(r,
@@ -453,8 +453,8 @@ static bool read_member_value(struct recording *r, int key)
     return r->status == GLINT_OK;
 }
 
-/* Consumes blanks, then a comma or the end of the list, CLOSE. Sets DONE if it
- * was CLOSE. */
+/* Consumes blanks, then a comma or CLOSE, the end of the list. Sets DONE to
+ * whether it was CLOSE. */
 static bool consume_list_separator(struct recording *r, char close, bool *done)
 {
     if (!consume_blanks(r))

@@ -59,7 +59,7 @@ static void find_largest_eigenvector(double a[4][4], double vector[4])
         vector[k] = v[k][best];
 }
 
-/* Sets row of R to the rotation matrix of its quaternion turn. */
+/* Sets the matrix R->row to the rotation of the quaternion R->turn. */
 static void set_rotation_matrix(struct glint_rigid *r)
 {
     const double w = r->turn[0], x = r->turn[1], y = r->turn[2], z = r->turn[3];
@@ -71,8 +71,9 @@ static void set_rotation_matrix(struct glint_rigid *r)
     memcpy(r->row, row, sizeof row);
 }
 
-/* Sets R to the rotation that maximises the trace of S after rotation. S: sum
- * of products of source vectors (rows) and target vectors (columns). */
+/* Sets R to the rotation that maximises the sum of dot products of rotated
+ * source vectors and target vectors. S: the sum of their outer products; rows
+ * are the source's components, columns the target's. */
 static void find_best_rotation(const double s[3][3], struct glint_rigid *r)
 {
     double n[4][4] = {
@@ -95,9 +96,10 @@ static void find_best_rotation(const double s[3][3], struct glint_rigid *r)
     set_rotation_matrix(r);
 }
 
-/* Returns whether points with the covariance matrix C lie on a line: the sum of
- * the principal 2 x 2 minors of C, which grows with the squared area that the
- * points span, is then far below its upper bound, 1/3 of the squared trace. */
+/* Returns whether points with the covariance matrix C lie on a line. Then the
+ * sum of the principal 2 x 2 minors of C is far below its upper bound, 1/3 of
+ * the squared trace. The sum grows with the squared area that the points
+ * span. */
 static bool are_points_on_line(const double c[3][3])
 {
     const double trace = c[0][0] + c[1][1] + c[2][2];

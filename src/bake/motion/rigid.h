@@ -7,12 +7,12 @@
 
 #include <stdbool.h>
 
-/* A rigid motion, which moves point p of the body to at + R p, where R is the
- * rotation turn. */
+/* A rigid motion: it moves point p to R p + at, where R is the rotation
+ * turn. */
 struct glint_rigid {
     double at[3];
     double turn[4];   /* unit quaternion w, x, y, z; w is not negative */
-    double row[3][3]; /* matrix of the rotation turn */
+    double row[3][3]; /* the same rotation as a matrix */
 };
 
 /* Points count as lying on a line if the squared area that they span is below
