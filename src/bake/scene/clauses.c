@@ -7,8 +7,8 @@
 /* ------------------------------------------------------------ mistyped words
  */
 
-/* NEAR_CHARS: number of letters from which words are not compared. NEAR_BYTES:
- * size of a hint, bytes. */
+/* NEAR_CHARS: words of this many letters or more get no spelling hint.
+ * NEAR_BYTES: size of a hint, bytes. */
 enum { NEAR_CHARS = 32, NEAR_BYTES = 64 };
 
 /* State of the search for the known word that is most similar to a mistyped
@@ -39,8 +39,7 @@ static int compute_edit_distance(const struct glint_word *word,
     for (int k = 0; k <= m; k++)
         row[k] = k;
     for (int i = 1; i <= word->length; i++) {
-        /* entry of the distance table in the previous row and the previous
-         * column */
+        /* distance in the table's previous row and previous column */
         int corner = row[0];
 
         row[0] = i;

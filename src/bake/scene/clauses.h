@@ -43,9 +43,9 @@ bool glint_numbers_read(struct glint_text *text, const char *what, int n,
 bool glint_name_read(struct glint_text *text, const char *what, char *name,
                      int bytes);
 
-/* Sets INDEX to the index of the name WORD in a table of N names, the first at
- * NAMES, the others every STRIDE bytes after it. Rejects unknown names; WHAT
- * says in error texts what is named. */
+/* Sets INDEX to the index of WORD in a table of N names. NAMES is the first
+ * name; the others follow every STRIDE bytes. Rejects unknown names. WHAT
+ * describes the named objects in error texts. */
 bool glint_name_find_index(struct glint_text *text,
                            const struct glint_word *word, const char *what,
                            const char *names, size_t stride, int n, int *index);
@@ -63,8 +63,9 @@ struct glint_text_line {
 };
 
 /* Parses the first word of the line. Sets INDEX to its index among N LINES, or
- * to -1 if the line is empty. FIRST[n], initially 0, records the line number at
- * which each type of line occurred last. */
+ * to -1 if the line is empty. Stores the line's number in FIRST[INDEX]; FIRST
+ * must initially be 0. Rejects a second line of a type that must not be
+ * repeated. */
 bool glint_line_read_first_word(struct glint_text *text,
                                 const struct glint_text_line *lines, int n,
                                 int *first, int *index);

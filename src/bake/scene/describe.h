@@ -15,11 +15,12 @@ struct glint_describer {
     struct glint_description *scene;
     const struct glint_description_files *files;
     struct glint_error *error;
-    /* status of a failure outside the text, such as lack of memory */
+    /* status of a failure that is not an error in the text, such as lack of
+     * memory */
     enum glint_status status;
     int capacity; /* number of triangles for which memory is allocated */
-    /* Position of the line "camera". It is evaluated after all other lines, as
-     * it depends on the line "hand". */
+    /* position of the line "camera", which is evaluated after all other lines,
+     * as it depends on the line "hand" */
     struct glint_text_place camera;
     /* position in the text of the line "background" */
     struct glint_text_place background;
@@ -92,8 +93,9 @@ bool glint_describe_normalise_vector(double x[3]);
 void glint_describe_copy_file_name(const struct glint_word *word,
                                    char name[GLINT_FILE_BYTES]);
 
-/* Sets the error for a file that could not be read: the error text that the
- * caller's file reader has set, or else that of STATUS. Returns false. */
+/* Sets the error for a file that could not be read. Uses the error text of the
+ * caller's file reader, or that of STATUS if the reader has set none. Returns
+ * false. */
 bool glint_describe_set_file_error(struct glint_describer *d,
                                    struct glint_text_place place,
                                    enum glint_status status);

@@ -124,8 +124,8 @@ static void convert_light_to_sun(const struct glint_description *s,
 
 bool glint_describe_add_environment_lights(struct glint_describer *d)
 {
-    /* stands for the missing lights of environments that have fewer lights than
-     * others of the scene */
+    /* black light: environments with fewer lights than the scene's max are
+     * padded with it */
     static const struct glint_environment_light dark = {
         .toward_q30 = {0, 1 << 30, 0}};
     struct glint_description *s = d->scene;
@@ -137,7 +137,8 @@ bool glint_describe_add_environment_lights(struct glint_describer *d)
                glint_text_set_error(
                    &d->text, d->background,
                    "'background environment' needs a line 'environment FILE'");
-    /* iterates backwards, so that E is the first environment after the loop */
+    /* The loop runs backwards, so that E is the first environment
+     * afterwards. */
     for (int k = s->n_environments; k--;) {
         if (glint_environment_open(&e, s->environment[k].data,
                                    s->environment[k].bytes,

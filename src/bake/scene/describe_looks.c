@@ -14,7 +14,8 @@
 #include "glint/scene/translucent.h"
 #include "glint/view.h"
 
-/* tolerance for rounding in sums of colours or weights, which are at most 1 */
+/* tolerance for rounding errors where the sum of colours or weights must be at
+ * most 1 */
 #define SLACK 1e-9
 
 /* ------------------------------------------------------------------- metal */
@@ -53,7 +54,8 @@ static void limit_ward_alpha_ratio(struct glint_describer *d,
     m->alpha[smaller] = least;
 }
 
-/* Parses the norm of a Ward lobe and limits the ratio of both alphas. */
+/* Parses NORM, the name of the Ward lobe's normalisation, if any. Limits the
+ * ratio of the material's alphas. */
 static bool read_ward_lobe(struct glint_describer *d,
                            struct glint_described_material *m,
                            const struct glint_word *norm)
@@ -195,9 +197,9 @@ static bool read_translucent_material(struct glint_describer *d,
 
 /* ------------------------------------------------------------------ objects */
 
-/* Sets SHORTEST and LONGEST to the min and max length, on triangle T, of a unit
- * vector of texture space (u, v). Returns the triangle's area; 0 if its area in
- * (u, v) is 0. */
+/* Measures how triangle T stretches its texture: a unit vector of texture space
+ * (u, v) has a length of SHORTEST to LONGEST on T. Returns the area of T; 0 if
+ * its area in (u, v) is 0. */
 static double compute_texel_stretch(const struct glint_described_triangle *t,
                                     double *shortest, double *longest)
 {
@@ -261,7 +263,7 @@ static void check_mesh_stretch(struct glint_describer *d,
 }
 
 /* Checks triangle T of a translucent object. FIRST: index of the translucent
- * material of earlier triangles; -1: none. */
+ * material of the triangles before T; -1: there is none. */
 static bool check_translucent_triangle(struct glint_describer *d,
                                        const struct glint_described_triangle *t,
                                        struct glint_text_place place,
@@ -325,8 +327,8 @@ bool glint_describe_check_translucent_object(
 /* default angular radius of a sun, degrees */
 #define SUN_DEG 0.267
 
-/* Warns if the colour of SUN seems to be given as irradiance instead of
- * radiance: its light would then be below one 8-bit code. */
+/* Warns if the colour of SUN seems to be an irradiance instead of a radiance.
+ * The sun's light would then be below one 8-bit code. */
 static void check_sun_radiance(struct glint_describer *d,
                                const struct glint_described_light *sun)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Parses the line "motion". The body, its sensors and the foods (landmarks) of
- * a recorded motion become spheres of the scene, which the run time moves;
- * shells, lines and box only get materials.
+ * a recorded motion become spheres of the scene, which the run time moves. The
+ * run time draws the motion's shells, lines and box itself, so only their
+ * materials are added.
  */
 #include "bake/scene/describe.h"
 
@@ -15,7 +16,8 @@
 #define REACH GLINT_DESCRIPTION_REACH
 #define LEAST GLINT_DESCRIPTION_LEAST
 
-/* max bytes of a motion's name; leaves space for the suffix "-sensor32" */
+/* max bytes of a motion's name: with the suffix "-sensor32" it is still a valid
+ * name */
 enum { NAME_BYTES = 19 };
 
 /* default materials, used unless the text defines materials of these names */
@@ -45,8 +47,8 @@ static const struct glint_described_material default_materials[] = {
     {.name = "lines", .ambient = 1, .power = 1, .colour = {1, .95, .3}},
     {.name = "box", .ambient = 1, .power = 1, .colour = {.45, .5, .55}}};
 
-/* Sets INDEX to the index of the scene's material with the name of LOOK.
- * Appends LOOK if there is none. */
+/* Sets INDEX to the index of the scene's material that has the name of LOOK.
+ * Appends LOOK to the scene if there is no such material. */
 static bool find_or_add_material(struct glint_describer *d,
                                  const struct glint_described_material *look,
                                  struct glint_text_place place, int *index)

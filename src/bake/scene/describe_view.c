@@ -111,8 +111,9 @@ bool glint_describe_parse_flare(struct glint_describer *d)
                                 "'highlights' must be a whole number");
 }
 
-/* Parses the first words of the line "camera": its field of view. Sets ALL to
- * true if no other words may follow. Returns false on errors. */
+/* Parses the first words of the line "camera", which define the field of view.
+ * Sets ALL to true if they must be the line's only words. Returns false on
+ * errors. */
 static bool read_field_of_view(struct glint_describer *d, bool *all)
 {
     struct glint_described_camera *c = &d->scene->camera;
@@ -195,8 +196,8 @@ static void set_orbit_camera(struct glint_describer *d)
     struct glint_described_camera *c = &d->scene->camera;
     const double yaw = d->yaw_deg * GLINT_PI / 180;
     const double pitch = d->pitch_deg * GLINT_PI / 180;
-    /* with yaw 0 the camera looks along the z direction that points into the
-     * picture */
+    /* With yaw 0 the camera looks into the picture: along +z in left-handed
+     * scenes, -z in right-handed ones. */
     const double from[3] = {cos(pitch) * sin(yaw), sin(pitch),
                             (d->scene->left_handed ? -1 : 1) * cos(pitch) *
                                 cos(yaw)};
@@ -214,8 +215,8 @@ bool glint_describe_set_camera_axes(struct glint_describer *d)
 
     if (c->field == GLINT_DESCRIBED_CORNERS || !d->camera.line ||
         d->sensor.line) {
-        /* A camera whose field is GLINT_DESCRIBED_CORNERS looks along +z;
-         * without a line "camera" the camera looks into the picture. */
+        /* By default a camera looks into the picture, but "camera corners"
+         * always looks along +z. */
         c->forward[2] = c->field == GLINT_DESCRIBED_CORNERS ? 1 : hand;
     } else if (d->has_orbit) {
         set_orbit_camera(d);

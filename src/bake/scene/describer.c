@@ -11,7 +11,8 @@
 bool glint_describe_normalise_vector(double x[3])
 {
     const double largest =
-        /* scales X first, as the squares of small numbers would underflow */
+        /* X is first divided by this value, as the squares of small numbers
+         * would underflow. */
         fmax(fabs(x[0]), fmax(fabs(x[1]), fabs(x[2])));
     double length;
 

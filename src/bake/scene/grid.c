@@ -7,14 +7,16 @@
 #include <string.h>
 
 /* Limits of a mesh's grid. CELLS_EACH: max number of cells per triangle.
- * REFS_EACH: max number of list entries per triangle, but at least FEW_REFS /
- * number of objects in total. Cells are enlarged until both hold, so that N
- * triangles cost O(N) even if they coincide. */
+ * REFS_EACH: max mean number of cells that list a triangle. A small mesh may
+ * have more list entries: FEW_REFS / (number of objects) in total. Cells are
+ * enlarged until both limits hold. So N triangles cost O(N), even if they
+ * coincide. */
 #define CELLS_EACH 2
 #define REFS_EACH  64
 #define FEW_REFS   (1 << 22)
-/* Max mean number of triangles per cell. A mesh with more is rejected, as a ray
- * tests all triangles of a cell; ordinary meshes have a few. */
+/* Max mean number of triangles per cell; ordinary meshes have a few. A mesh
+ * with more is rejected, as rays would be slow: a ray tests all triangles of a
+ * cell. */
 #define MOST_IN_CELL 4096
 
 /* A vertex as stored in the file. Members that the mesh does not use are 0. */
@@ -96,9 +98,9 @@ static bool has_triangle_area(const struct corner c[3])
            a[0] * b[1] != a[1] * b[0];
 }
 
-/* Converts the corners of triangle T to vertices C. Subtracts an integer from
- * large texture coordinates, which is possible because textures repeat. v
- * points down in the file. */
+/* Converts the corners of triangle T to vertices C; in the file, v points down.
+ * Subtracts an integer from large texture coordinates, which changes nothing,
+ * as textures repeat. */
 static void convert_triangle_corners(const struct mesher *m,
                                      const struct glint_described_triangle *t,
                                      struct corner c[3])
@@ -210,8 +212,8 @@ static void compute_mesh_bounds(const struct mesher *m,
 
 /* -------------------------------------------------------------------- grid */
 
-/* Sets FROM and TO to the first and last cell along each axis that triangle T
- * touches, with GLINT_SCENE_MARGIN around T. */
+/* Sets FROM and TO to the first and last cell, along each axis, of the box
+ * around triangle T. The box is enlarged by GLINT_SCENE_MARGIN. */
 static void find_cells_touched_by_triangle(const struct mesher *m,
                                            const struct glint_scene_mesh *mesh,
                                            const struct glint_scene_triangle *t,
@@ -294,8 +296,9 @@ static uint64_t choose_cell_size(const struct mesher *m,
     }
 }
 
-/* Lists the triangles of each cell. If REF is NULL, counts them in START[cell +
- * 1]; else writes triangle indices to REF at START[cell], which advances. */
+/* Lists the triangles of each cell. If REF is NULL, adds their number to
+ * START[cell + 1]. Otherwise writes their indices to REF from START[cell] on,
+ * and advances START[cell]. */
 static void list_cell_triangles(const struct mesher *m,
                                 const struct glint_scene_mesh *mesh,
                                 uint32_t *start, uint32_t *ref)
@@ -357,8 +360,8 @@ static bool write_triangle_grid(struct glint_draft *draft,
 
 /* ------------------------------------------------------------------ tables */
 
-/* Appends N numbers per vertex: those at OFFSET in struct corner. Returns their
- * offset in the file. */
+/* Appends a member of struct corner for all vertices: N numbers at OFFSET.
+ * Returns the offset of the first number in the file. */
 static uint32_t append_vertex_numbers(struct glint_draft *draft,
                                       const struct mesher *m, size_t offset,
                                       size_t n)

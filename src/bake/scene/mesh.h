@@ -21,7 +21,8 @@ enum { GLINT_MESH_MAX_NAMES = 256 };
 
 struct glint_mesh {
     int n_triangles, n_names;
-    /* triangles; owned. material: index in name, or -1; object: 0. */
+    /* The triangles, owned. Their material is an index into name, or -1; their
+     * object is 0. */
     struct glint_described_triangle *triangle;
     char name[GLINT_MESH_MAX_NAMES][GLINT_DESCRIPTION_NAME_BYTES];
 };

@@ -33,9 +33,11 @@ struct painter {
     const struct glint_draft *draft;
     const struct glint_scene_mesh *mesh;
     int side;
-    /* material of the object, used by triangles without their own */
+    /* index of the object's material, which triangles without a material of
+     * their own have */
     uint32_t own;
-    uint32_t material; /* translucent material; only its triangles are drawn */
+    /* index of the translucent material; other triangles are ignored */
+    uint32_t material;
     /* [side][side]: index of the texel's triangle, or GLINT_SCENE_NONE */
     uint32_t *texel;
     /* [side][side]: 1: the texel's centre is strictly inside its triangle */
@@ -145,9 +147,9 @@ static void assign_triangle_of_neighbour_texel(struct painter *p,
     }
 }
 
-/* Extends each chart of the map by RINGS texels, which get the nearest
- * triangle, so that convolution kernels carry light across the borders of
- * charts. Returns false if there is no memory. */
+/* Extends each chart of the map by RINGS texels, which get the triangle of a
+ * neighbour. So kernels carry light across the borders of charts. Returns false
+ * if there is no memory. */
 static bool dilate_texture_charts(struct painter *p, int rings)
 {
     const size_t bytes = (size_t)p->side * (size_t)p->side * sizeof *p->texel;

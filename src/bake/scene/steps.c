@@ -5,10 +5,10 @@
 
 #include "glint/scene/model.h"
 
-/* log2 of (coordinate range of the run time / extent of the scene), without and
- * with planes. The rest of the range is reserved for moved objects and for
- * planes, which end at its limits: with PLANE_SHARE_LOG2 a plane ends less than
- * a pixel below its horizon. */
+/* log2 of the ratio of the run time's coordinate range to the extent of the
+ * scene, for scenes without and with planes. Objects may move in the rest of
+ * the range. Planes end at the limits of the range: with PLANE_SHARE_LOG2 that
+ * is less than a pixel below the horizon. */
 #define SHARE_LOG2       2
 #define PLANE_SHARE_LOG2 6
 
@@ -29,9 +29,9 @@ static double compute_object_reach(const struct glint_description *scene,
 {
     double reach = o->radius;
 
-    /* twice the distance of the corners: the bounding sphere around the centre
-     * of the bounding box extends beyond the corners, and its centre differs
-     * from the origin */
+    /* The factor 2 is needed for the mesh's bounding sphere. Its centre is that
+     * of the bounding box, not the origin, and it extends beyond the
+     * corners. */
     for (int i = 0; i < o->n_triangles; i++)
         for (int k = 0; k < 3; k++)
             reach =
@@ -107,8 +107,8 @@ void glint_turn_multiply_quaternions(const double a[4], const double b[4],
 
 void glint_described_upright(const double normal[3], double turn[4])
 {
-    /* (1 + y.n, y x n) is the quaternion (cos, sin) of half the angle between y
-     * and the normal n, times a length by which it is divided */
+    /* With the normal n, the quaternion (1 + y.n, y x n) rotates y to n. It is
+     * divided by its length, as a rotation needs a unit quaternion. */
     const double w = 1 + normal[1];
     const double size =
         sqrt(w * w + normal[0] * normal[0] + normal[2] * normal[2]);

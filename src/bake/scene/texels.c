@@ -48,16 +48,16 @@ static void resize_texel_row(double *dst, int n, const double *src, int src_n)
     }
 }
 
-/* Buffers of resize_picture(). Each buffer has only one row of three doubles
- * per texel, because a whole picture would need 24 bytes per texel. */
+/* Buffers of resize_picture(). They have three doubles per texel of a single
+ * row: buffers for a picture would need 24 bytes per texel. */
 struct rows {
     double table[256]; /* linear light of each 8-bit code */
     double *light;     /* a row of the source, linear light */
-    /* source row held_row, resized to the width of the result */
+    /* the source row of index held_row, resized to the width of the result */
     double *across;
     /* the weighted sum of source rows for one row of the result */
     double *sum;
-    int held_row; /* row of the source in across; -1: none */
+    int held_row; /* index of the source row that across has; -1: none */
 };
 
 /* Sets rows->across to row Y of the source, resized from SRC_WIDTH to WIDTH. */

@@ -193,7 +193,8 @@ convert_ward_lobe(const struct glint_described_material *from)
 
 static void write_materials(struct writer *w)
 {
-    /* material of objects that are invisible except for shadows on them */
+    /* written if the scene has no materials, as then its objects only receive
+     * shadows */
     const struct glint_scene_material none = {.name = "none",
                                               .power_q8 = 256,
                                               .index_q16 = 1 << 16,
@@ -371,8 +372,8 @@ static struct glint_scene_camera convert_camera(const struct writer *w)
             (int32_t)lrint(0x1p24 * tan(from->fov_deg * GLINT_PI / 360));
     } else if (from->field == GLINT_DESCRIBED_CORNERS) {
         c.kind = GLINT_CAMERA_CORNERS;
-        /* GLINT_DESCRIBED_CORNERS: half of 16 x 9 units at a distance of 10
-         * units */
+        /* The field of GLINT_DESCRIBED_CORNERS is 16 x 9 units at a distance of
+         * 10 units; these are the tangents of half of it. */
         c.tan_x_q24 = (int32_t)lrint(0x1p24 * .8);
         c.tan_y_q24 = (int32_t)lrint(0x1p24 * .45);
     }

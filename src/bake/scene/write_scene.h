@@ -58,10 +58,10 @@ bool glint_grid_write_mesh(struct glint_draft *draft,
 int glint_skin_find_material(const struct glint_description *scene,
                              const struct glint_described_object *object);
 
-/* Writes the map of a translucent object to DRAFT, which states the surface
- * point of each texel, and sets SKIN to it. MESH: the object's mesh in DRAFT;
- * NULL: a sphere. Returns false if there is no memory, or, with ERROR set, if
- * too many surface points share a texel or no texel has one. */
+/* Writes the map of a translucent object, which assigns a surface point to each
+ * texel, to DRAFT. Sets SKIN to this map. MESH: the object's mesh in DRAFT;
+ * NULL: a sphere. Returns false if there is no memory. Returns false and sets
+ * ERROR if too many surface points share a texel, or no texel has one. */
 bool glint_skin_write_map(struct glint_draft *draft,
                           const struct glint_description *scene,
                           const struct glint_described_object *object,
