@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits the rows of a scattering matrix by a few kernels, one per cluster of
- * texels, times factors per texel for light that enters and leaves.
+ * Fits the rows of a scattering matrix by a few kernels. The row of texel x has
+ * the light that enters at each texel near x and leaves at x. Its entry for
+ * texel y is modelled as out(x) kernel(y - x) in(y), with the kernel of the
+ * cluster that contains x.
  *
  * Alternating least squares updates kernels, in factors and out factors in
- * turn; then each texel is assigned to the kernel with the smallest residual
- * of its row. Initial clusters follow the fraction of material 0 around a
- * texel, or, for measured rows, the amount of light that a row scatters.
- * Random initial clusters would separate the rim from the interior.
+ * turn. Then each texel is assigned to the kernel with the smallest residual of
+ * its row. Initial clusters follow the fraction of material 0 around a texel,
+ * or, for measured rows, the amount of light that a row scatters. Random
+ * initial clusters would separate the rim from the interior.
  */
 #include "bake/translucent/rows.h"
 
@@ -18,25 +20,26 @@
 enum {
     /* number of rounds; further rounds reduce errors by less than 1 % */
     ROUNDS = 8,
-    /* radius of the neighbourhood over which the fractions of materials are
-     * averaged, texels */
+    /* radius, texels, of the neighbourhood over which the fraction of material
+     * 0 is averaged */
     ABOUT = 2
 };
 
 struct clusters {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
-    /* numerators and denominators of the least-squares solutions, one per texel
-     * or per kernel entry */
+    /* numerators (above) and denominators (below) of the least-squares
+     * solutions, one per texel or per kernel entry */
     double *above, *below;
 };
 
-/* One line of the row of texel X: entries u_from .. u_to - 1. */
+/* One line of the row of texel X, which has kernel x kernel entries: those from
+ * u_from to u_to - 1, which lie inside the map. */
 struct span {
     int x, c, u_from, u_to;
     const float *data;
-    /* kernel: entries of the kernel. in: factors for entering light of the
-     * texels to which the entries lead, 3 doubles apart. */
+    /* kernel: entries of the kernel's line. in: in factors, 3 doubles apart, of
+     * the texels that correspond to the entries, from u_from on. */
     double *kernel, *in;
 };
 
@@ -61,7 +64,8 @@ static struct span get_line_of_row(const struct clusters *p,
         .u_to = in->u_to,
         .data = glint_scatter_get_row(p->rows, x, c) + v * n,
         .kernel = get_cluster_kernel(p->fit, j, c) + v * n,
-        /* only entries inside the square are accessed */
+        /* may point outside the array, but only entries inside the map are
+         * accessed */
         .in =
             p->fit->in + c + 3 * (x + (v - n / 2) * side + in->u_from - n / 2),
     };
@@ -104,8 +108,8 @@ static void fit_leaving_factors(const struct clusters *p)
         }
 }
 
-/* Solves least squares for SCALE[N]: factors for entering light if IN_SCALES,
- * else kernel entries. */
+/* Fits SCALE[N] by least squares: the in factors if IN_SCALES, else the kernel
+ * entries. */
 static void fit_least_squares_scales(const struct clusters *p, bool in_scales,
                                      double *scale, size_t n)
 {
@@ -177,8 +181,8 @@ static void assign_texels_to_kernels(const struct clusters *p)
     }
 }
 
-/* Returns the value, 0 .. 1, that determines the initial cluster of texel X.
- * MOST: max sum of a texel's albedos. */
+/* Returns the value, 0 .. 1, by which texel X is assigned to an initial
+ * cluster. MOST: max sum of a texel's albedos over the channels. */
 static double compute_initial_position(const struct clusters *p, int x,
                                        double most)
 {
@@ -221,8 +225,8 @@ static void set_initial_clusters(const struct clusters *p)
     }
 }
 
-/* Scales each kernel to the sum 1, so that factors for leaving light are near
- * the albedo and factors for entering light near 1. */
+/* Scales each kernel to the sum 1. Then out factors are near the albedo and in
+ * factors near 1. */
 static void normalise_kernels(const struct clusters *p)
 {
     const int texels = p->fit->side * p->fit->side;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fits the rows of a scattering matrix by sums of a few kernels of low rank,
- * times weights per texel.
+ * Fits the rows of a scattering matrix. Each row is modelled as a sum of a few
+ * kernels, with weights per texel. Kernels are matrices of low rank.
  *
  * A singular value decomposition of the complete rows gives initial kernels.
  * Weights and kernels are then updated in turn by least squares. Kernels are
- * truncated to their rank in each round, so that the weights compensate for
- * the truncation.
+ * truncated to their rank in each round, so that the weights compensate for the
+ * truncation.
  */
 #include "bake/translucent/rows.h"
 
@@ -22,9 +22,9 @@ struct factors {
     const struct glint_scatter_rows *rows;
     struct glint_scatter_fit *fit;
     int c;
-    /* h: kernels; f: weights of texels; column, row: kernels of low rank. Each
-     * points to the array of channel c of kernel 0; arrays of other kernels
-     * follow at distances of 3 arrays. */
+    /* h: kernels; f: weights of texels; column, row: factors of the truncated
+     * kernels. All point to channel c of kernel 0. The arrays of three channels
+     * follow each other, kernel by kernel. */
     double *h, *f, *column, *row;
     /* indices of the texels whose rows lie completely inside the map */
     int *complete;

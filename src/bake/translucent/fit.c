@@ -54,8 +54,9 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
     return fit->in ? sum * fit->in[3 * x + c] : sum;
 }
 
-/* Returns the light of channel C that texel X receives from LIGHT through
- * kernel H. Offsets of H lead from a texel to the source of its light. */
+/* Returns the light of channel C that leaves texel X if LIGHT enters and kernel
+ * H spreads it. Entries of H are offsets from a texel to the source of its
+ * light. */
 static double gather_light_by_kernel(const struct glint_scatter_fit *fit, int x,
                                      const double *h, const double *light,
                                      int c)
@@ -185,7 +186,8 @@ static void scale_fit_to_albedo(struct glint_scatter_fit *fit)
         for (int c = 0; c < 3; c++) {
             const double sum = compute_uniform_response(fit, x, c);
             const double want = fit->albedo[3 * x + c];
-            /* a texel with almost no light in the fit cannot be scaled */
+            /* A texel that is almost black in the fit stays unscaled, as its
+             * factor would be huge. */
             const double scale = sum > 0.1 * want && want > 0 ? want / sum : 1;
 
             for (int j = 0; fit->f && j < fit->kernels; j++)
@@ -267,9 +269,9 @@ static void compute_mean_kernel(const struct glint_scatter_rows *rows,
         h[d] /= sum;
 }
 
-/* Fits one kernel, and an albedo per texel. Rows at the rim lie only partly
- * inside the map; their complete sums follow from the kernel, and the kernel
- * from these sums, so both are iterated. */
+/* Fits one kernel, and an albedo per texel. Rows at the rim are incomplete, as
+ * they lie partly outside the map. The kernel gives the complete sums of these
+ * rows, and the sums give a better kernel, so both are iterated. */
 static enum glint_status fit_albedo_model(const struct glint_scatter_rows *rows,
                                           struct glint_scatter_fit *fit)
 {
@@ -304,7 +306,7 @@ static double compute_psnr_db(double square, double peak)
                                   : NO_ERROR_DB;
 }
 
-/* Measures the errors of the entries and of the row sums of the fit. */
+/* Measures the errors of the fit's entries and row sums. */
 static void measure_entry_errors(const struct glint_scatter_rows *rows,
                                  struct glint_scatter_fit *fit)
 {
@@ -399,8 +401,8 @@ enum glint_status glint_scatter_fit(struct glint_scatter_rows *rows,
     fit->albedo = calloc(3 * texels, sizeof *fit->albedo);
     status = fit->albedo ? GLINT_OK : GLINT_E_MEMORY;
     if (status == GLINT_OK) {
-        /* fits the transposed rows, because errors are visible where light
-         * leaves */
+        /* The fit minimises errors of transposed rows, each of which has the
+         * light that leaves one texel: there errors are visible. */
         glint_scatter_transpose_rows(rows);
         compute_row_albedo(rows, fit->albedo);
         status = fit_chosen_model(rows, watch, fit);

@@ -9,17 +9,17 @@
 #include "glint/scene/translucent_bake.h"
 
 enum {
-    /* number of additional vectors in the subspace iteration, which accelerate
-     * the convergence of the last requested one */
+    /* number of vectors beyond the requested ones; they make the iteration for
+     * the last requested one converge faster */
     SPARE = 8,
     ROUNDS = 300,
     SWEEPS = 60
 };
 
-/* cosine below which two columns are orthogonal */
+/* max cosine between columns that count as orthogonal */
 #define SAME 1e-15
-/* a vector counts as 0 if orthogonalisation reduces its length below this
- * fraction */
+/* max length, relative to that before orthogonalisation, of a vector that
+ * counts as 0 */
 #define NOTHING 1e-13
 /* relative change of the sum of eigenvalues at which the iteration stops */
 #define STILL 1e-15

@@ -49,16 +49,17 @@ void glint_jacobi_orthogonalise(double *a, int rows, int n, double *turn,
  * A does not determine become 0. Overwrites A. */
 void glint_solve_symmetric_system(double *a, int n, double *b);
 
-/* A kernel as a sum of products of a column and a row, with the min error of
- * the scattered light. Light on a surface varies slowly, so errors of
- * neighbouring entries add up: rows and columns are weighted by the correlation
- * of light, and the products are the terms with the largest singular values of
- * the weighted kernel. */
+/* A kernel as a sum of products of a column and a row, chosen for the smallest
+ * error of the scattered light. As light on a surface varies slowly, errors of
+ * neighbouring entries add up. So rows and columns of the kernel are weighted
+ * by the correlation of light. The products are the terms with the largest
+ * singular values of the weighted kernel. */
 struct glint_separated {
     /* factors of the products, [rank][n]; product r at (u, v) is column[r][v] *
      * row[r][u] */
     double *column, *row;
-    /* sum of squares of all weighted entries, and of the weighted residuals */
+    /* all: sum of squares of the weighted entries; lost: that of their
+     * residuals */
     double all, lost;
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Computes diffusion in a homogeneous translucent slab, by modes and in closed
- * form (multipole).
+ * Computes diffusion in a homogeneous translucent slab in two ways: as a sum of
+ * modes, and in closed form, as a sum of image sources (multipole).
  */
 #include <math.h>
 #include <stdlib.h>
@@ -11,16 +11,16 @@
 #define PI 3.14159265358979323846
 
 enum {
-    /* subdivisions of a texel per axis, for the centre of a row and its
-     * neighbours */
+    /* subdivisions of a texel per axis, for the entry of the source texel and
+     * its eight neighbours */
     FINE = 16,
     COARSE = 4, /* subdivisions of a texel per axis for all other entries */
-    /* number of image sources on either side of the slab; thin slabs have more,
-     * up to MORE */
+    /* number of pairs of image sources on either side of the slab; thin slabs
+     * have up to MORE */
     IMAGES = 8,
     MORE = 32,
-    /* nodes per side of the periodic grid that represents an infinite one; at
-     * least four kernels wide */
+    /* min number of nodes per side of the periodic grid that approximates an
+     * infinite one; at least four kernels wide */
     LATTICE = 256
 };
 
@@ -31,8 +31,7 @@ static double compute_fluence_flux_ratio(double index)
     const double back =
         -1.440 / (index * index) + 0.710 / index + 0.668 + 0.0636 * index;
 
-    /* index 1 is a special case, because the empirical formula does not give
-     * 1 */
+    /* The empirical formula does not give the exact ratio 1 for index 1. */
     return index > 1 ? (1 + back) / (1 - back) : 1;
 }
 
@@ -154,9 +153,9 @@ void glint_slab_compute_closed_form(const struct glint_slab *slab, int kernel,
         }
 }
 
-/* Adds mode N of a periodic lattice of SIZE x SIZE nodes to ENTRY. WAVE[SIZE]:
- * 4 sin^2(q / 2) for each wave number q; COSINE[half + 1][SIZE]: cos(q u) for
- * each offset u; ACROSS[half + 1]: scratch. */
+/* Adds mode N of a periodic lattice of SIZE x SIZE nodes to ENTRY, by a Fourier
+ * sum. WAVE[SIZE]: 4 sin^2(q / 2) of each wave number q. COSINE[half +
+ * 1][SIZE]: cos(q u) of each offset u. ACROSS[half + 1]: scratch. */
 static void add_lattice_mode(const struct glint_slab *s, int kernel, int size,
                              int n, const double *wave, const double *cosine,
                              double *across, double *entry)

@@ -3,14 +3,15 @@
  * Converts a fit in doubles to a baked translucent medium: codes, filter taps,
  * shifts and gains.
  *
- * For a plane with the max factor F, f = F code, and row r and column k of one
- * of its ranks, the run time computes
+ * Each kernel is a sum of products of a row r and a column k. A plane is one
+ * kernel of one channel. Its factors f, one per texel, are stored as codes: f =
+ * F code, where F is the max factor. For each product the run time computes
  *
  *     light -> row taps / 2^shift -> column taps -> code -> gain
  *
- * Row taps are R r, with as many bits as possible. Column taps are V w, w = k F
- * 2^shift / R, with one V for all kernels of a channel, as their sums are
- * added. The gain is 1 / V.
+ * Row taps are R r, with the scale R as large as fits. Column taps are V w,
+ * where w = k F 2^shift / R. All kernels of a channel have the same scale V, as
+ * their sums are added. The gain is 1 / V.
  */
 #include "glint/scene/stone_bake.h"
 
@@ -94,8 +95,8 @@ static double get_texel_factor(const struct writer *w, int p, int c, int x)
     return fit->out[CHANNELS * (size_t)x + (size_t)c];
 }
 
-/* Appends N unsigned codes of BITS bits; the value MOST becomes the max code.
- * Returns false if there is no memory. */
+/* Converts VALUE[N] to unsigned codes of BITS bits, such that MOST becomes the
+ * max code, and appends them. Returns false if there is no memory. */
 static bool append_unsigned_codes(struct writer *w, const double *value, int n,
                                   double most, int bits)
 {
@@ -192,9 +193,9 @@ static double sum_tap_magnitudes(const double *x, int n)
     return all;
 }
 
-/* Returns the max scale for N taps, with max magnitude MOST and sum of
- * magnitudes ALL, such that the rounded taps sum to at most
- * GLINT_TRANSLUCENT_MOST_TAPS; 0 if all taps are 0. */
+/* Returns the max scale for N taps such that the magnitudes of the rounded taps
+ * sum to at most GLINT_TRANSLUCENT_MOST_TAPS. MOST and ALL are the max and the
+ * sum of the taps' magnitudes. Returns 0 if all taps are 0. */
 static double choose_tap_scale(double most, double all, int n)
 {
     const double tap = (1 << (GLINT_TRANSLUCENT_TAP_BITS - 1)) - 1;

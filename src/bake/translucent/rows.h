@@ -36,7 +36,7 @@ struct glint_scatter_inside
 glint_scatter_find_offsets_inside(int side, int kernel, int x);
 
 /* Returns the index of the texel to which entry D of the row of texel X leads;
- * -1: a place outside the map. */
+ * -1 if it leads outside the map. */
 int glint_scatter_get_target_texel(int side, int kernel, int x, int d);
 
 /* Allocates ROWS for SIDE and KERNEL, filled with 0. SHARED: also allocates the
@@ -53,24 +53,24 @@ void glint_scatter_transpose_rows(struct glint_scatter_rows *rows);
  * caller requests to stop. */
 bool glint_watch_report_progress(const struct glint_watch *watch, double done);
 
-/* A part of the work whose progress WHOLE reports: 0 .. 1 of the part are from
- * .. from + length of the whole. */
+/* A part of a longer work whose progress WHOLE reports. The part is the
+ * interval from .. from + length of the work, which is 0 .. 1. */
 struct glint_watch_part {
     const struct glint_watch *whole;
     double from, length;
 };
 
-/* Returns a watch that reports the progress of PART to its whole. PART must
- * outlive it. */
+/* Returns a watch for PART alone, which converts its progress to that of the
+ * whole work. PART must outlive the watch. */
 struct glint_watch glint_watch_make_for_part(struct glint_watch_part *part);
 
-/* Models that the run time can draw, except the albedo model: fitted by least
- * squares over the entries inside the map. Light that leaves the map is lost,
- * so rows at the rim would differ from all others. Each function sets the
- * members of FIT that its model uses, except the energy; all other members of
- * FIT but the albedo must be 0. In ROWS, and in the kernels h that these
- * functions set, light leaves at texel x, and offsets lead to the texel where
- * it entered. */
+/* Fit models that the run time can draw, except the albedo model. They are
+ * fitted by least squares to the entries inside the map only: light that leaves
+ * the map is lost, so rows at the rim differ from all others. Each function
+ * sets the members of FIT that its model uses, except the energy. On entry, all
+ * members of FIT but the albedo must be 0. In ROWS and in the resulting kernels
+ * h, light leaves at texel x, and offsets lead to the texel where it
+ * entered. */
 enum glint_status
 glint_scatter_fit_clusters(const struct glint_scatter_rows *rows,
                            const struct glint_watch *watch,

@@ -3,12 +3,12 @@
  * Computes the rows of the scattering matrix of a heterogeneous translucent
  * slab, whose texels have different materials.
  *
- * Diffusion modes on a lattice of texels describe the exchange of light
- * between materials. Eight modes and whole texels cannot resolve offsets below
- * two or three texels. There the difference between the closed form and the
- * same modes in a homogeneous medium is added, averaged over the materials of
- * both texels. An entry is the mean of both directions, which are equal in a
- * real translucent medium (reciprocity).
+ * Diffusion modes on a lattice of texels describe the exchange of light between
+ * materials. Eight modes on this lattice are inaccurate at offsets below two or
+ * three texels. A correction is added there: the closed form minus the same
+ * modes, both for a homogeneous medium, averaged over the materials of both
+ * texels. An entry is the mean of both directions, which are equal in a real
+ * translucent medium (reciprocity).
  */
 #include "bake/translucent/slab.h"
 
@@ -50,7 +50,7 @@ struct inverse {
     int reach;
     double *eliminated; /* [blocks][side][side]: S_j^-1 of each block */
     double *t, *scratch;
-    /* the blocks G(j, j + i) of the current row j, i = 0 .. reach */
+    /* the blocks G(j, j + i), i = 0 .. reach, of the current block row j */
     double **ring;
     /* [side]: range of the non-negligible entries of each row of T */
     int *from, *to;
@@ -227,8 +227,9 @@ static enum glint_status compute_inverse_blocks(struct inverse *v, int reach,
                                                 blocks_fn *add_block, void *ctx)
 {
     const int n = v->b->side;
-    /* estimated fraction of the time for the elimination: a row of reach + 1
-     * blocks costs as much as (reach + 1) / 2 eliminations, as measured */
+    /* Estimated fraction of the time that the elimination needs. By
+     * measurement, a row of reach + 1 blocks costs as much as (reach + 1) / 2
+     * eliminations. */
     const double first = 2.0 / (reach + 2.0);
 
     for (int j = 0; j < n; j++) {
@@ -364,8 +365,7 @@ void glint_stone_compute_fractions(const struct glint_stone *stone,
 }
 
 enum {
-    /* number of texels added on each side of the lattice; they repeat the
-     * texels at the rim */
+    /* margin of the lattice, texels; it repeats the texels at the rim */
     MARGIN = 8,
     /* number of mixing steps from one material to the other for which the
      * closed form is computed */
@@ -382,8 +382,8 @@ struct compute {
     double *diffusion, *absorb;
     /* matrix, source and exit factor of each texel for the current mode */
     double *own, *right, *down, *source, *exit;
-    /* [mixes][kernel * kernel]: closed form minus modes; NULL: not computed
-     * yet */
+    /* [mixes][kernel * kernel]: corrections, closed form minus modes; NULL: not
+     * computed yet */
     double *closed[LEVELS + 1];
     /* z_b: distance outside the slab's faces at which the fluence is 0, mm */
     double beyond;
@@ -525,8 +525,9 @@ static void add_block_to_rows(void *ctx, int j, int l, const double *block)
     }
 }
 
-/* Computes the correction (closed form minus modes) for the mix LEVEL / LEVELS,
- * unless the channel has it already. Returns false if there is no memory. */
+/* Computes the correction (closed form minus modes) of a medium with the
+ * fraction LEVEL / LEVELS of material 0, unless it is computed already. Returns
+ * false if there is no memory. */
 static bool compute_closed_form_correction(struct compute *p, int level)
 {
     const int k2 = glint_scatter_count_entries(p->rows->kernel);
@@ -556,8 +557,8 @@ static void free_closed_form_corrections(struct compute *p)
     }
 }
 
-/* Returns the correction of entry D by the closed form, for the mix of texel
- * X. */
+/* Returns the closed-form correction of entry D, interpolated for the mix of
+ * materials at texel X. */
 static double compute_entry_correction(const struct compute *p, int x, int d)
 {
     const double at = p->rows->share[x] * LEVELS;
@@ -569,7 +570,7 @@ static double compute_entry_correction(const struct compute *p, int x, int d)
            (high && t > 0 ? t * high[d] : 0);
 }
 
-/* Adds the correction by the closed form to all rows of the channel and clamps
+/* Adds the closed-form correction to all rows of the channel and clamps
  * negative entries to 0. Returns false if there is no memory. */
 static bool add_closed_form_corrections(struct compute *p)
 {

@@ -47,9 +47,8 @@ double glint_slab_compute_source(const struct glint_slab *slab, int n);
 double glint_slab_compute_exit(const struct glint_slab *slab, int n);
 
 /* Sets ENTRY[kernel * kernel] to the row of an infinitely wide homogeneous
- * medium in closed form: sources and their images at the faces, integrated over
- * the area of source and target texel (multipole; its first pair is the
- * dipole). */
+ * medium in closed form (multipole). Sources and their images at the faces are
+ * integrated over the area of source and target texel. */
 void glint_slab_compute_closed_form(const struct glint_slab *slab, int kernel,
                                     double *entry);
 

@@ -15,7 +15,8 @@ struct reader {
     struct glint_stone_text *to;
     char name[MOST_STONES][32];
     int n_stones;
-    bool is_turned; /* true: the line "pattern" names the second medium first */
+    /* true: the line "pattern" names the two media in reverse order */
+    bool is_turned;
     struct glint_text_place pattern;
 };
 
