@@ -101,7 +101,7 @@ void glint_visible_join_boxes(struct glint_pupil *a,
 
 enum { ACROSS = 64 /* number of columns of the finest grid */ };
 
-/* range of columns and rows of a grid that contain unblocked rays */
+/* the unblocked rays of a grid: first and last column, last row */
 struct extent {
     int i0, i1, j1;
 };
@@ -153,8 +153,8 @@ static bool shrink_box_to_visible(const struct glint_visible *h,
     return true;
 }
 
-/* Enlarges BOX on each side where light still passes, until no light does.
- * Returns false if this takes too many rounds or no light passes. */
+/* Enlarges BOX on each side where unblocked rays reach its edge, until none do.
+ * Returns false if this takes too many rounds, or if all rays are blocked. */
 static bool grow_box_to_visible(const struct glint_visible *h,
                                 const struct glint_path *path, double sine,
                                 struct glint_pupil *box)
@@ -176,9 +176,9 @@ static bool grow_box_to_visible(const struct glint_visible *h,
     return false;
 }
 
-/* Moves sides of BOX outwards where rays pass outside it. This happens if the
- * visible region has tips, as a crescent does, that are thinner than the cells
- * of the box's grid. */
+/* Moves sides of BOX outwards where unblocked rays pass outside it. Such rays
+ * exist if the visible region has tips, like a crescent, thinner than a cell of
+ * the box's grid. */
 static void grow_box_at_tips(const struct glint_visible *h,
                              const struct glint_path *path, double sine,
                              struct glint_pupil *box)
@@ -215,8 +215,9 @@ static bool find_tight_visible_box(const struct glint_visible *h,
     return found;
 }
 
-/* Returns the max, over the stop, all barrels and the field, of RAY's distance
- * from the centre / radius; at most 1 for visible rays. */
+/* Returns how far RAY is from being visible: the max of its distance from the
+ * axis / radius, over the stop, all barrels and the field. The value is at most
+ * 1 for visible rays. */
 static double compute_ray_miss_ratio(const struct glint_visible *h,
                                      const struct glint_ray *ray)
 {
@@ -229,9 +230,8 @@ static double compute_ray_miss_ratio(const struct glint_visible *h,
 }
 
 /* Shrinks BOX to 1.5 cells around the ray of its grid with the smallest
- * compute_ray_miss_ratio(). Returns this value; HUGE_VAL if all rays are
- * invalid.
- */
+ * compute_ray_miss_ratio(). Returns this ratio, or HUGE_VAL if all rays are
+ * invalid. */
 static double shrink_box_to_nearest_ray(const struct glint_visible *h,
                                         const struct glint_path *path,
                                         double sine, struct glint_pupil *box)
@@ -261,9 +261,10 @@ static double shrink_box_to_nearest_ray(const struct glint_visible *h,
     return least;
 }
 
-/* Finds visible rays that lie between the rays of the grid over BOX: if the
- * field is much smaller than the front element, so is the visible region of the
- * pupil. Sets BOX to contain them. Returns false if there are none. */
+/* Sets BOX to visible rays that the grid over BOX misses, as they lie between
+ * its rays. They exist if the field is much smaller than the front element:
+ * then the visible region of the pupil is small, too. Returns false if it finds
+ * none. */
 static bool find_region_missed_by_grid(const struct glint_visible *h,
                                        const struct glint_path *path,
                                        double sine, struct glint_pupil *box)
@@ -283,8 +284,8 @@ static double convert_sine_to_degrees(double sine)
     return asin(sine) * (180 / GLINT_PI);
 }
 
-/* Finds the box of unblocked rays at the angle with sine SINE, in the whole
- * pupil. Returns false if all rays are blocked. */
+/* Finds the box of unblocked rays at the angle with sine SINE. Searches the
+ * complete pupil. Returns false if all rays are blocked. */
 static bool find_visible_box(const struct glint_visible *h,
                              const struct glint_path *path, double sine,
                              struct glint_pupil *box)
@@ -315,7 +316,8 @@ static struct glint_pupil enlarge_box_by_margin(const struct glint_pupil *near)
     return box;
 }
 
-/* Finds the box of unblocked rays at SINE. Searches around NEAR first. */
+/* Finds the box of unblocked rays at the angle with sine SINE. Searches around
+ * NEAR first, then the complete pupil. */
 static bool find_box_near_previous(const struct glint_visible *h,
                                    const struct glint_path *path, double sine,
                                    const struct glint_pupil *near,
@@ -330,11 +332,10 @@ static bool find_box_near_previous(const struct glint_visible *h,
 /* ------------------------------------------------------------------ profile */
 
 enum {
-    /* number of angles after which the whole pupil is searched again instead of
-     * the surroundings of the last box */
+    /* number of angles after which the complete pupil is searched again,
+     * instead of the region around the last box */
     AFRESH = 4,
-    /* the same for non-spherical surfaces, through which rays are slow to
-     * trace */
+    /* AFRESH of lenses with non-spherical surfaces, as tracing them is slow */
     AFRESH_SHAPED = 12
 };
 
@@ -417,10 +418,10 @@ static void append_angle_to_profile(struct glint_visible_profile *p,
     p->n++;
 }
 
-/* Finds the boxes of one ghost at the angles SINE. ALONE: there are no
- * neighbouring zoom positions. Then the ghost is visible at each angle at some
- * wavelength, so if the first three wavelengths have no light, all others are
- * tried. With neighbouring positions the ghost may be invisible at an angle. */
+/* Finds the boxes of one ghost at the angles SINE. Tries three wavelengths
+ * first. If ALONE, there are no neighbouring zoom positions, so the ghost is
+ * visible at each angle at some wavelength. Then all wavelengths are tried
+ * where the first three have no light. */
 static void find_boxes_at_angles(const struct glint_visible *h, bool alone,
                                  const double *sine, struct box_samples *g)
 {
@@ -431,8 +432,8 @@ static void find_boxes_at_angles(const struct glint_visible *h, bool alone,
         wanted[k] = true;
     for (int i = 0; i < 3; i++)
         find_boxes_of_wave(h, sine, wanted, glint_visible_colour[i], g);
-    /* Where light passes at only one or two of the three wavelengths,
-     * wavelengths in between may have other boxes. */
+    /* If light passes at only one or two of the three wavelengths, the boxes of
+     * the wavelengths between may differ from theirs. */
     for (int k = 0; k < GLINT_PROFILE; k++) {
         const int n = g->seen[k][glint_visible_colour[0]] +
                       g->seen[k][glint_visible_colour[1]] +
@@ -486,9 +487,9 @@ void glint_visible_find_profile(const struct glint_visible *visible,
 enum {
     SCAN_DEG = 1,
     BISECTIONS = 8,
-    /* max number of scan steps by which an end of an angle range is extended
-     * beyond the last angle with light at mid band, because light may still
-     * pass at the ends of the band */
+    /* Max number of scan steps by which an angle range is extended beyond the
+     * last angle with light at mid band. There light may still pass at the ends
+     * of the band. */
     FARTHER = 4
 };
 
@@ -512,9 +513,9 @@ static bool is_ghost_visible_at_angle(const struct glint_visible *h,
     return find_box_at_any_colour(h, sine, n, &box);
 }
 
-/* Returns whether light at the middle of the band passes, and sets BOX.
- * Non-spherical surfaces, through which rays are slow to trace: if INSIDE,
- * first searches around BOX, the box at the previous angle. */
+/* Returns whether light at the middle of the band passes, and sets BOX. If
+ * INSIDE, BOX is the box at the previous angle; for non-spherical surfaces,
+ * which are slow to trace, the region around it is searched first. */
 static bool is_ghost_visible_at_mid_band(const struct glint_visible *h,
                                          double sine, bool inside,
                                          struct glint_pupil *box)
@@ -531,9 +532,9 @@ static bool is_ghost_visible_at_mid_band(const struct glint_visible *h,
     return find_box_at_any_colour(h, sine, 1, box);
 }
 
-/* Returns the end of an angle range: the last sine, from WITH towards WITHOUT,
- * at which light of any of the three wavelengths passes. At the middle of the
- * band light passes at WITH, but not at WITHOUT. */
+/* Finds the end of an angle range by bisection: the last sine, from WITH
+ * towards WITHOUT, at which light of any of the three wavelengths passes. At
+ * mid band, light passes at WITH but not at WITHOUT. */
 static double find_end_of_angle_range(const struct glint_visible *h,
                                       double with, double without)
 {
@@ -556,9 +557,9 @@ static double find_end_of_angle_range(const struct glint_visible *h,
     return with;
 }
 
-/* Sets the end of the last of N ranges to HI. Drops the range if it is empty;
- * merges it with the previous range if both overlap. Returns the new number of
- * ranges. */
+/* Sets the end of the last of N ranges to HI. Removes the range if it is empty,
+ * and merges it with the range before it if they overlap. Returns the new
+ * number of ranges. */
 static int end_angle_range(double (*range)[2], int n, double hi)
 {
     double *last = range[n - 1];

@@ -6,13 +6,15 @@
  *   in   a ghost of a lens, the band of wavelengths, the field
  *   out  ranges of angles, and boxes on the pupil at many angles of a range
  *
- * A ghost may appear, vanish and appear again. Limits: misses a range of
- * angles that is narrower than the step of the scan, or has no light in the
- * middle of the band. Misses a visible region smaller than 1/30 of its box
- * (unless the field is so small that the search closes in on it), and one that
- * exists for less than four angles and is separate from the tracked one. With
- * neighbouring zoom positions, misses angles at which light passes only at
- * wavelengths other than the middle and the ends of the band.
+ * A ghost may appear, vanish and appear again. The search misses
+ *   - a range of angles narrower than the step of the scan, or without light
+ *     in the middle of the band;
+ *   - a visible region smaller than 1/30 of its box, unless the field is so
+ *     small that the search is refined around the nearest ray;
+ *   - a visible region that exists for less than four angles and is separate
+ *     from the tracked one;
+ *   - with neighbouring zoom positions, angles at which light passes only at
+ *     wavelengths other than the middle and the ends of the band.
  */
 #ifndef GLINT_BAKE_VISIBLE_VISIBLE_H
 #define GLINT_BAKE_VISIBLE_VISIBLE_H
@@ -32,12 +34,12 @@ enum {
 /* indices of the wavelengths in the middle and at both ends of the band */
 extern const int glint_visible_colour[GLINT_VISIBLE_COLOURS];
 
-/* F-number below which lenses are fast: their fits use additional sampling and
- * weights. Fits were tuned for slower lenses. */
+/* Lenses of a smaller f-number are fast. Their fits use additional sampling and
+ * weights, as fits were tuned for slower lenses. */
 #define GLINT_WIDE 10
 
-/* Degrees. Rays of lights farther off the axis pass near the equators of
- * surfaces, as in fast lenses. */
+/* Angle off the axis, degrees, from which lights need the fits of fast lenses:
+ * their rays, too, pass near the equators of surfaces. */
 #define GLINT_FAR 60
 
 /* a ghost, and the data common to all its ranges of angles */
@@ -46,27 +48,27 @@ struct glint_visible {
     int ghost;
     double field_mm; /* radius of the field around the sensor's centre, mm */
     /* true: the lens is faster than GLINT_WIDE. Its rays pass near
-     * singularities, and the model is also used for much smaller stops. */
+     * singularities, and its model is also used with much smaller stops. */
     bool wide;
-    /* true: the lens is round, and lights beyond GLINT_FAR are requested; wide
-     * is then true, too */
+    /* true: the lens is round, and lights beyond GLINT_FAR are requested;
+     * implies wide */
     bool far;
     /* true: the lens is round, faster than GLINT_WIDE, and has non-spherical
-     * surfaces, whose powers grow steeply. Zones that cannot be fitted are
-     * accepted where their errors are invisible, instead of being halved
-     * endlessly. */
+     * surfaces. Their high powers grow steeply, so some zones of angles cannot
+     * be fitted. Such zones are not halved endlessly but accepted where their
+     * errors are invisible. */
     bool shaped;
     double wave_lo, wave_hi; /* ends of the band, 1 / wavelength^2, um^-2 */
     /* paths at GLINT_VISIBLE_WAVES wavelengths from wave_lo to wave_hi */
     struct glint_path path[GLINT_VISIBLE_WAVES];
     /* the same paths, for tracing positions without energies */
     struct glint_path position_path[GLINT_VISIBLE_WAVES];
-    /* The same ghost at neighbouring zoom positions. Rays that are visible or
-     * blocked at those positions count here, too, so that models of several
-     * positions can be interpolated. */
+    /* number of neighbouring zoom positions. The rays visible or blocked at
+     * these positions are used here, too, so that models of several positions
+     * can be interpolated. */
     int n_beside;
-    /* visibilities at neighbouring positions, [n_beside]; their n_beside is
-     * 0 */
+    /* [n_beside]: the ghost at the neighbouring zoom positions; n_beside of
+     * these is 0 */
     struct glint_visible *beside;
 };
 
