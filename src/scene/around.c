@@ -32,8 +32,8 @@ struct look {
 };
 
 /* Returns the mean of N pixels, 1 .. 2^12, whose light sums to SUM. A complete
- * cell has 2^WHOLE_LOG2 pixels, so its mean is a shift; only cells cut by the
- * picture's edge need a division. */
+ * cell has 2^WHOLE_LOG2 pixels, so a shift computes its mean. Only cells cut by
+ * the picture's edge need a division. */
 static uint16_t compute_cell_mean(int64_t sum_q20, int n, int whole_log2)
 {
     const int64_t max_q20 = (int64_t)n << 21;

@@ -22,9 +22,10 @@ static struct glint_box compute_ball_box(const struct glint_scene *s,
     return glint_view_find_box_of_points(&s->view, (const int32_t(*)[3])v, 8);
 }
 
-/* Returns the max distance, steps, rounded up, between the ray through a
- * pixel's middle and the rays through its samples, at the far side of a ball.
- * With four samples per pixel these are 104/256 pixel from the middle. */
+/* Returns the max distance, at the far side of a ball, between the ray through
+ * a pixel's middle and a ray through one of its samples, steps, rounded up.
+ * Samples are up to 104/256 pixel from the middle, or 184/256 with more than
+ * four per pixel. */
 static int32_t compute_max_sample_ray_distance(const struct glint_scene *s,
                                                const int32_t seen[3],
                                                int32_t reach)
@@ -119,8 +120,8 @@ void glint_scene_begin(struct glint_scene *scene,
         if (z < GLINT_FAR)
             farthest = q_larger(farthest, z + 2 * scene->placed[i].reach);
     }
-    if (scene->motion) /* the recording's lines may be nearer than all
-                          objects */
+    /* Lines of a recorded motion may be nearer than all objects. */
+    if (scene->motion)
         nearest = q_smaller(nearest, farthest >> 13);
     /* All points nearer than 2^-14 times the max z get the same depth. */
     scene->nearest =
@@ -129,8 +130,8 @@ void glint_scene_begin(struct glint_scene *scene,
     glint_quick_prepare_balls(scene);
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
-    else /* not with a recorded motion, whose shells and lines need exact
-            depths */
+    else
+        /* A recorded motion needs exact depths for its shells and lines. */
         glint_scene_set_single_depths_of_balls(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)

@@ -5,10 +5,10 @@
  *
  * A ray that enters a sphere leaves it at the other end of its chord, at the
  * angle of entry, so total reflection inside does not occur. If the index is 1,
- * rays are not bent, and the background behind the last object is the picture
- * itself. Bent and reflected rays see the background's colour, the environment,
- * or the camera's picture, extended to all directions: directions outside the
- * field of view read the picture mirrored at its edge. */
+ * rays are not bent. Such rays see the picture itself behind the last object.
+ * Bent and reflected rays see the background's colour, the environment, or the
+ * camera's picture. The picture is extended to all directions: directions
+ * outside the field of view read it mirrored at its edge. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
@@ -40,11 +40,12 @@ static void start_secondary_ray(const struct glint_scene *s,
     p->triangle = surface->triangle;
 }
 
-/* Sets RGB to the light of the camera's picture in the direction of P. Let
- * direction (x, y, z) be scaled so that the picture's edge is at |x| = z or |y|
- * = z. It maps to (x, y) / z inside the picture. With M = max(|x|, |y|), z is
- * mirrored at M outside: (x, y) / (2 M - z). The map is continuous, and the
- * direction opposite to the view maps to the middle again. */
+/* Sets RGB to the light of the camera's picture in the direction of P. Let (x,
+ * y, z) be that direction, with x and y scaled such that the picture's edges
+ * are at |x| = z and |y| = z. Inside the picture the direction reads the
+ * position (x, y) / z. Outside, where M = max(|x|, |y|) is above z, it reads
+ * (x, y) / (2 M - z). This is continuous at the edge, and the direction
+ * opposite to the view reads the middle again. */
 static void sample_camera_picture(const struct glint_scene *s,
                                   const struct passing *p, int32_t rgb_q15[3])
 {
@@ -57,8 +58,8 @@ static void sample_camera_picture(const struct glint_scene *s,
     int32_t seen_q30[3], half_q15[2];
 
     v3_rotate(&v->turn, p->ray.toward_q30, seen_q30);
-    /* All three coordinates multiplied by both tangents, _q30; they stay within
-     * 2^36 and 2^43. */
+    /* x, y and z are multiplied by both tangents, which scales x and y without
+     * a division. They are _q30, within 2^36 and 2^43. */
     x = q_shift(seen_q30[0] * tan_y_q24, 24);
     y = q_shift(-seen_q30[1] * tan_x_q24, 24);
     z = q_shift(q_shift(seen_q30[2], 6) * both_q24, 18);
@@ -107,8 +108,8 @@ static int find_next_surface(const struct glint_scene *s,
 static int refract_ray(const struct glint_met_surface *surface,
                        uint32_t index_q16, struct passing *p)
 {
-    /* 2^28 times the ratio of indices: 2^44 / index on entry, index << 12 on
-     * exit */
+    /* index in front of the surface / index behind it: 1 / INDEX if the ray
+     * enters the object, INDEX if it leaves */
     const uint32_t eta_q28 =
         surface->is_inside
             ? index_q16 << 12
@@ -173,7 +174,7 @@ static void continue_ray_behind_surface(const struct glint_scene *s,
 }
 
 /* Returns the angular variance of a pixel's rays, radians^2, after reflection
- * at SURFACE. Curved mirrors increase the variance. */
+ * at SURFACE. Curved surfaces increase it. */
 static int64_t
 compute_mirror_spread_q40(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,

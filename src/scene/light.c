@@ -64,8 +64,8 @@ static int32_t compute_minus_log2_q26(uint32_t x_q30)
     return (int32_t)(((int64_t)up << 26) - q_shift(y_q30, 4));
 }
 
-/* 2^-f for the fractional part f, 0 .. 1, is computed by a series of six terms
- * with a max error of 2^-12.6. */
+/* X^K is 2^-e with e = -K log2(X). The power of the fractional part of e is
+ * computed by a series of six terms, with a max error of 2^-12.6. */
 int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8)
 {
     int64_t down_q26;
@@ -95,7 +95,7 @@ static int32_t compute_light_at_distance(struct glint_real real, int unit_log2,
                                          uint64_t square)
 {
     const int up = q_count_normalising_shift(square);
-    /* mantissa / SQUARE, times 2^63 / 2^UP; below 2^63 */
+    /* mantissa / SQUARE * 2^(63 - UP), below 2^63 */
     const uint64_t over =
         (uint64_t)real.mantissa * q_reciprocal(q_shift_to_32_bits(square, up));
     const int down = 63 - up - real.exponent - 2 * unit_log2 - 15;
@@ -160,8 +160,8 @@ static void aim_at_disc_point(struct glint_scene_ray *ray,
     const int32_t *at_q15 = n == 4 ? four_q15[i] : sixteen_q15[i];
     int64_t to[3];
 
-    for (int k = 0; k < 3; k++) { /* sum of at most 2^60 and 1.5 * 2^30 *
-                                     2^29 */
+    /* The sum is at most 2^60 + 1.5 * 2^30 * 2^29. */
+    for (int k = 0; k < 3; k++) {
         const int64_t aside_q30 = q_shift(
             (int64_t)u_q30[k] * at_q15[0] + (int64_t)v_q30[k] * at_q15[1], 15);
 

@@ -4,12 +4,13 @@
  * frame, and triangles are sorted into tiles. In a tile, a sample is inside a
  * triangle if three exact edge functions are not negative.
  *
- * Nothing is clipped. Edges are cross products of homogeneous corners (view.h).
- * With x, y within 2^22 and w 1, or all within 2^16, the elements of these
- * products stay below 2^39, the last within +-2^40. Samples are within 2^22, so
- * sums are below 2^62. A vertex is rounded once, in the same way for all its
- * triangles, so that neighbouring triangles neither leave gaps nor overlap. A
- * sample on an edge is assigned to a side by the direction of the edge, which
+ * Nothing is clipped: the coefficients of an edge function are the cross
+ * product of two homogeneous corners (view.h). x and y are within 2^22 and w is
+ * 1, or all three are within 2^16. So the first two coefficients are below
+ * 2^39, and the third is within +-2^40. Samples are within 2^22, so edge
+ * functions are below 2^62. A vertex is rounded once, in the same way for all
+ * its triangles, so that neighbouring triangles neither leave gaps nor overlap.
+ * A sample on an edge is assigned to a side by the direction of the edge, which
  * is opposite in the two triangles that share it. */
 #include "scene/mesh.h"
 
@@ -42,8 +43,8 @@ static inline int64_t evaluate_edge_function(const struct line *l, int64_t x,
 struct small {
     uint32_t id;
     int32_t across[3], down[3]; /* change of the edge functions per pixel */
-    int32_t at[3]; /* edge functions at the middle of the first pixel of the
-                      box */
+    /* values of the edge functions at the middle of the box's first pixel */
+    int32_t at[3];
     struct glint_depth depth;
     int32_t off[3][GLINT_SCENE_SAMPLES], deeper[GLINT_SCENE_SAMPLES];
 };
@@ -70,8 +71,8 @@ static inline int compute_corner_depths(const struct glint_scene *s,
     return fits;
 }
 
-/* Returns whether objects nearer than DEPTH_Q30 were drawn before at all
- * samples of box B. */
+/* Returns whether all samples of box B already see objects nearer than
+ * DEPTH_Q30. */
 static int are_all_samples_nearer_than(const struct glint_scene_worker *w,
                                        struct glint_box b, int32_t depth_q30)
 {
@@ -92,11 +93,13 @@ static int are_all_samples_nearer_than(const struct glint_scene_worker *w,
 
 /* Returns whether objects drawn before hide triangle ID at all samples of box
  * B. The depth of a sample inside lies between the corners' depths, apart from
- * rounding errors, for which the compared depth has a margin: each of the three
- * edge functions may be 1 too low, which changes the depth by at most half of
- * its range if twice the triangle's area is 6 or more; and slopes of depth are
- * truncated. Slopes are at most 2 * 2 * 48 * 256 range / area, below 2^20, so
- * set_triangle_depth_function() sets the same depths. */
+ * rounding errors, for which the compared depth has a margin. Each of the three
+ * edge functions may be 1 too low. If twice the triangle's area is at least 6,
+ * this changes the depth by at most half of the corners' range. The rest of the
+ * margin is for truncated slopes of depth. As range / area is limited, slopes
+ * are at most 2 * 2 * 48 * 256 range / area, below 2^20. So
+ * set_triangle_depth_function() would accept the triangle, with these
+ * depths. */
 static int is_triangle_hidden(const struct glint_scene_worker *w, uint32_t id,
                               const struct glint_scene_triangle *t,
                               struct glint_box b)
@@ -243,9 +246,9 @@ static inline void draw_rows_of_small_triangle(struct glint_scene_worker *w,
     }
 }
 
-/* Draws triangle T, with id ID, in 32 bits. Returns 0, and draws nothing, if
- * its depths need more bits. All corners must be in the picture or near it, and
- * the edge functions below 2^30 in box B. */
+/* Draws triangle T, with id ID, in 32-bit arithmetic. Returns 0, and draws
+ * nothing, if depths need more bits. All corners must be in the picture or near
+ * it, and the edge functions below 2^30 in box B. */
 static int draw_small_triangle(struct glint_scene_worker *w, uint32_t id,
                                const struct glint_scene_triangle *t,
                                const struct line line[3], struct glint_box b)
@@ -277,10 +280,10 @@ static int draw_small_triangle(struct glint_scene_worker *w, uint32_t id,
 /* Traces rays through a mesh's grid of cells, in the mesh's own space.
  *
  * A ray starts where it comes near the mesh, so that differences stay below
- * 2^29. It walks from cell to cell without division: comparing products, dx /
- * |d.x| < dy / |d.y|, finds the side by which it leaves a cell. Lists of cells
- * include triangles up to 16 steps outside, so that rounding of the ray's start
- * misses none. */
+ * 2^29. It walks from cell to cell. The face through which it leaves a cell is
+ * found without division, by comparing products instead of the ratios dx /
+ * |d.x| and dy / |d.y|. The list of a cell includes triangles up to 16 steps
+ * outside it, so that none is missed if the ray's start is rounded. */
 
 /* A ray transformed to a mesh's own space. */
 struct inside {
@@ -290,7 +293,8 @@ struct inside {
     struct glint_sheared sheared;
     /* distance along the original ray, steps, at which this ray begins */
     int32_t start;
-    uint32_t but; /* index of the triangle to skip, as the ray starts on it */
+    /* index of the triangle on which the ray starts, which is skipped */
+    uint32_t but;
 };
 
 /* Transforms RAY to the space of OBJECT; the new ray starts at distance T. */
@@ -324,9 +328,9 @@ struct walk {
                          q30 */
 };
 
-/* Starts the walk at the point where the ray enters the grid. Returns 0 if the
- * ray misses the grid. If rounding has moved that point out of the grid, the
- * walk starts in the nearest cell. */
+/* Starts the walk at the point where the ray enters the grid, or in the nearest
+ * cell if rounding has moved this point out of the grid. Returns 0 if the ray
+ * misses the grid. */
 static int begin_grid_walk(struct inside *in, struct walk *w)
 {
     enum { SLACK = GLINT_SCENE_MARGIN / 2 };
@@ -365,8 +369,8 @@ static int begin_grid_walk(struct inside *in, struct walk *w)
                          : (((int64_t)w->cell[k] + 1) << m->cell_log2) - from;
     }
     in->start += t;
-    /* The negative limit includes triangles that lie in the face through which
-     * the ray enters the grid. */
+    /* The min distance is negative, so that triangles that lie in the face
+     * through which the ray enters the grid are found. */
     in->sheared.least = -q_smaller(t, SLACK);
     for (int k = 0; k < 3; k++)
         in->ray.at[k] = in->sheared.at[k] = at[k];
@@ -381,14 +385,14 @@ static int advance_to_next_cell(const struct inside *in, struct walk *w,
     const struct glint_scene_mesh *m = in->mesh;
     int next = 0;
 
-    for (int k = 1; k < 3; k++) /* the direction's largest component is never
-                                   0 */
+    /* starts with the largest component of the direction, which is not 0 */
+    for (int k = 1; k < 3; k++)
         next = w->speed[k] > w->speed[next] ? k : next;
     for (int k = 0; k < 3; k++)
         if (w->away[k] * w->speed[next] < w->away[next] * w->speed[k])
             next = k;
-    /* equals away / speed > limit; away, speed and limit are below 2^30, and
-     * away may be a few steps below 0 */
+    /* This compares away / speed > limit without division. away, speed and
+     * limit are below 2^30, and away may be a few steps below 0. */
     if (w->away[next] * (INT64_C(1) << 30) > limit * w->speed[next])
         return 0;
     w->away[next] += INT64_C(1) << m->cell_log2;
@@ -646,9 +650,8 @@ static int find_end_pixel_left_of(int32_t x_q8, int side, int32_t off_q8)
     return ((x_q8 + 128 * (side - 1) + off_q8) >> 8) + 1;
 }
 
-/* Max width and height of small triangles, 1/256 pixel: their edge functions,
- * and sums of two of these, are below 2^30 within 256 pixels of the
- * triangle. */
+/* max width and height of small triangles, 1/256 pixel; within 256 pixels of
+ * such a triangle its edge functions, and the sum of any two, are below 2^30 */
 enum { SMALL_Q8 = 48 << 8 };
 
 /* Returns the box of pixels that a triangle may cover: the whole picture if a
@@ -783,8 +786,9 @@ static void project_meshes(struct glint_scene *s,
     stats->need_refs = q_clamp_sat(need, 0, INT32_MAX);
     sort_triangles_into_tile_lists(s, BOTH_SIDES);
     glint_bins_convert_counts_to_starts(&s->bins);
-    sort_triangles_into_tile_lists(s, 1); /* triangles that face the camera
-                            first, as they hide most of the others */
+    /* Triangles that face the camera are first in the lists, as they hide most
+     * of the others. */
+    sort_triangles_into_tile_lists(s, 1);
     sort_triangles_into_tile_lists(s, 0);
     glint_bins_reset_starts(&s->bins);
     s->has_triangles = stats->refs > 0;
@@ -864,9 +868,9 @@ struct seen {
     uint32_t id;
     struct line line[3];
     struct glint_depth depth;
-    /* Differences of edge functions and depth between the middle of a pixel and
-     * its samples. For edge functions the max over the samples is subtracted,
-     * and stored in most. */
+    /* Changes of the edge functions (off) and the depth (deeper) from a pixel's
+     * middle to its samples. The max over the samples is stored in most and
+     * subtracted from off. */
     int64_t off[GLINT_SCENE_SAMPLES][3], most[3], deeper[GLINT_SCENE_SAMPLES];
 };
 
@@ -893,9 +897,8 @@ static void set_function_offsets_of_samples(const struct glint_scene *s,
                           seen->depth.down * glint_sample_offset_q8(s, k, 1);
 }
 
-/* Draws the samples of a pixel; I is the index of its first sample. AT_0 ..
- * AT_2 are the edge functions at the pixel's middle, each plus its element of
- * seen->most. */
+/* Draws the samples of a pixel; I is the index of its first sample. AT_0 to
+ * AT_2 are the edge functions at the pixel's middle, plus seen->most. */
 static inline void
 draw_pixel_of_large_triangle(const struct glint_scene_worker *w,
                              const struct seen *seen, int64_t at_0,

@@ -141,9 +141,9 @@ static int triangle_overlaps_cell(const struct glint_scene_mesh *m,
     return is;
 }
 
-/* Checks that each triangle is in the list of each cell that its bounding box
- * overlaps. Lists are sorted and have no duplicates, so if the number of
- * entries is right, none is missing. */
+/* Checks that each triangle is listed in each cell that its bounding box
+ * overlaps. Lists are sorted and have no duplicates. So it suffices that each
+ * entry is justified and the number of entries is right. */
 static const char *check_cell_lists(const struct check *check,
                                     const struct glint_scene_mesh *m,
                                     const uint32_t *start, const uint32_t *ref)
@@ -414,7 +414,7 @@ STATIC_ASSERT(sizeof(struct glint_scene_skin) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_environment) == 56);
 STATIC_ASSERT(sizeof(struct glint_scene_header) == 268);
 
-/* The header begins like the header of every baked file. */
+/* checks that the members common to all baked files have their common places */
 GLINT_BLOB_HEADER(struct glint_scene_header, variant);
 
 enum { ONE_Q15 = 1 << 15, ONE_Q30 = 1 << 30, MAX_HIGHLIGHTS = 8 };

@@ -79,8 +79,8 @@ struct glint_scene_wards {
     /* Rotates the environment about the vertical axis by the angle of cosine
      * and sine TURN_Q30. */
     void (*turn)(struct glint_scene *scene, const int32_t turn_q30[2]);
-    /* Returns how much SURFACE's normal varies within the pixel of RAY:
-     * spread_q30 of struct glint_brushed. */
+    /* Returns how much SURFACE's normal varies within the pixel of RAY, as the
+     * value for spread_q30 of struct glint_brushed. */
     int32_t (*spread)(const struct glint_scene *scene,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface);
@@ -99,9 +99,9 @@ struct glint_scene_wards {
                     const int32_t colour_q15[3], int32_t weight_q15,
                     int32_t rgb_q15[3]);
     /* Sets RGB_Q15 to the light that the metal of SURFACE reflects along RAY
-     * from a light source of level LEVEL_Q15 in direction TOWARD_Q30, whose
-     * angular radius is given by its sine. Returns 0, and sets nothing, if no
-     * light is reflected. */
+     * from one light source. TOWARD_Q30 is the direction of the source,
+     * LEVEL_Q15 its light; its angular radius is given by its sine. Returns 0,
+     * and sets nothing, if no light is reflected. */
     int (*shine)(const struct glint_scene *scene,
                  const struct glint_scene_ray *ray,
                  const struct glint_met_surface *surface,

@@ -23,8 +23,8 @@ static inline void add_light_times_weight(int32_t *to_q15, int64_t light_q15,
 
 /* ------------------------------------------------------------------- gloss */
 
-/* The table ends at y = 1 - 2^(-17 / k), where x^k falls below 2^-17; larger y
- * give 0. */
+/* The table has (1 - y)^k for the exponent k. It ends at y = 1 - 2^(-17 / k),
+ * where the power falls below 2^-17. For larger y the power is 0. */
 void glint_gloss_fill_power_table(struct glint_gloss *gloss, int32_t power_q8)
 {
     int32_t end_q30 = 1 << 30;
@@ -45,7 +45,8 @@ void glint_gloss_fill_power_table(struct glint_gloss *gloss, int32_t power_q8)
 }
 
 /* Returns the specular factor of a light: a power of the cosine between the ray
- * and the light's direction L mirrored at the normal N, L - 2 (L.N) N. */
+ * and the mirrored direction L - 2 (L.N) N, where L is the light's direction
+ * and N the normal. */
 static inline int32_t
 compute_specular_q15(const struct glint_gloss *gloss,
                      const struct glint_scene_ray *ray,
@@ -72,8 +73,8 @@ compute_specular_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Adds the highlight of light LIT, at distance T, on a metal, times SHARE_Q15,
- * the fraction of LIT that reaches the surface. */
+/* Adds the highlight of light LIT on a metal. T: distance of LIT. SHARE_Q15:
+ * fraction of LIT that reaches the surface. */
 static void add_metal_highlight(
     const struct glint_scene *s, const struct glint_scene_ray *ray,
     const struct glint_met_surface *surface, struct glint_brushed *brushed,
@@ -193,8 +194,8 @@ void glint_scene_add_phong_light(const struct glint_scene *scene,
     add_phong_lights(scene, ray, surface, weight_q15, rgb_q15);
 }
 
-/* Returns the fraction of the total light of all sources that is shadowed, q8,
- * for a shadow catcher, a plane that only receives shadows. */
+/* Returns the fraction of the light of all sources that is shadowed at SURFACE,
+ * q8. SURFACE is on a shadow catcher, a plane that only receives shadows. */
 static int compute_catcher_shadow_q8(const struct glint_scene *s,
                                      const struct glint_met_surface *surface,
                                      int32_t catcher_q15)

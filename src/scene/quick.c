@@ -8,9 +8,9 @@ enum { ONE_Q30 = 1 << 30, LEAST_UP = 17 };
 
 /* -------------------------------------------------------------------- rays */
 
-/* Coordinates are scaled so that the vector to the picture's farthest corner
- * has length 2^29 to 2^30, or so that the picture's plane is at distance
- * 2^28. */
+/* The direction is scaled such that the picture's plane is at distance 2^28.
+ * For wide fields of view it is scaled down, such that the vector to the
+ * picture's farthest corner has length 2^29 to 2^30. */
 void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
                              int32_t y_q8, struct glint_scene_ray *ray,
                              int32_t seen_q30[3])
@@ -56,8 +56,9 @@ static void prepare_ball_for_fast_path(const struct glint_scene *s,
 
 /* Prepares the computation of the pixels that ball P spans in each row. Let M
  * be the direction to the ball's middle and C the squared cosine of the angle
- * between M and the ball's rim. Position (X, Y) of the picture, in tangents, is
- * on the ball if (M.x X + M.y Y + M.z)^2 >= C (1 + X^2 + Y^2). */
+ * between M and the ball's rim. Let (X, Y) be a position in the picture, in
+ * tangents. It is on the ball if (M.x X + M.y Y + M.z)^2 >= C (1 + X^2 +
+ * Y^2). */
 static void prepare_row_spans_of_ball(const struct glint_scene *s,
                                       struct glint_placed *p)
 {
@@ -71,8 +72,8 @@ static void prepare_row_spans_of_ball(const struct glint_scene *s,
     for (int k = 0; k < 3; k++)
         to[k] = seen[k];
     away = (int32_t)glint_compute_square_root((uint64_t)v3_dot(seen, seen));
-    /* enlarged by a margin, as samples of a row are above and below the middles
-     * of its pixels */
+    /* The ball is enlarged by a margin, as the samples of a row lie above and
+     * below the middles of its pixels. */
     sine_q30 = glint_divide_rounded(
         ((uint64_t)p->radius + 2 * (uint64_t)p->margin) << 30, (uint64_t)away);
     if (!glint_normalise_vector(to, p->span.m_q30) || sine_q30 < 1 << 22 ||
@@ -82,7 +83,7 @@ static void prepare_row_spans_of_ball(const struct glint_scene *s,
     p->span.a_q30 =
         (int32_t)(((int64_t)p->span.m_q30[0] * p->span.m_q30[0] >> 30) -
                   p->span.c_q30);
-    /* the ball's outline must be an ellipse, and not too flat */
+    /* The outline of the ball must be an ellipse that is not too flat. */
     if (p->span.a_q30 > -(1 << 26))
         return;
     p->span.up = q_count_normalising_shift((uint64_t)-p->span.a_q30);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fast path for shading: finds the surface at the middle of a pixel with 26
- * bits of precision, which suffice for shading, and precomputes what all pixels
- * of an object share. Before, visible.c has determined exactly which object is
- * visible. */
+ * Fast path for shading. Finds the surface at the middle of a pixel with 26
+ * bits of precision, which suffice for shading. Values that all pixels of an
+ * object share are precomputed. Which object is visible has been determined
+ * exactly by visible.c. */
 #ifndef GLINT_SCENE_QUICK_H
 #define GLINT_SCENE_QUICK_H
 

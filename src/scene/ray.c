@@ -23,10 +23,10 @@ int glint_ray_point_at_distance(const struct glint_scene_ray *ray, int32_t t,
 /* ------------------------------------------------------------------ sphere */
 
 /* L is the vector from the ray's start to the sphere's centre, D the ray's
- * direction. Components of L are within 2^29 and |D| is 1, so |L.D| and each
- * component of L x D are below 2^60 in _q30. The components of L x D are
- * truncated to UP fraction bits once they are known to be below the radius,
- * 2^30, so that their squares sum to less than 3 * 2^60. */
+ * direction. Components of L are within 2^29 and |D| is 1. So |L.D| and each
+ * component of L x D are below 2^60 in _q30. If the ray hits, the components of
+ * L x D are at most the radius. They are then stored with UP fraction bits,
+ * below 2^30, so that their squares sum to less than 3 * 2^60. */
 int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
                                const int32_t centre[3], int32_t radius,
                                struct glint_chord *chord)
@@ -110,8 +110,7 @@ void glint_ray_shear_to_axis(const struct glint_scene_ray *ray,
                              struct glint_sheared *to)
 {
     const int32_t *d_q30 = ray->toward_q30;
-    /* starts at 1, not 0, to rule out a division by 0, although a direction has
-     * length 1 */
+    /* starts at 1, which rules out a division by 0 */
     uint64_t most = 1;
     int longest = 0, is_back;
     uint32_t one_over_q30;
@@ -126,8 +125,8 @@ void glint_ray_shear_to_axis(const struct glint_scene_ray *ray,
     is_back = d_q30[longest] < 0;
     for (int k = 0; k < 3; k++)
         to->axis[k] = (longest + 1 + k) % 3;
-    /* The reciprocal is 2^63 / (4 * most), _q31; 4 * most is above 2^31 and
-     * may slightly exceed 2^32. */
+    /* q_reciprocal() returns 2^63 / (4 * most), _q31. 4 * most is above 2^31
+     * and may slightly exceed 2^32. */
     one_over_q30 =
         (q_reciprocal(most < ONE_Q30 ? (uint32_t)(4 * most) : UINT32_MAX) + 1) /
         2;
@@ -260,8 +259,8 @@ int glint_set_triangle_normal(const int32_t *const vertex[3],
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* N has length 1 up to rounding; the division by N.N, to first order, preserves
- * the length of D. */
+/* N has length 1 up to rounding errors. The product is divided by N.N, to first
+ * order, so that the length of D does not change. */
 void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
                              int32_t to_q30[3])
 {
@@ -273,8 +272,8 @@ void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
         to_q30[k] = (int32_t)(d_q30[k] - q_shift(along_q30 * n_q30[k], 29));
 }
 
-/* Sines of the angle between ray and normal: s in front of the surface, eta s
- * behind it, below 16. */
+/* By Snell's law, the sine of the angle between ray and normal is multiplied by
+ * ETA. The result is below 16. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {
@@ -289,7 +288,8 @@ int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
         return 0;
     cosine_q30 = glint_compute_square_root(
         (uint64_t)((INT64_C(1) << 60) - behind_q30 * behind_q30));
-    /* eta d + (eta * cosine before - cosine behind) n */
+    /* with the cosines before and behind the surface: eta d + (eta * before -
+     * behind) n */
     for (int k = 0; k < 3; k++)
         to[k] =
             q_shift(d_q30[k] * (int64_t)eta_q28, 28) -

@@ -34,8 +34,9 @@ struct glint_chord {
 
 /* Finds the chord of RAY in the sphere around CENTRE; returns 0 if the ray
  * misses the sphere. RADIUS must be 1 .. 2^27. The ray's distance from the
- * centre is |L x D|, where L is the vector from the ray's start to the centre.
- * The products are exact, so that no precision is lost at any distance. */
+ * centre is |L x D|, where L is the vector from the ray's start to the centre
+ * and D the ray's direction. Products are exact, so precision is the same at
+ * any distance. */
 int glint_ray_intersect_sphere(const struct glint_scene_ray *ray,
                                const int32_t centre[3], int32_t radius,
                                struct glint_chord *chord);
@@ -93,9 +94,9 @@ int glint_ray_intersect_triangle(const struct glint_sheared *ray,
                                  const int32_t *const vertex[3],
                                  struct glint_spot_on *spot);
 
-/* Like glint_ray_intersect_triangle(), for a ray that hits the triangle or just
- * misses it; if it misses, SPOT is the nearest point of the triangle. Returns 0
- * if the triangle has no area. */
+/* Like glint_ray_intersect_triangle(), but never misses: if RAY passes beside
+ * the triangle, SPOT is the nearest point of the triangle. Used for rays that
+ * pass at most slightly beside it. Returns 0 if the triangle has no area. */
 int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
                                 const int32_t *const vertex[3],
                                 struct glint_spot_on *spot);

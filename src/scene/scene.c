@@ -66,7 +66,7 @@ static size_t count_vertices(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns whether N is one of the powers of two whose sum is ALL. */
+/* Returns whether N is a power of two that is set as a bit in ALL. */
 static int is_power_of_two_in_set(int n, int all)
 {
     return n > 0 && (n & all) == n && (n & (n - 1)) == 0;
@@ -172,8 +172,8 @@ static int needs_background_picture(const struct glint_scene_model *model)
     return any && h->background == GLINT_BACKGROUND_CAMERA;
 }
 
-/* Called twice: first with an arena that only counts bytes, when it returns
- * NULL, then to allocate. */
+/* Called twice. The first call has an arena that only counts bytes, and returns
+ * NULL; the second one allocates. */
 static struct glint_scene *allocate_scene(struct glint_arena *a,
                                           const struct glint_scene_config *cfg,
                                           const struct glint_scene_model *model)

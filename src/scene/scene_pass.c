@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * The drawing pass of a scene: shades each object that the samples of a pixel
- * see once, in the pixel's middle. Reflecting and transparent objects are
- * shaded per sample. Where objects cover a fraction of a pixel, the picture's
- * light shows through the rest. */
+ * The drawing pass of a scene. Each object that the samples of a pixel see is
+ * shaded only once, in the pixel's middle; reflecting and transparent objects
+ * are shaded at each sample. Where objects cover a fraction of a pixel, the
+ * picture's light shows through the rest. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 
 enum {
-    SUMMED = 4 /* number of samples per pixel to which the sums of light and
-                  cover are scaled */
+    /* sums of light and cover are scaled to this number of samples per pixel */
+    SUMMED = 4
 };
 
 static void *clear_triangle_cache_for_row(const void *self,
@@ -30,16 +30,18 @@ static int find_objects_in_tile(void *state, struct glint_box tile)
     return glint_scene_look(state, tile);
 }
 
-/* Returns whether object ID is shaded at each sample, as edges of what it
- * reflects and transmits are visible inside its outline. */
+/* Returns whether object ID is shaded at each sample. This is true for mirrors
+ * and transparent objects, inside which edges of other objects are visible. */
 static inline int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
 {
     return s->has_split && id != GLINT_NOTHING && s->placed[id >> 20].is_split;
 }
 
 enum {
+    /* special sample indices: the pixel's middle, and the middle of a block of
+     * 2 x 2 pixels */
     MIDDLE = -1,
-    QUAD = -2 /* special sample indices, see find_sample_surface() */
+    QUAD = -2
 };
 
 /* Returns the offset of sample K from its pixel's middle along AXIS, 1/256
@@ -49,9 +51,9 @@ static int32_t get_sample_offset(const struct glint_scene *s, int k, int axis)
     return k >= 0 ? glint_sample_offset_q8(s, k, axis) : k == QUAD ? 128 : 0;
 }
 
-/* Finds the surface of object ID at pixel (X, Y), without the fast path: on the
- * ray through the pixel's middle, or on the ray through sample K if the middle
- * misses the object or its samples are shaded one by one. */
+/* Finds the surface of object ID at pixel (X, Y), without the fast path. Tries
+ * the ray through the pixel's middle first, then the ray through sample K.
+ * Skips the middle if K is QUAD or the object is shaded at each sample. */
 static NEVER_INLINE int find_exact_surface(struct glint_scene_worker *w,
                                            uint32_t id, int x, int y, int k,
                                            struct glint_scene_ray *ray,
@@ -143,8 +145,8 @@ static inline int does_pixel_see_only_background(const uint32_t *id, int n)
     return all == GLINT_NOTHING;
 }
 
-/* Returns whether object ID is a catcher: it only receives shadows and hides no
- * lamps. */
+/* Returns whether object ID is a shadow catcher: it only receives shadows, and
+ * does not hide lamps. */
 static inline int is_shadow_catcher(const struct glint_scene *s, uint32_t id)
 {
     return s->has_catchers && id != GLINT_NOTHING &&
@@ -163,9 +165,8 @@ static int can_objects_share_shading(const struct glint_scene *s, uint32_t a,
             s->cfg.parts.meshes->joins(s, a, b));
 }
 
-/* Groups N samples that can share one shaded point. Sets TIMES to the number of
- * samples that each sample's shading serves: 0 for a sample that uses the
- * shading of another sample. */
+/* Groups N samples that can share one shaded point. Sets TIMES of one sample of
+ * each group to the size of the group, and TIMES of the others to 0. */
 static inline void group_samples_by_shading(const struct glint_scene *s,
                                             const uint32_t *id, int n,
                                             int times[GLINT_SCENE_SAMPLES])

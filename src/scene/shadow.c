@@ -20,8 +20,8 @@
 
 enum {
     CELLS = 1 << GLINT_SHADOW_CELLS_LOG2,
-    SLACK = 4,  /* tolerance for rounding, steps */
-    SORTED = 64 /* longest list of objects that is sorted by height */
+    SLACK = 4,  /* tolerance for rounding errors, steps */
+    SORTED = 64 /* max length of a cell's list that is sorted by height */
 };
 
 /* Returns the max offset, across the grid, of the rays to any point of the
@@ -81,8 +81,9 @@ static int find_caster_bounds(const struct glint_scene *s,
     return shadow->lo[0] <= shadow->hi[0];
 }
 
-/* Enlarges the grid so that it is valid for slanted rays that start at points
- * as far below the objects as the width of the objects' bounding box. */
+/* Enlarges the grid for slanted rays. It becomes valid for points down to a
+ * height below the objects. This height equals the longer side of the objects'
+ * bounding box across the rays. */
 static void enlarge_grid_for_slant(struct glint_shadow *shadow)
 {
     const int32_t side =
@@ -161,8 +162,8 @@ static int list_triangle_casters(const struct glint_scene *s,
     return (int)mesh->n_triangles;
 }
 
-/* Lists all objects that cast shadows; returns the number of entries that they
- * need in all cells' lists together. */
+/* Lists all objects that cast shadows. Returns the total number of entries in
+ * the lists of all cells. */
 static int64_t list_shadow_casters(const struct glint_scene *s,
                                    struct glint_shadow *shadow)
 {
@@ -322,8 +323,8 @@ static void rotate_vertices_to_sun(const struct glint_scene *s,
     }
 }
 
-/* Sets the directions of the sun's sample points, and the slopes of rays from
- * these to the grid's axis. */
+/* Sets the directions of the sun's sample points, and the slopes of the rays to
+ * these points relative to the grid's axis. */
 static void set_sample_points_of_sun(const struct glint_scene *s,
                                      const struct glint_lit *lit,
                                      struct glint_shadow *shadow)
@@ -430,8 +431,8 @@ struct glint_box glint_shadow_find_plane_box(const struct glint_scene *s,
                                          4);
 }
 
-/* Special cell indices. NONE: no object is above the point. BEYOND: the grid is
- * not valid at the point. */
+/* Special cell indices. NONE: the point's cell lists no object. BEYOND: the
+ * point is outside the range of heights for which the grid is valid. */
 enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
@@ -443,9 +444,9 @@ static int have_three_numbers_same_sign(const int32_t x[3])
 }
 
 /* Returns whether a ray from point AT, of slope LEAN, hits a triangle above the
- * point. Tests the signs of edge functions. The triangle is at most 2^28 long,
- * and AT lies in one of its cells, so it is as near; with the ray's offset all
- * coordinates are below 2^30. */
+ * point, by the signs of edge functions. A triangle is at most 2^28 long and
+ * lies in the cell of AT. So coordinates relative to AT, even with the ray's
+ * offset, are below 2^30. */
 static int ray_hits_triangle(const int32_t *const vertex[3],
                              const int32_t at[3], const int32_t lean_q30[2])
 {
@@ -607,8 +608,8 @@ static int is_lit_by_point_sun(const struct glint_scene *s,
            !is_ray_blocked_in_cell(s, shadow, below, p, place, surface);
 }
 
-/* Returns REACHED / (number of the sun's sample points), _q15. A sun has 1, 4
- * or 16 sample points. */
+/* Returns REACHED, a number of sample points of a sun's disc, as a fraction of
+ * all of them, _q15. A sun has 1, 4 or 16 sample points. */
 static int32_t compute_fraction_of_sun_points(const struct glint_shadow *shadow,
                                               int reached)
 {

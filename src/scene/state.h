@@ -60,23 +60,23 @@ struct glint_placed {
                                  the picture */
     int32_t z[2];             /* min and max z in camera coordinates, steps; not
                                  set for planes */
-    /* Sphere: depths, 2^30 nearest / z. flat_depth: the depth of all samples of
-     * the sphere, if one depth orders it correctly against all balls that it
-     * may overlap, else 0. far_depth: the depth of its far side. */
+    /* Sphere: depths, 2^30 nearest / z. far_depth: depth of the far side.
+     * flat_depth: a single depth for all samples, if it suffices to order the
+     * sphere against all balls that it may overlap, else 0. */
     int32_t flat_depth, far_depth;
     /* Sphere: (vector from the camera to its middle) / radius, with over_up
      * fraction bits; over_up is 0 if the quotient is out of range (quick.c). */
     int32_t over[3];
     int over_up;
-    /* Sphere: bit mask over lights; bit i is set if light i is a sun and no
-     * object can shadow the side of the sphere that faces it. */
+    /* Sphere: bit mask of lights. Bit i is set if light i is a sun that no
+     * object can hide from the points of the sphere that face it. */
     uint32_t open_to;
     /* Sphere: coefficients for the range of pixels in a row that it may cover
      * (quick.c). */
     struct {
         int is_there;
         int32_t m_q30[3], c_q30, a_q30;
-        uint32_t over; /* 2^61 / (-a 2^up) */
+        uint32_t over; /* 2^61 / (-a_q30 2^up) */
         int up;
     } span;
 };
@@ -88,16 +88,17 @@ struct glint_quick_triangle {
     uint32_t id;
     int is_there, is_inside, is_smooth;
     const struct glint_scene_material *material;
-    /* The area function of a corner is twice the area of the triangle formed by
-     * position (x, y) and the edge opposite the corner, q16: AT + ACROSS x +
-     * DOWN y, with x and y relative to the first corner. The sum of all three,
-     * times 2^up, is 2^63 / one_over. */
+    /* Linear functions of the position (x, y), relative to the first corner,
+     * q16: AT + ACROSS x + DOWN y. The function of a corner is twice the area
+     * of the triangle formed by (x, y) and the opposite edge, so these
+     * functions are barycentric weights. Their sum is 2^63 / (one_over
+     * 2^up). */
     int32_t x_q8, y_q8, across[3], down[3];
     int64_t at[3];
     int up;
     uint32_t one_over;
-    int32_t nearer_q30[3]; /* min depth of the corners divided by the depth of
-                              each corner */
+    /* for each corner: min depth of all corners / depth of the corner */
+    int32_t nearer_q30[3];
     /* The first corner's position and normal, and the differences of the second
      * and third corner from them. */
     int32_t place[3][3], normal_q29[3][3];
@@ -112,9 +113,9 @@ struct glint_shadow_point {
     int32_t toward_q30[3], lean_q30[2];
 };
 
-/* The footprint of an object in a sun's shadow grid: bounds of the region that
- * it can shadow, across the rays, in 1/256 of a cell, rounded down; and the
- * object's top, max h. */
+/* The footprint of an object in a sun's shadow grid: the bounds, across the
+ * rays, of the region that the object can shadow, in 1/256 of a cell, rounded
+ * down; and the object's top, max h. */
 struct glint_shadow_thing {
     uint32_t id; /* object index << 20 | triangle index */
     int16_t lo[2], hi[2];
@@ -133,8 +134,8 @@ struct glint_shadow {
     int32_t lo[3], hi[3];         /* bounds of the objects in the grid, in
                                      coordinates u, v, h */
     int32_t lowest; /* min h of points for which the grid is valid */
-    /* cells per step along u and v; the stored value is at most 2^30, a
-     * quarter of a cell */
+    /* cells per step along u and v; at most a quarter of a cell, so the stored
+     * value is at most 2^30 */
     int32_t cells_q32[2];
     int n_points;
     int32_t lean_q30; /* max slope of the rays from any sample point */
@@ -146,8 +147,9 @@ struct glint_shadow {
     struct glint_shadow_thing *thing; /* [n_things]: objects that cast
                                          shadows */
     int n_things;
-    int max_refs; /* max number of entries in the lists of all cells; at least
-                     the number of objects */
+    /* memory for the lists of all cells, entries; at least the number of
+     * objects */
+    int max_refs;
 };
 
 /* A light source with its position in this frame. */
@@ -258,7 +260,7 @@ struct glint_scene {
     int has_triangles;      /* 1: bins has the triangles of this frame */
     int n_planes;           /* number of planes that cast shadows */
     uint32_t plane;         /* index of the last plane that casts shadows */
-    /* 1: some objects have is_split set; is_catcher set. */
+    /* 1: there are objects with is_split set, and with is_catcher set */
     int has_split, has_catchers;
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
@@ -315,8 +317,8 @@ const int8_t (*glint_scene_samples(int n))[2];
  * the positions of all objects are set. */
 void glint_scene_set_single_depths_of_balls(struct glint_scene *scene);
 
-/* Reduces the box of each catcher to pixels that may have shadows. Called after
- * the shadow grids are built. */
+/* Reduces the box of each shadow catcher to pixels that may have shadows.
+ * Called after the shadow grids are built. */
 void glint_scene_shrink_catcher_boxes(struct glint_scene *scene);
 
 /* Narrows the range X0 .. X1 - 1 to the pixels of row Y that ball P may cover;
@@ -419,8 +421,9 @@ int32_t glint_shadow_compute_lit_fraction(
     const struct glint_scene *scene, const struct glint_shadow *shadow,
     const struct glint_met_surface *surface, const int32_t place[3]);
 
-/* Sets AT to the start of secondary rays from SURFACE: its position, for a mesh
- * moved by GLINT_SCENE_LIFT along the face's normal. */
+/* Sets AT to the start of secondary rays from SURFACE. For a mesh this is the
+ * surface point moved by GLINT_SCENE_LIFT along the face's normal, else the
+ * point itself. */
 static inline void
 glint_scene_set_ray_start(const struct glint_scene *scene,
                           const struct glint_met_surface *surface,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Samples textures: bilinear in linear light, blended between the two mip
- * levels whose texels are about as large as the longer side of a pixel on the
- * surface. */
+ * Samples textures: bilinearly within a mip level, in linear light, and blended
+ * between the two levels whose texels are closest in size to the longer side of
+ * a pixel on the surface. */
 #include "base/log2.h"
 #include "base/real.h"
 #include "scene/parts.h"
@@ -16,8 +16,8 @@ static void set_texture_coordinates_of_ball(const struct glint_placed *p,
                                             struct glint_met_surface *s)
 {
     glint_compute_ball_uv(p, s, s->uv_q16);
-    /* (area in uv space) / (area on the ball in steps^2): 1 / (4 pi
-     * radius^2) */
+    /* log2 of the area in uv space, 1, divided by the area of the ball, 4 pi
+     * radius^2 steps^2 */
     s->uv_log2_q16 =
         -Q_CONST(3.6514961, 16) - 2 * q_log2_q16((uint64_t)p->radius);
 }
@@ -43,7 +43,7 @@ static void set_texture_coordinates_of_plane(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------- texels */
 
-/* Returns the mip level, _q16, log2 of the longer side of a pixel on the
+/* Returns the mip level, _q16: log2 of the longer side of a pixel on the
  * surface, measured in texels. */
 static int32_t compute_mip_level(const struct glint_scene *scene,
                                  const struct glint_scene_ray *ray,

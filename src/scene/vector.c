@@ -14,10 +14,10 @@ const uint8_t glint_root_start_q7[96] = {
     134, 134, 133, 132, 132, 131, 131, 130, 130, 129, 129, 128};
 /* clang-format on */
 
-/* Returns 2^31 / sqrt(S), for S = S_Q64 / 2^64, 1/4 <= S < 1: 2^31 .. 2^32 - 1,
- * with a relative error of at most 2^-31. The table has an error of 2^-6.9;
- * each of three Newton steps squares it (times 3/2): 2^-13.2, 2^-25.9, then the
- * last digit. */
+/* Returns 2^31 / sqrt(S), for S = S_Q64 / 2^64, 1/4 <= S < 1. The result is
+ * 2^31 .. 2^32 - 1, with a relative error of at most 2^-31. The table has an
+ * error of 2^-6.9. Each of three Newton steps squares the error and multiplies
+ * it by 3/2: it falls to 2^-13.2, 2^-25.9, and then to rounding errors. */
 static uint32_t compute_inverse_root_q31(uint64_t s_q64)
 {
     const uint32_t hi = (uint32_t)(s_q64 >> 32), lo = (uint32_t)s_q64;
@@ -25,8 +25,8 @@ static uint32_t compute_inverse_root_q31(uint64_t s_q64)
         (uint64_t)glint_look_up_inverse_root((uint32_t)(s_q64 >> 57)) << 24;
 
     for (int i = 0; i < 3; i++) {
-        /* sqrt(S) = S r with the current approximation r, _q32, at most 1.01;
-         * then one Newton step, r (3 - S r^2) / 2. */
+        /* r is the current approximation of 1 / sqrt(S), so S r approximates
+         * sqrt(S), _q32, at most 1.01. The Newton step is r (3 - S r^2) / 2. */
         const uint64_t root_q32 = (hi * r_q31 + (lo * r_q31 >> 32)) >> 31;
         const int64_t rest_q62 =
             (INT64_C(1) << 62) - (int64_t)(root_q32 * r_q31 >> 1);

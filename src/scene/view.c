@@ -5,9 +5,9 @@
 
 enum { NEAR_BITS = 22, FAR_BITS = 16 };
 
-/* Returns the tangent of the angle of 1/256 pixel, _q56, if TAN is the tangent
- * of the angle of SIDE / 2 pixels. TAN is at most 2^6, so the result times 128
- * SIDE is at most 2^62. */
+/* Returns the tangent of 1/256 pixel, _q56. TAN is the tangent of half the
+ * picture, SIDE / 2 pixels. It is at most 2^6, so the result times 128 SIDE is
+ * at most 2^62. */
 static int64_t compute_pixel_tangent(int32_t tan_q24, int side)
 {
     return q_divide((int64_t)tan_q24 << 25, side > 1 ? side : 1);
@@ -91,9 +91,9 @@ static int32_t shift_right_rounded(int64_t x, int down)
                                : x * (INT64_C(1) << (down < -62 ? 0 : -down)));
 }
 
-/* Returns X * focal length / Z; ONE_OVER must be 2^63 / (Z 2^UP). Sets *FITS to
- * 0 if the result is too large. X is scaled up to 2^30 first, so that small
- * quotients have 30 bits, too. */
+/* Returns X * focal length / Z, where ONE_OVER is 2^63 / (Z 2^UP). Sets *FITS
+ * to 0 if the result is too large. X is first scaled up to 2^30, so that small
+ * quotients are as precise as large ones. */
 static int32_t project_to_picture_q8(int32_t x, struct glint_real focal_q8,
                                      uint32_t one_over, int up, int *fits)
 {
@@ -174,9 +174,9 @@ glint_view_find_box_of_points(const struct glint_scene_view *view,
 
 /* ------------------------------------------------------------------ depths */
 
-/* 1 / z = (n . r) / (n . v) for the ray r = (x step, -y step, 1), the normal n
- * and a point v of the plane. The coefficients have as many fraction bits as
- * keep each term below 2^60. */
+/* 1 / z = (n . r) / (n . v). r = (x step, -y step, 1) is the ray, n the normal
+ * and v a point of the plane. The coefficients have the max number of fraction
+ * bits with which each term stays below 2^60. */
 int glint_view_set_plane_depth(const struct glint_scene_view *view,
                                const int32_t v[3], const int32_t normal_q30[3],
                                int32_t nearest, struct glint_depth *depth)

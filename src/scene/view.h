@@ -21,8 +21,8 @@ struct glint_scene_view {
     /* tangents of the angles of 1/256 pixel, horizontally and vertically */
     int64_t step_q56[2];
     int64_t per_tan_q8; /* 1/256 pixels per unit of tangent, horizontally */
-    int wide;           /* number of bits by which the tangent at the picture's
-                           edge exceeds 2, or 0 */
+    /* the tangent at the picture's edge is below 2^(1 + wide) */
+    int wide;
     struct glint_real focal_q8[2];
 };
 

@@ -3,10 +3,11 @@
  * Finds the visible object at each sample of a tile: spheres by a ray through
  * each sample, planes by 1 / z, triangles by the module for meshes.
  *
- * If a sphere's rim is farther from a pixel's middle than the pixel's samples
- * are, all samples get the sphere's depth at the middle. Spheres are drawn
- * last, so a sphere that no other ball can partly hide needs no exact depth at
- * samples where all objects drawn before are behind the sphere's far side. */
+ * Two shortcuts save rays at spheres. In a pixel completely inside the outline
+ * of a sphere, all samples get the sphere's depth at the pixel's middle. A
+ * sphere that overlaps no other sphere gets a single depth where all objects
+ * drawn before are behind its far side. This suffices, as spheres are drawn
+ * last. */
 #include "scene/visible.h"
 #include "scene/parts.h"
 
@@ -104,8 +105,8 @@ static int is_pixel_inside_ball(const struct glint_placed *placed,
            v3_dot(look->chord.middle, look->chord.middle) <= within * within;
 }
 
-/* Draws the ball in a pixel; returns whether the rays through all samples, with
- * a margin, hit the ball. */
+/* Draws the ball in a pixel. Returns whether the rays through all samples hit
+ * the ball, with a margin. */
 static int draw_ball_pixel(struct glint_scene_worker *w,
                            const struct glint_placed *placed, uint32_t id,
                            int x, int y)
@@ -140,9 +141,9 @@ static int draw_ball_pixel(struct glint_scene_worker *w,
     return 0;
 }
 
-/* Draws a ball in row Y. Pixels between two pixels inside the ball are inside,
- * too; there, if one depth suffices for the ball, rays are traced only where
- * other objects may hide the ball. */
+/* Draws a ball in row Y. All pixels between two pixels inside the ball are
+ * inside, too. If one depth suffices for the ball, rays are traced in these
+ * pixels only where other objects may hide it. */
 static void draw_ball_row(struct glint_scene_worker *w,
                           const struct glint_placed *placed, uint32_t id,
                           struct glint_box b, int y)
@@ -223,8 +224,8 @@ enum {
                           compared */
 };
 
-/* Returns whether ball B overlaps ball A both in the picture and in depth, so
- * that comparing one depth per ball may order them wrongly. */
+/* Returns whether ball B overlaps ball A in the picture and in depth. A single
+ * depth per ball may then order them wrongly. */
 static int can_partly_occlude(const struct glint_placed *a,
                               const struct glint_placed *b)
 {

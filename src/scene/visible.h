@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Writes the visible object to samples of a tile. A sample stores the nearest
- * object; of two equally near objects the one of lower index, so that the order
- * of drawing does not change the result. */
+ * object. Of two equally near objects it stores that of lower index, so that
+ * the order of drawing does not change the result. */
 #ifndef GLINT_SCENE_VISIBLE_H
 #define GLINT_SCENE_VISIBLE_H
 
@@ -64,10 +64,10 @@ void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
                              int32_t y_q8, struct glint_scene_ray *ray,
                              int32_t seen_q30[3]);
 
-/* Sets COSINE_Q30 to the cosine between RAY and the normal of ball P, and
+/* Sets COSINE_Q30 to the cosine between RAY and the normal of ball P. Sets
  * ACROSS_Q30 to the shortest vector from the ball's middle to the ray, in
- * radii, rotated by a right angle. P->over_up must not be 0. Returns 0 if the
- * ray misses P or passes near its rim. */
+ * radii, rotated by a right angle about the ray. P->over_up must not be 0.
+ * Returns 0 if the ray misses P or passes near its rim. */
 int glint_quick_intersect_ball(const struct glint_placed *p,
                                const struct glint_scene_ray *ray,
                                int32_t across_q30[3], int32_t *cosine_q30);

@@ -17,8 +17,9 @@ enum {
                        medium */
     POINTS = 16,    /* number of sample points on a light's disc; one shadow ray
                        is traced to each */
-    /* Costs, as numbers of ray-object tests: LIT_TESTS: light of one source at
-     * one point; BALL_TESTS: visibility of a ball in one pixel of its box. */
+    /* Costs, in units of a ray-object test. LIT_TESTS: cost of the light of one
+     * source at one point. BALL_TESTS: cost of the visibility of a ball in one
+     * pixel of its box. */
     LIT_TESTS = 4,
     BALL_TESTS = 3
 };
@@ -63,9 +64,9 @@ static int is_translucent(const struct glint_scene *s,
                                       .material];
 }
 
-/* Counts the work of lighting a point of SURFACE: all lights, and the
- * environment if it is metal. A translucent medium without a coat only reads
- * its map. */
+/* Counts the work of lighting a point of SURFACE: tests and shadow rays of all
+ * light sources, and lookups of the environment if the material is metal. A
+ * translucent medium without a coat only reads its light map. */
 static void
 count_lighting_work_of_point(const struct glint_scene *s,
                              const struct glint_met_surface *surface,
@@ -192,7 +193,8 @@ static int can_pixel_quad_share_shading(const struct glint_scene_worker *w,
     return 1;
 }
 
-/* Counts the work for the objects that the samples of pixel (X, Y) see. */
+/* Counts the work of shading pixel (X, Y), for each object that its samples
+ * see. */
 static void count_work_of_pixel(const struct account *a,
                                 const struct glint_scene_worker *w, int x,
                                 int y)
@@ -382,14 +384,15 @@ static int add_ray_tests_of_pixel(struct glint_scene *s, int x, int y,
     if (!s->placed[surface.object].is_catcher)
         count_secondary_rays(s, &ray, &surface, &part);
     s->tests = NULL;
-    /* Samples of mirrors and glass are shaded one by one. */
+    /* Mirrors and glass are shaded at each sample, so the tests of the middle
+     * are multiplied. */
     if (s->placed[surface.object].is_split)
         *tests += (*tests - before) * (s->cfg.edge_samples - 1);
     return 1;
 }
 
-/* Returns an upper bound of the number of texels in all maps of translucent
- * objects. A ball's map is twice as wide as high. */
+/* Returns an upper bound of the number of texels in the light maps of all
+ * translucent objects. The map of a ball is twice as wide as high. */
 static int64_t compute_max_map_texels(const struct glint_scene_model *m)
 {
     int64_t n = 0;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Finds highlights on objects. Drawing sums light above white in squares of 8 x
- * 8 pixels; connected squares with light form one highlight.
+ * Finds highlights on objects. While objects are drawn, their light above white
+ * is summed in squares of 8 x 8 pixels. Connected squares with such light form
+ * one highlight.
  *
- * The number of workers does not change results, as a square belongs to one row
- * of tiles, drawn by one worker, and all sums are integers. */
+ * The number of workers does not change results: a square belongs to one row of
+ * tiles, which one worker draws, and all sums are integers. */
 #include "glint/scene/highlights.h"
 
 #include "base/divide.h"
@@ -14,17 +15,17 @@ enum {
     ONE_Q15 = GLINT_SCENE_ONE_Q15,
     SIDE_LOG2 = 3,
     SIDE_Q8 = 256 << SIDE_LOG2,
-    LEAST_Q19 = 8,   /* min luminance of a highlight that is reported; 1 in
-                        _q16 */
-    KEPT = 64,       /* max number of highlights in the list, before near ones
-                        are merged */
-    WEIGHT_LOG2 = 26 /* log2 of the upper bound of the sum of all cell
-                        weights */
+    /* min flux of a reported highlight: 1 unit of _q16 */
+    LEAST_Q19 = 8,
+    KEPT = 64, /* max number of highlights in the list, before near ones
+                  are merged */
+    /* log2 of the upper bound of the sum of a highlight's cell weights */
+    WEIGHT_LOG2 = 26
 };
 
-/* The sums over the pixels of one square. A pixel has weight 16, divided among
- * its samples. Light is below 2^30, so sums over 64 pixels are below 2^40, and
- * moments below 2^62. */
+/* Sums over the pixels of one square. A pixel has weight 16, divided among its
+ * samples. Light is below 2^30, so sums of light over 64 pixels are below 2^40,
+ * and sums of light times position below 2^62. */
 struct glint_highlight_cell {
     int64_t flux_q19;  /* sum of luminance above white */
     int64_t at_q27[2]; /* luminance times position in the square, summed over

@@ -6,10 +6,11 @@
  * the box that encloses the motion of all frames. They are projected to the
  * picture and composited over the pixels of a tile.
  *
- * A line has a width in space. Its cover of a pixel, in 1/256, is the overlap
- * of the pixel with that width, at the distance of the line's point that the
- * pixel's middle sees. Widths are at least 3/4 of a pixel. The cover of shells
- * has an error of 2^-11 inside their rims, which are found by exact rays. */
+ * A line has a width in space, which is projected to pixels at the point of the
+ * line nearest to the pixel's middle; it is at least 3/4 of a pixel. The cover
+ * of a pixel, in 1/256, is its overlap with a strip of this width. The rims of
+ * shells are found by exact rays. Inside the rim, the cover of a shell has an
+ * error of 2^-11. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/motion/play.h"
@@ -62,9 +63,9 @@ static int clip_line_to_plane(const struct side *side, int32_t a[3],
 }
 
 /* Sets SIDE[2] to the clipping planes at both edges of the picture along axis
- * K, moved outwards by the max half width of a line plus two pixels.
- * Coefficients are below 2^72 and are truncated to 30 bits, as coordinates are
- * below 2^30. */
+ * K, moved outwards by the max half width of a line plus two pixels. Their
+ * coefficients are below 2^72. They are truncated to 30 bits, like coordinates,
+ * so that products fit into 64 bits. */
 static void set_clip_planes(const struct glint_scene_view *v, int k,
                             struct side side[2])
 {
@@ -73,8 +74,8 @@ static void set_clip_planes(const struct glint_scene_view *v, int k,
     const int64_t step_q56 = v->step_q56[k];
     const int down = q_larger(0, bit_length(q_magnitude(step_q56)) +
                                      bit_length(q_magnitude(far_q8)) - 62);
-    const int64_t tan = (step_q56 >> down) * far_q8; /* has 56 - DOWN fraction
-                                                        bits */
+    /* with 56 - DOWN fraction bits */
+    const int64_t tan = (step_q56 >> down) * far_q8;
     const int more = q_larger(26 - down, bit_length(q_magnitude(tan)) - 30);
 
     for (int i = 0; i < 2; i++) {
@@ -141,7 +142,8 @@ static void append_line_overlay(struct glint_scene *s, const int32_t a[3],
                                 enum glint_scene_kind kind)
 {
     struct glint_motion_layer *l = append_overlay(s->motion);
-    const int32_t near = s->nearest / 2 + 1; /* depths are below 2^31 */
+    /* so that depths, 2^30 nearest / z, are below 2^31 */
+    const int32_t near = s->nearest / 2 + 1;
     int32_t v[2][3];
     struct glint_corner end[2];
     int64_t along[3];
@@ -231,8 +233,8 @@ static void append_lines_from_food_to_sensors(struct glint_scene *s, uint32_t f)
     }
 }
 
-/* Returns the min cosine between ball P's normal and the ray of a pixel's
- * middle at which all samples of the pixel hit P. */
+/* Returns the cosine between the normal of ball P and a ray through a pixel's
+ * middle above which the rays through all samples of the pixel hit P. */
 static int32_t compute_min_cosine_inside_rim_q30(const struct glint_placed *p)
 {
     const int64_t within = (int64_t)p->radius - p->margin;
@@ -479,9 +481,9 @@ static int find_ball_entry(const struct glint_scene *s,
     return 1;
 }
 
-/* Returns the opacity of a shell where COSINE_Q15 is the cosine between normal
- * and ray: 1 minus the material's transmission at the rim, half of that in the
- * middle. The result is q31, as both q15 factors are doubled. */
+/* Returns the opacity of a shell at a point where COSINE_Q15 is the cosine
+ * between normal and ray: (1 - transmission) (1 - cosine / 2). So it is highest
+ * at the rim and half of that in the middle. */
 static int64_t compute_shell_cover_q31(const struct glint_scene *s,
                                        const struct glint_motion_layer *l,
                                        int32_t cosine_q15)
@@ -492,8 +494,9 @@ static int64_t compute_shell_cover_q31(const struct glint_scene *s,
     return (int64_t)share_q15 * (2 * GLINT_SCENE_ONE_Q15 - cosine_q15);
 }
 
-/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. For
- * pixels near the shell's rim, or if the camera is inside the shell. */
+/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. Used near
+ * the shell's rim, or if the camera is inside the shell, where the fast path
+ * does not apply. */
 static NEVER_INLINE int
 compute_shell_rim_cover_q8(const struct glint_scene_worker *w,
                            const struct glint_motion_layer *l, int x, int y)
@@ -553,7 +556,8 @@ static int is_pixel_unoccluded(const struct glint_scene_worker *w, int x, int y,
     return !nearer;
 }
 
-/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. */
+/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. Uses the
+ * fast path (quick.h) for pixels inside the rim. */
 static int compute_shell_cover_q8(const struct glint_scene_worker *w,
                                   const struct glint_motion_layer *l, int x,
                                   int y)
@@ -570,9 +574,8 @@ static int compute_shell_cover_q8(const struct glint_scene_worker *w,
     if (!glint_quick_intersect_ball(l->ball, &ray, across_q30, &cosine_q30) ||
         cosine_q30 < l->inner_q30)
         return compute_shell_rim_cover_q8(w, l, x, y);
-    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) { /* compared with the depth
-                                                         of the shell's far
-                                                         side */
+    /* l->depth[0] is the depth of the shell's far side */
+    if (!is_pixel_unoccluded(w, x, y, l->depth[0])) {
         t = glint_quick_get_ball_distance(l->ball, &ray, cosine_q30);
         all_q8 = compute_unoccluded_fraction_q8(
             w, x, y, compute_depth_at_distance(s, t, seen_q30));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a recorded motion block by block. A file in memory is checked
- * completely when it is opened. Of other files the records are checked each
- * time that they are read. */
+ * Reads a recorded motion block by block. A motion in memory is checked
+ * completely when it is opened. If blocks are read from a file on demand, each
+ * record is checked whenever it is read. */
 #include "glint/scene/motion.h"
 
 #include "base/blob.h"
@@ -37,8 +37,8 @@ uint32_t glint_motion_sum(const uint8_t *at, uint32_t block)
                                     GLINT_MOTION_BLOCK - 4 - skipped);
 }
 
-/* Sets AT to the address of block BLOCK. Reads the block from the file unless
- * it is in memory already. */
+/* Sets AT to the address of block BLOCK. Reads the block unless the motion is
+ * in memory or the block was read last. */
 static enum glint_status get_file_block(struct glint_motion *m, uint32_t block,
                                         const uint8_t **at)
 {
@@ -62,8 +62,8 @@ static enum glint_status get_file_block(struct glint_motion *m, uint32_t block,
     return GLINT_OK;
 }
 
-/* Sets RECORD to the address of record I, of BYTES bytes, in the table whose
- * first block is BLOCK. */
+/* Sets RECORD to the address of record I, BYTES long, in the table that starts
+ * in block BLOCK. */
 static enum glint_status read_table_record(struct glint_motion *m,
                                            uint32_t block, uint32_t i,
                                            size_t bytes, const void **record)

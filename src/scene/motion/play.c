@@ -57,7 +57,8 @@ glint_motion_allocate(const struct glint_scene *scene,
     return m;
 }
 
-/* Returns log2 of (the motion's unit of length / the scene's step). */
+/* Returns log2 of the ratio of the motion's unit of length to the scene's
+ * step. */
 static int compute_length_scale_log2(const struct glint_scene *s)
 {
     return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
@@ -178,7 +179,8 @@ static int is_128_bit_number_less(struct wide a, struct wide b)
     return a.high != b.high ? a.high < b.high : a.low < b.low;
 }
 
-/* The axis has length 1, so the cosine is dot / |d|; squares are compared. */
+/* dot / |D| is the cosine between D and the axis, which has length 1. Its
+ * square is compared with that of COS_HALF. */
 int glint_motion_is_in_view_cone(const int32_t axis_q30[3],
                                  int32_t cos_half_q30, const int32_t d[3])
 {
@@ -186,7 +188,7 @@ int glint_motion_is_in_view_cone(const int32_t axis_q30[3],
     const uint64_t size = q_magnitude(dot_q30); /* below 2^61 */
     const uint64_t cosine = q_magnitude(cos_half_q30);
     const struct wide seen = multiply_to_128_bits(size, size);
-    /* 2^60 times 3 2^58 */
+    /* at most 2^60 * 3 * 2^58 */
     const struct wide least =
         multiply_to_128_bits(cosine * cosine, (uint64_t)v3_dot(d, d));
 

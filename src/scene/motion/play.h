@@ -22,7 +22,7 @@ struct glint_motion_layer {
                   sorted by it */
     uint32_t material;
     const struct glint_placed *ball; /* the ball of a shell; NULL for a line */
-    /* Shell: min cosine between normal and ray at which all samples of a pixel
+    /* Shell: cosine between normal and ray above which all samples of a pixel
      * see the shell. */
     int32_t inner_q30;
     int32_t x_q8, y_q8;   /* start of the line, 1/256 pixel from the picture's

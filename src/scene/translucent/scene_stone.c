@@ -90,9 +90,10 @@ static void mark_all_blocks_visible(struct glint_stone_skin *skin)
 /* --------------------------------------------------------------------- balls
  */
 
-/* Max angle between the texel in the middle of a quarter of a block and any
- * point of that quarter: 12.6 degrees if a ball's map is 256 texels wide, 25.2
- * degrees if it is 128 wide, plus a texel. */
+/* Max angle between a point of a block and the nearest of four tested texels,
+ * which lie in the middles of the block's quarters. It is 12.6 degrees if a
+ * ball's map is 256 texels wide, 25.2 degrees if it is 128 wide, plus a
+ * texel. */
 struct reach {
     int32_t cosine_q30, sine_q30;
 };
@@ -123,10 +124,10 @@ static int does_texel_face_camera(const struct glint_placed *p,
     return v3_cosine_q30(turned_q30, toward_q30) > limit_q30;
 }
 
-/* Marks the blocks that have points that face the camera: n.d > R / D, where n
- * is the point's normal, R the ball's radius, d the unit vector from its centre
- * to the camera and D the camera's distance. Marks all blocks if the camera is
- * inside the ball. */
+/* Marks the blocks with points that face the camera. A point faces the camera
+ * if n.d > R / D. n is its normal, R the ball's radius, d the unit vector from
+ * the ball's centre to the camera and D the distance between them. Marks all
+ * blocks if the camera is inside the ball. */
 static void mark_visible_ball_blocks(const struct glint_scene *s,
                                      const struct glint_placed *p,
                                      struct glint_stone_skin *skin)
@@ -237,8 +238,9 @@ static void mark_visible_mesh_blocks(const struct glint_scene *s,
     }
 }
 
-/* Marks the blocks of SKIN that may be visible. A block that is marked but not
- * visible costs time; a visible block that is not marked would be black. */
+/* Marks the blocks of SKIN that may be visible. A marked block that is not
+ * visible only costs time, but an unmarked block that is visible would be
+ * black. */
 static void mark_visible_blocks(const struct glint_scene *scene,
                                 struct glint_stone_skin *skin)
 {
@@ -276,8 +278,8 @@ static void add_environment_light(const struct glint_scene *s,
                                 rgb_q15);
 }
 
-/* Returns an upper bound of the environment's irradiance: 9/8 of the max over
- * normals on the faces of a cube, as irradiance between these normals is at
+/* Returns an upper bound of the environment's irradiance. It is 9/8 of the max
+ * over normals on the faces of a cube, as irradiance at other normals is at
  * most 1/8 larger. */
 static int32_t compute_max_environment_light(const struct glint_scene *scene)
 {
@@ -304,9 +306,9 @@ static int32_t compute_max_environment_light(const struct glint_scene *scene)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the max light that source LIT can cast on a white surface of object
- * P. For a lamp: the light at the nearest point of P, but not nearer than 1/16
- * of P's size. */
+/* Returns an upper bound of the light that source LIT casts on a white surface
+ * of object P. For a lamp it is the light at the nearest point of P, or at 1/16
+ * of P's size if that is farther. */
 static int32_t compute_max_light_of_source(const struct glint_scene *s,
                                            const struct glint_lit *lit,
                                            const struct glint_placed *p)
@@ -507,8 +509,8 @@ static const void *get_table_in_scene_file(const struct glint_scene *s,
     return (const unsigned char *)s->model.header + at;
 }
 
-/* Returns the header of the translucent medium of map (skin) I; the scene's
- * checks included the size of its map. */
+/* Returns the header of the translucent medium of map (skin) I. The scene's
+ * checks have verified that the medium has the size that the map needs. */
 static const struct glint_translucent_header *
 get_medium_header(const struct glint_scene *s, uint32_t i)
 {
@@ -679,8 +681,9 @@ static void request_block_light(struct glint_stone_skin *skin, int x, int y)
 }
 
 /* Lists the blocks for which the entering light must be computed: visible
- * blocks whose map values are not computed, and all blocks within the kernel's
- * size of these. Returns the number of these visible blocks. */
+ * blocks without map values, and blocks so near them that the kernel spreads
+ * their light there. Returns the number of visible blocks without map
+ * values. */
 static int list_blocks_to_light(struct glint_stone_skin *skin)
 {
     const int radius = (int)skin->stone.header->kernel / 2;
@@ -716,8 +719,8 @@ static void compute_light_entering_block_job(void *ctx, int job, int worker)
     compute_light_entering_block(u->scene, u->skin, u->skin->list[job]);
 }
 
-/* Computes the map values of one colour channel in one column of blocks, for
- * each run of adjacent blocks. */
+/* Computes the map values of one colour channel in one column of blocks.
+ * Adjacent blocks are computed in one call. */
 static void spread_light_in_block_column_job(void *ctx, int job, int worker)
 {
     const struct update *u = ctx;

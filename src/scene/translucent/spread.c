@@ -31,8 +31,7 @@ glint_spread_carve(struct glint_arena *arena,
 
 /* ------------------------------------------------------------------- taps */
 
-/* Returns tap I of TAP[N], counted backwards from the last; 0 if I is out of
- * range. */
+/* Returns tap I, counted from the end of TAP[N]; 0 if I is out of range. */
 static int32_t read_reversed_tap(const int16_t *tap, int n, int i)
 {
     return i < 0 || i >= n ? 0 : tap[n - 1 - i];
@@ -62,14 +61,14 @@ static void store_taps_as_pairs(const struct glint_translucent *t, uint32_t i,
 
 /* ------------------------------------------------------------------- codes */
 
-/* Codes of a row of a table, from one texel to the right. */
+/* The codes in a row of a table, from a texel to the row's end. */
 struct codes {
     const uint8_t *at;
     int is_signed;
     int bits; /* a code stands for the factor code / 2^bits */
 };
 
-/* Returns the codes in row Y of table TABLE, from texel X to the right. */
+/* Returns the codes in row Y of table TABLE, from texel X on. */
 static struct codes find_codes_in_table_row(const struct glint_translucent *t,
                                             size_t table, int x, int y)
 {
@@ -217,7 +216,8 @@ static void add_convolved_columns(const struct glint_spread *s,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Returns whether any texel of the strip uses plane P of the kernel. */
+/* Returns whether plane P of the kernel has a nonzero weight at any texel of
+ * the strip. */
 static int does_strip_use_kernel_plane(const struct glint_spread *s, uint32_t p,
                                        int x0, int y0, int y1)
 {

@@ -33,13 +33,13 @@ struct glint_spread {
 
 enum { GLINT_SPREAD_PAIRS = (GLINT_TRANSLUCENT_MOST_KERNEL + 1) / 2 };
 
-/* Filter taps of one separable term (rank) of a kernel plane: stored as pairs
- * from the last tap to the first, padded with 0. */
+/* Filter taps of one separable term (rank) of a kernel plane. Taps are stored
+ * in reverse order, as pairs of neighbours, padded with 0. */
 struct glint_spread_taps {
     int n, shift;
     int32_t row[GLINT_SPREAD_PAIRS];
-    /* Taps for columns that begin with the first row (even) or the second row
-     * (odd) of a pair of rows. */
+    /* Column taps for sums that begin with the first row (even) or the second
+     * row (odd) of a pair of rows. */
     int32_t even[GLINT_SPREAD_PAIRS], odd[GLINT_SPREAD_PAIRS];
 };
 

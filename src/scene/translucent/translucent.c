@@ -11,7 +11,7 @@
 /* The program reads the file in place: this struct is the file's layout. */
 STATIC_ASSERT(sizeof(struct glint_translucent_header) == 172);
 
-/* The header begins like the header of every baked file. */
+/* checks that the members common to all baked files have their common places */
 GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };

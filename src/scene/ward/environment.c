@@ -15,7 +15,7 @@ STATIC_ASSERT(sizeof(struct glint_environment_header) == 124);
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 
-/* The header begins like the header of every baked file. */
+/* checks that the members common to all baked files have their common places */
 GLINT_BLOB_HEADER(struct glint_environment_header, variant);
 
 static const char outside[] =

@@ -52,9 +52,9 @@ void glint_environment_irradiance(const struct glint_environment *environment,
     convert_texel_to_light(&found, rgb);
 }
 
-/* Returns the weight of the next mip level, so that the blend of both levels
- * has the variance of a level OVER_Q8 / 256 levels above the first. The next
- * level has four times the first one's variance. */
+/* Returns the weight of the next mip level in the blend of two levels. The
+ * blend has the variance of a level OVER_Q8 / 256 levels above the first one,
+ * as variance grows four times per level. */
 static uint32_t compute_level_weight(int32_t over_q8)
 {
     return (uint32_t)(q_exp2_q16(over_q8 * 512) - 65536) * 85 >> 16;

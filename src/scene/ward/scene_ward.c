@@ -64,9 +64,9 @@ static int32_t compute_level_of_variance_q8(const struct glint_environment *e,
     return (int32_t)q_shift(octaves_q16, 9);
 }
 
-/* Adds the disc of LIGHT to the background, enlarged to at least the size of a
- * pixel. Its edge is blurred: light fades out from half a pixel inside the rim
- * to half a pixel outside. */
+/* Adds the disc of LIGHT to the background. The disc is at least as large as a
+ * pixel, and its edge is blurred: light fades out from half a pixel inside the
+ * rim to half a pixel outside. */
 static void add_light_disc(const struct glint_ward_state *w,
                            const struct glint_environment_light *light,
                            const int32_t toward_q30[3], int64_t spread_q40,
@@ -127,18 +127,20 @@ static void look_up_blurred_environment(const struct glint_scene *scene,
 
 /* ------------------------------------------------------------------ shining */
 
-/* Highlight of one light on brushed metal: Ward's lobe, widened by the metal's
- * roughness, the size of the light's disc and the curvature of the surface
- * within a pixel. Without the last term the highlight on a small ball would
- * flicker as it moves between pixels.
+/* Highlight of one light on brushed metal: Ward's lobe, whose width depends on
+ * the metal's roughness, the size of the light's disc and the curvature of the
+ * surface within a pixel. Without the curvature, the highlight on a small ball
+ * would flicker as it moves between pixels.
  *
  * Variances of slopes add up: alpha^2 / 2 of the metal, r^2 / 16 of the half
  * vector to a disc of angular radius r, and the variance of the normal within a
- * pixel. With h the half vector and o the direction to the eye, the light is
+ * pixel. With h the half vector, n the normal and o the direction to the eye,
+ * the light is
  *
  *    level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
  *
- * with the weight of ward.c, clamped to 8. */
+ * ax and ay are the alphas with these variances. The weight is that of ward.c,
+ * clamped to 8. */
 enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
 
 /* The half vector in the surface's tangent frame; all q30 except slopes. */
@@ -149,10 +151,10 @@ struct half {
 };
 
 /* Returns whether the slope ALONG_Q30 / HN_Q30 is so large that the lobe with
- * squared alpha ALPHA_Q40 is certainly 0. A quick test without root or
- * division. ALPHA_Q40 must be below 2^42. The compared left side is rounded
- * down and at most 2^56; the right side is rounded up, at most 2^63, and
- * enlarged by 1/512, more than the error of the ratios. */
+ * squared alpha ALPHA_Q40 is certainly 0. This is a quick test without root or
+ * division. ALPHA_Q40 must be below 2^42. The left side of the comparison is
+ * rounded down and at most 2^56. The right side is rounded up, at most 2^63,
+ * and enlarged by 1/512, which exceeds the error of the ratios. */
 static int is_slope_outside_lobe(uint32_t along_q30, int32_t hn_q30,
                                  int64_t alpha_q40)
 {
@@ -176,9 +178,11 @@ static int compute_half_vector(const struct glint_scene_ray *ray,
     int32_t half_q30[3], hn_q30;
     uint32_t along_q30[2];
 
+    /* The mean of the directions to light and eye is (h.o) h, where h is the
+     * half vector. */
     for (int k = 0; k < 3; k++)
-        half_q30[k] = (int32_t)(((int64_t)toward_q30[k] - ray->toward_q30[k]) /
-                                2); /* (i + o) / 2 = (h.o) h */
+        half_q30[k] =
+            (int32_t)(((int64_t)toward_q30[k] - ray->toward_q30[k]) / 2);
     hn_q30 = v3_cosine_q30(half_q30, n_q30);
     if (hn_q30 <= 0)
         return 0;
@@ -206,8 +210,8 @@ static int compute_half_vector(const struct glint_scene_ray *ray,
     return 1;
 }
 
-/* Returns the weight of the lobe, 0 .. 8, in norm NORM, without the factor
- * exp(-slope). */
+/* Returns the weight of the lobe, 0 .. 8, normalised by NORM, without the
+ * factor exp(-slope). */
 static struct glint_real compute_lobe_weight(enum glint_ward_norm norm,
                                              const struct half *h)
 {
@@ -238,8 +242,8 @@ static int add_highlight_of_light(const struct glint_scene *scene,
 {
     const struct glint_ward_material *m =
         &scene->wards->material[surface->material->ward];
-    /* 2 r^2 / 16 for the light's disc of angular radius r, plus the spread of
-     * the normal. */
+    /* Twice the additional variance: 2 r^2 / 16 for the light's disc of angular
+     * radius r, plus the spread of the normal. */
     const int64_t wider_q40 = ((int64_t)radius_q30 * radius_q30 >> 23) +
                               (int64_t)brushed->spread_q30 * 1024;
     struct glint_real area = real_of(4, 0), gain;
@@ -307,8 +311,8 @@ allocate_ward_state(const struct glint_scene *scene, struct glint_arena *arena)
     return placed;
 }
 
-/* Recomputes the reflection lobe of metal I. The scale of its colours is split
- * into a factor of 1 .. 2 and a power of two. */
+/* Recomputes the reflection lobe of metal I. Its colours have a common scale,
+ * which is split into a factor of 1 .. 2 and a power of two. */
 static void prepare_metal_lobe(const struct glint_scene *s, uint32_t i)
 {
     struct glint_ward_state *w = s->wards;
@@ -343,8 +347,8 @@ static void prepare_all_lobes(const struct glint_scene *scene)
 
 /* ------------------------------------------------------------- environment */
 
-/* Sets the rotation of the environment and of its lights. These are the last
- * ones among the scene's lights that are on. */
+/* Sets the rotation of the environment and of its lights, which are the last of
+ * the scene's lights that are on. */
 static void rotate_environment(struct glint_scene *scene,
                                const int32_t turn_q30[2])
 {
@@ -498,8 +502,8 @@ compute_max_normal_change_q30(const struct glint_scene *s,
     return most;
 }
 
-/* Returns the change of SURFACE's normal from pixel to pixel, as if the surface
- * faced the eye. */
+/* Returns the change of SURFACE's normal from pixel to pixel. The tilt of the
+ * surface against the ray is ignored. */
 static int32_t compute_curvature_q30(const struct glint_scene *s,
                                      const struct glint_scene_ray *ray,
                                      const struct glint_met_surface *surface)
@@ -516,12 +520,15 @@ static int32_t compute_curvature_q30(const struct glint_scene *s,
                                 (uint64_t)p->radius);
 }
 
-/* n.o is the cosine between normal and direction to the eye. On a tilted
- * surface neighbouring pixels are 1 / n.o times as far apart along the tilt.
- * The directions of rays change by one pixel, and half vectors by about half of
- * that. Half of the squared change makes a highlight a Gaussian of at least
- * half a pixel, even if everything else is sharp: samples one pixel apart then
- * sum to the same light at any position, to within +-1.5 %. */
+/* Computes spread_q30 of struct glint_brushed: half of the square of a change
+ * from pixel to pixel. This is the sum of the changes of the normal and of the
+ * ray's direction. On a tilted surface, neighbouring pixels are 1 / n.o times
+ * as far apart along the tilt, where n.o is the cosine between normal and
+ * direction to the eye. A ray's direction changes by the angle of a pixel, and
+ * the half vector by about half of that. This spread makes a highlight a
+ * Gaussian of at least half a pixel, even if roughness and light are sharp.
+ * Samples one pixel apart then sum to the same light at any position, to within
+ * +-1.5 %. */
 static int32_t
 compute_normal_spread_q30(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,

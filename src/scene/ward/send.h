@@ -5,7 +5,8 @@
 #include "glint/scene/ward.h"
 
 /* Sets RGB_Q15 to the light that a metal reflects at PLACE, like
- * glint_ward_light(). Also sets PLACE's root, an intermediate value. */
+ * glint_ward_light(). Also sets the member root of PLACE, an intermediate
+ * value. */
 void glint_ward_compute_light(const struct glint_ward_lobe *lobe,
                               const struct glint_environment *environment,
                               struct glint_ward_place *place,

@@ -3,16 +3,21 @@
  * Computes the half vectors that sample a material's lobe, and the
  * environment's mip levels that each sample reads.
  *
- * Sample k of n has u = (k + 1/2) / n and v the bits of k in reverse. Its
- * slopes are sqrt(-ln u) (ax cos 2 pi v, ay sin 2 pi v) [Ward92]. With constant
- * footprints a mip level blurs the reflected direction by a part of the lobe,
- * sigma^2 = 2 b (h.o), b = f ax ay, f = kappa / n. The slopes are centred and
- * have the rest of the variance. The blur of a level is isotropic: with a
- * variance of (alpha^2 - b) / 2 slopes would add up to the lobe along each
- * axis, but would lie on a line if one alpha is small. With (1 - f) alpha^2 / 2
- * they keep the lobe's shape, blurred. The mean of both variances is used,
- * which is more accurate than either if alphas differ. As published a sample
- * has the solid angle 4 ax ay (h.o) (h.n)^3 pi / (n u). */
+ * The lobe has the widths (alphas) ax and ay along the two tangents. Sample k
+ * of n has u = (k + 1/2) / n, and v has the bits of k in reverse. The slopes of
+ * its half vector are sqrt(-ln u) (ax cos 2 pi v, ay sin 2 pi v) [Ward92].
+ *
+ * Rule with constant footprints: the mip level already blurs the reflected
+ * direction by a fraction f = kappa / n of the lobe. Its variance is 2 b (h.o),
+ * b = f ax ay, with h the half vector and o the direction to the eye. The
+ * slopes are centred and have the rest of the variance. There are two
+ * candidates for it. (alpha^2 - b) / 2 adds up to the lobe along each axis, but
+ * if one alpha is small, all slopes lie on a line. (1 - f) alpha^2 / 2 gives
+ * the shape of the lobe, but blurred, as the blur of a level is isotropic. The
+ * mean of both is used, which is more accurate than either if alphas differ.
+ *
+ * Published rule: a sample has the solid angle 4 ax ay (h.o) (h.n)^3 pi / (n
+ * u), with n in h.n the normal. */
 #include "base/divide.h"
 #include "base/log2.h"
 #include "glint/scene/ward.h"
@@ -57,9 +62,9 @@ static void compute_sample_slopes(int n,
     }
 }
 
-/* Returns the footprint f of each of N samples, q16: kappa / N, where kappa is
- * 1, 1.4, 2, 2 and 3 for 1, 4, 8, 16 and 32 samples, interpolated linearly
- * between. */
+/* Returns the footprint f of each of N samples, q16: kappa / N. kappa is 1,
+ * 1.4, 2, 2 and 3 for 1, 4, 8, 16 and 32 samples, and is interpolated linearly
+ * between them. */
 static int32_t compute_footprint_of_sample_q16(int n)
 {
     static const int32_t at[5] = {1, 4, 8, 16, 32};
@@ -112,8 +117,8 @@ static uint64_t compute_variance_of_slope_blur_q48(const int32_t alpha_q24[2],
     return b_q48 < max_q48 ? b_q48 : max_q48;
 }
 
-/* Returns twice the variance that sampled slopes must have along one axis,
- * relative to alpha^2. */
+/* Returns twice the variance that sampled slopes must have along an axis with
+ * ALPHA, divided by alpha^2. B and F: see the top of this file. */
 static int32_t compute_slope_variance_q16(int32_t alpha_q24, uint64_t b_q48,
                                           int32_t f_q16)
 {
@@ -126,8 +131,8 @@ static int32_t compute_slope_variance_q16(int32_t alpha_q24, uint64_t b_q48,
     return (ONE_Q16 - f_q16 + matched_q16) / 2;
 }
 
-/* Sets the span of sample K, which selects its mip level, to X * 2^LOG2,
- * widened by BIAS_Q8 levels. X must be at least 1. */
+/* Sets the span of sample K, by which its mip level is chosen, to X * 2^LOG2.
+ * Then enlarges it by BIAS_Q8 / 256 levels. X must be at least 1. */
 static void set_span_of_sample(struct glint_ward_lobe *lobe, int k, uint64_t x,
                                int log2, int32_t bias_q8)
 {
