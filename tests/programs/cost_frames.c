@@ -175,8 +175,8 @@ static void draw_frame_twice(struct stage *s, const struct shape *shape)
 
     for (int i = 0; i < shape->n_lamps; i++)
         s->lamp[i].power *= s->exposure * exp2(shape->stops);
-    /* The exposure scales lamps and stars. Divide the star's fraction by it, so
-     * that the star's light does not depend on the exposure. */
+    /* The exposure scales lamps and stars. The star's fraction is divided by
+     * the exposure, so that the star's light does not depend on it. */
     s->frame.star.share *= exp2(shape->star_stops) /
                            (s->exposure * exp2(shape->stops)) * shape->n_lamps;
     canvas_restore_background(&s->canvas);

@@ -4,9 +4,9 @@
  *             [--jump CODES] [--flux SHARE] [--crawl CODES]
  *
  * Moves a light slowly across the frame and compares the change of the image
- * from frame to frame, in codes, with the change of a reference: the same
- * model, drawn with grids four times as fine, without rounding irradiance to
- * steps, and with all ghosts. It prints three measures:
+ * from frame to frame, in codes, with the change of a reference. The reference
+ * is the same model, drawn with grids four times as fine, without rounding
+ * irradiance to steps, and with all ghosts. Three measures are printed:
  *
  *   jump   max change of the mean of any 8 x 8 block, codes: popping
  *   flux   change of the sum of all codes, as a fraction of that sum
@@ -14,10 +14,10 @@
  *
  * The error of a frame is its codes minus the unrounded codes of the reference.
  * Each measure is a change of this error between frames. For jump and flux the
- * image is dithered, so that means of blocks are accurate to 1/64 code; without
- * dither, a uniform area that becomes brighter would change by a whole code at
- * once because of the format. Exit code 1: a measure exceeded its limit
- * (--jump, --flux, --crawl).
+ * image is dithered, so that means of blocks are accurate to 1/64 code. Without
+ * dither, a uniform area that becomes brighter would change by a complete code
+ * at once, because codes are integers. Exit code 1: a measure exceeded its
+ * limit (--jump, --flux, --crawl).
  */
 #include <getopt.h>
 #include <math.h>
@@ -43,7 +43,8 @@ struct sweep {
     struct sample bound;
     struct stage test, finest;
     float linear[SAMPLES];
-    /* errors of two frames: [frame & 1][0: dithered, 1: not dithered] */
+    /* errors of the current and the previous frame, [frame & 1][0: dithered, 1:
+     * not dithered] */
     float error[2][2][SAMPLES];
     uint8_t codes[SAMPLES];
     double power;

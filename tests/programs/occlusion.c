@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * occlusion [--log] - prints how well the power of a lamp follows its visible
- * fraction while a pole passes in front of it.
+ * occlusion [--log] - prints how well the measured power of a lamp follows its
+ * visible fraction while a pole passes in front of it.
  *
  * A lamp is a disc 6 stops above white; its image has the glare of a lens: a
  * narrow core and a tail that falls with the cube of the distance. The pole
- * hides the disc, but not the glare. The power, divided by its mean before the
- * pole, is compared with the visible fraction of the disc in the same frame,
- * and in the earlier frame that matches best; the distance of that frame is
+ * hides the disc, but not the glare. The power is divided by its mean before
+ * the pole. It is compared with the visible fraction of the disc in the same
+ * frame and in earlier frames. The number of frames back to the best match is
  * the lag. --log prints every frame.
  */
 #include <math.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * pan IN FRAMES WxH > OUT.y4m - makes a video of a camera that pans over a
- * photograph, with the noise of a small sensor. It shows real lamps whose
- * motion is known. Frame n of N shows the window at x = (width - W) n / N, y =
- * middle + a slow oscillation; the noise is the same in every run.
+ * photograph, with the noise of a small sensor. The video shows real lamps, and
+ * their motion is known. Frame n of N shows the window at x = (width - W) n /
+ * N, y = middle + a slow oscillation. The noise is the same in every run.
  */
 #include <math.h>
 #include <stdint.h>

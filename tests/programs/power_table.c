@@ -3,10 +3,12 @@
  * power_table [PANORAMA.pfm ...] - prints the data to which tests/power-fit
  * fits the power of clipped lamps. Each line describes one image of a clipped
  * lamp: its group, true power, visible light, light of the clipped core, and
- * features. Lamps (rendered, or in HDR panoramas) are exposed ten times, each
- * time half as bright, to codes of 8 bits, every fourth image to RGB565, and
- * measured by the lamp finder. Every second lamp and panorama is held out for
- * validation.
+ * features.
+ *
+ * Lamps are rendered or cut from HDR panoramas. Each is exposed ten times, at
+ * exposures that are halved from image to image. Images have 8-bit codes, but
+ * every fourth one is RGB565. The lamp finder measures the lamp in each. Every
+ * second lamp and panorama is held out for validation.
  */
 #include <math.h>
 #include <stdio.h>
@@ -140,8 +142,8 @@ static double measure_bright_region(struct camera *c,
     return area ? light : 0;
 }
 
-/* Returns the rank of SPOT among all spots of the image, ordered from left to
- * right. */
+/* Returns the position of SPOT among all spots of the image, counted from left
+ * to right. */
 static int find_spot_rank(const struct camera *c, const struct glint_spot *spot)
 {
     int i = 0;
@@ -260,8 +262,8 @@ static void print_rendered_lamps(int i)
     for (int k = 0; k < EXPOSURES; k++) {
         const double gain = exp2(-k - rng_unit(&seed));
 
-        /* The background keeps its exposure: lamps are seen by day and by
-         * night. */
+        /* The gain changes only the lamp, not the background, so that lamps by
+         * day and by night are included. */
         for (int p = 0; p < W * H; p++)
             for (int j = 0; j < 3; j++)
                 scene.rgb[3 * p + j] =
@@ -345,7 +347,7 @@ static void apply_random_lens(struct power_picture *s, double over,
 }
 
 /* Renders one view of panorama P at all exposures and prints the lamps found.
- * TRUTH: the light that enters the lens, without glare. */
+ * Their true power is the light that enters the lens, without glare. */
 static void print_view_lamps(const struct glint_float_image *p, int id,
                              double yaw, double pitch)
 {

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
  * random_lenses SEED NUMBER [--table] - bakes a random but valid lens
- * (support/random_lens.h) as a draft and compares an image of its model,
- * in linear light and in codes, with the exact image.
+ * (support/random_lens.h) as a draft. Compares an image of its model, in linear
+ * light and in codes, with the exact image.
  *
  * Prints a line: number of the lens; result (drawn; dark in both images;
  * rejected by the bake); number of invalid random tables before this lens;
- * surfaces, ghosts, focal length in mm, f-number, degrees of the light, PSNR
- * in dB, flux / exact flux, 99th percentile of differences in codes, and the
- * grid of the exact image. --table: prints the table of the lens instead.
- * tests/extremes runs many, each with a time limit.
+ * surfaces, ghosts, focal length in mm, f-number, degrees of the light, PSNR in
+ * dB, flux / exact flux, 99th percentile of differences in codes, and the grid
+ * of the exact image. With --table, prints the lens table instead.
+ * tests/extremes runs this program many times, each with a time limit.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -67,7 +67,8 @@ static int compare_lens_with_exact(uint64_t seed, int number)
         return print_lens_result(&s, number, "refused", tries, lamp.theta_deg,
                                  &m, 0);
     stage_set_view(&s, WIDTH, HEIGHT, 0);
-    /* A power that saturates all codes: range checks must not trap. */
+    /* With this power all codes are saturated, but range checks must not
+     * fail. */
     bright.power = 1e9;
     grid = glint_ghost_list(&s.lens, NULL, 0) > MANY_GHOSTS ? 64 : 128;
     if (!stage_draw_linear(&s, &lamp, 1, model) ||
@@ -76,8 +77,8 @@ static int compare_lens_with_exact(uint64_t seed, int number)
         return 1;
     m = stage_compare_images(&s, exact, model);
     if (m.psnr_db < 45 && stage_draw_exact(&s, &lamp, 1, 2 * grid, exact)) {
-        /* Doubles the grid to show whether the exact image caused the
-         * difference. */
+        /* A finer grid shows whether the difference is an error of the exact
+         * image. */
         grid *= 2;
         m = stage_compare_images(&s, exact, model);
     }

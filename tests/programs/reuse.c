@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
  * reuse MODEL.glint LIGHTS [SCALE] - measures frames that reuse the rays of
- * stationary lights: 1920x1080 codes on black with LIGHTS lights of a night
- * street, at the default quality with three wavelengths.
+ * stationary lights. Frames have 1920x1080 codes on black, LIGHTS lights of a
+ * night street, the default quality and three wavelengths.
  *
- * With SCALE, a factor on their powers, calls draw_and_time_frame() several
- * times for frames after the first: without reuse; with the same lights; with
- * lights that moved by up to half a pixel and whose powers changed by up to a
- * fifth.
+ * SCALE is a factor on the powers of the lights. With it, draws one frame and
+ * then calls draw_and_time_frame() several times, for profilers: without reuse,
+ * with reuse of the same lights, and with reuse of lights that moved by up to
+ * half a pixel and changed their powers by up to a fifth.
  *
- * Without SCALE, prints the scale at which all but 1e-4 of the samples are at
- * most a quarter of white; the bytes of a frame without and with memory for
- * reuse; and for tolerances of 0.25, 0.5 and 1 pixel the min PSNR of three
- * frames whose lights have moved by up to that distance, against frames without
- * reuse.
+ * Without SCALE, prints
+ *   - the scale at which all but 1e-4 of the samples are at most a quarter of
+ *     white;
+ *   - the bytes of a frame without and with memory for reuse;
+ *   - for tolerances of 0.25, 0.5 and 1 pixel, the min PSNR of three frames
+ *     whose lights have moved by up to that distance, against frames without
+ *     reuse.
  */
 #include <math.h>
 #include <stdio.h>
@@ -47,7 +49,8 @@ static void draw_and_time_frame(struct glint_frame *f, int n, double scale,
 static void (*volatile frame)(struct glint_frame *, int, double,
                               uint8_t *) = draw_and_time_frame;
 
-/* Draws on black. PX: reuse tolerance, pixels; negative: without reuse. */
+/* Draws a frame on black. PX: tolerance of reuse, pixels; negative: without
+ * reuse. */
 static void draw_with_reuse(int n, double scale, double px, uint8_t *codes)
 {
     struct glint_frame *f = px < 0 ? &plain : &reusing;

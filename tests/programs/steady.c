@@ -3,15 +3,17 @@
  * steady [--lens LENS] [VIDEO.y4m...] - prints how steady the flare is in
  * synthetic scenes and in videos.
  *
- * Two causes change the total light of the flare from frame to frame: the
- * lamps, which move, appear, vanish or are occluded, and the automatic
- * exposure. The change at a constant exposure is attributed to the lamps; the
- * part of a step outside the interval from 0 to that change is attributed to
- * glint ("own step"). Frames after a cut are not counted. In synthetic scenes
- * the true lamps are known: a step is attributed to them up to the range of
- * their true flare light within the last WINDOW frames. The window is needed
- * because a tracked lamp fades in and out over six frames. Exit code 1: an own
- * step is larger than MOST, by either attribution.
+ * The total light of the flare changes from frame to frame for two reasons:
+ * lamps move, appear, vanish or are occluded, and the automatic exposure
+ * adapts. The change that the lamps alone cause is measured at a constant
+ * exposure. A step between 0 and this change is attributed to the lamps; the
+ * part of a step outside this interval is attributed to glint ("own step").
+ * Frames after a cut are not counted.
+ *
+ * In synthetic scenes the true lamps are known. There a step is also attributed
+ * to them up to the range of their true flare light within the last WINDOW
+ * frames, as a tracked lamp fades in and out over six frames. Exit code 1: an
+ * own step is larger than MOST, by either attribution.
  */
 #include <getopt.h>
 #include <math.h>
@@ -33,7 +35,8 @@ enum { WIDTH = 640, HEIGHT = 360, FRAMES = 150, FRAME_US = 40000, WINDOW = 10 };
 struct steady {
     struct tool tool;
     struct drawing drawing;
-    /* flare light of the previous frame: total after exposure, own before it */
+    /* total, own: flare light of the previous frame, with and without the
+     * automatic exposure */
     double total, own;
     /* flare light of the true lamps, latest frame first; -1: unknown */
     double truth[WINDOW + 1];
@@ -86,7 +89,8 @@ static double compute_true_light_span(const struct steady *s)
 static void record_light_step(struct steady *s, double total, double own)
 {
     const bool is_cut = drawing_has_exposure_restarted(&s->drawing);
-    /* a fainter flare is invisible, so its appearance is not a step */
+    /* a fainter flare is invisible, so that its appearance is not counted as a
+     * step */
     const double least = 1e-6;
 
     s->cuts += is_cut && s->frames > 0;
@@ -126,7 +130,8 @@ static void draw_and_record_frame(struct steady *s,
     drawing_set_exposure(drawing, image);
     for (int i = 0; i < drawing->run.n_lamps; i++)
         held += drawing->run.lamp[i].lamp.power;
-    if (held < power) /* limits the power of lamps that are too bright */
+    /* The exposure has reduced the power of lamps that are too bright. */
+    if (held < power)
         drawn = sum_flare_light(s);
     record_light_step(s, drawn * drawing_get_exposure_factor(&drawing->run),
                       own);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * stone_cost FILE [FRAMES [SET]] - measures the cost of the light map of a
- * baked translucent medium: scatters light over the whole map, three channels,
- * one thread. tools/measure/scenes/stone-table counts its instructions. Prints
- * for each set of kernels (c, sse41, avx2, neon), or for SET only, the median
- * CPU time of FRAMES maps, ms, and a hash of the map; sets run alternately.
+ * baked translucent medium. Scatters light over the complete map, three
+ * channels, in one thread. Prints the median CPU time of FRAMES maps, ms, and a
+ * hash of the map, for each set of kernels (c, sse41, avx2, neon), or for SET
+ * only. Sets run alternately. tools/measure/scenes/stone-table counts the
+ * instructions of this program.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -56,8 +56,9 @@ static void write_medium_model(const char *dir, const char *name,
         exit_with_error(path);
 }
 
-/* Measures a fit and its baked integers. LIGHT: three arrays of [3][n]:
- * incident light; light scattered by the exact rows; scratch. */
+/* Bakes a fit and sets DB to the PSNR of its integers. If DIR is not NULL,
+ * writes the baked model to DIR. LIGHT: three arrays of [3][n]: incident light,
+ * light scattered by the exact rows, and scratch. */
 static void bake_and_measure_fit(const struct glint_scatter_fit *fit,
                                  const double *const light, double *room,
                                  const char *dir, const char *name, double *db)
@@ -97,7 +98,8 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
         exit_with_error("no fit");
-    /* fits by clusters and by albedo: the bake sets their rank */
+    /* Only factored fits have a rank; the bake separates the kernels of other
+     * fits into this number of products. */
     fit.rank = o.rank;
     bake_and_measure_fit(&fit, light, room, stone ? NULL : dir,
                          model_of[model].name, &db);

@@ -19,8 +19,7 @@ enum { STONES = 4, GRID_TERMS = 5, GRID_DEGREES = 5 };
 static const char *const stone_name[STONES] = {"chess 4 x 4", "chess 8 x 8",
                                                "veins", "pale veins"};
 
-/* Model candidates that are evaluated once per medium and used in several
- * tables. */
+/* Models that are fitted once per medium and appear in several tables. */
 enum run {
     CLUSTERED,
     FACTORED,
@@ -320,8 +319,8 @@ static void print_logarithm_errors(struct table *t)
     printf("\nSource: \"never negative\"; its prototype: .4 to 7 %%.\n");
 }
 
-/* Prints table C11: CPU seconds for summing all rows of a fit of five terms,
- * once entry by entry and once by running sums. */
+/* Prints table C11: CPU seconds for the sums of all rows of a fit of five
+ * terms, computed from all entries and from stored sums of h. */
 static void print_row_sum_times(struct table *t)
 {
     const struct glint_scatter_options options = {GLINT_SCATTER_FACTORED, 5, 3};

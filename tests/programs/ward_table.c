@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * ward_table PICTURE... - measures lookups of Ward's reflection lobe against
- * sums over all texels, by alpha, lookup rule and number of samples: PSNR in
- * dB of a brushed ball 32 pixels wide, exposed such that its median is 1/4 of
- * white; mean over all pictures, for sRGB codes and for linear light.
+ * ward_table PICTURE... - measures the accuracy of Ward's reflection lobe,
+ * computed by lookups, against sums over all texels. Prints the PSNR in dB by
+ * alpha, lookup rule and number of samples, for sRGB codes and for linear
+ * light, as the mean over all pictures. The image is a brushed ball 32 pixels
+ * wide, exposed such that its median is 1/4 of white.
  *
  * The sums are over 512 x 512 texels in double precision. Separated lights are
- * added to the lookups in double precision, as lobes of alpha^2 + r^2 / 8.
+ * added to the lookups in double precision, as lobes of alpha^2 + r^2 / 8,
+ * where r is the angular radius of the light.
  */
 #include <math.h>
 #include <stdio.h>

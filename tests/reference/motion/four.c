@@ -19,9 +19,9 @@ void four_init_localiser(struct four *four, enum four_fit fit,
         four->chain[k][k] = 1;
 }
 
-/* Base of four points that are not coplanar. The barycentric weights of a
- * point with respect to them sum to 1 and do not change when all points move
- * rigidly. */
+/* Four points that are not coplanar, as a base: three edges from the last
+ * point, and their normals. The barycentric weights of a point with respect to
+ * the base sum to 1. They do not change when all points move rigidly. */
 struct base {
     enum four_arithmetic arithmetic;
     /* normal[i]: cross product of the other two edges */
@@ -62,8 +62,8 @@ static void set_base_matrix(struct base *b, const double (*const from[4])[3])
     b->det = compute_dot(b, b->edge[0], b->normal[0]);
 }
 
-/* Sets PLACE to where POINT moves in the motion that takes the four points FROM
- * to the points TO. */
+/* Moves POINT rigidly together with the four points FROM, which move to the
+ * points TO, and sets PLACE to its new position. */
 static void map_point_by_moved_base(const struct base *b,
                                     const double (*const from[4])[3],
                                     const double (*const to[4])[3],
@@ -87,8 +87,9 @@ static void map_point_by_moved_base(const struct base *b,
     }
 }
 
-/* Returns the volume of the tetrahedron of the four points FROM divided by its
- * upper bound, 0 .. 1, in double precision. */
+/* Returns the volume of the tetrahedron of the four points FROM as a fraction
+ * of its upper bound, the product of three edge lengths. Computed in double
+ * precision. */
 static double four_span_volume(const double (*const from[4])[3])
 {
     struct base b = {.arithmetic = FOUR_DOUBLE};
@@ -125,9 +126,9 @@ static bool four_solve_affine_map(enum four_arithmetic arithmetic,
     return true;
 }
 
-/* Sets FOUR to the indices of the four foods (landmarks), among those observed
- * before, that the method l->fit uses. Returns false if there are fewer than
- * four. */
+/* Sets FOUR to the indices of four foods (landmarks), chosen by the method
+ * l->fit among those known from earlier frames. Returns false if fewer than
+ * four are known. */
 static bool choose_four_food_items(const struct four *l, int n,
                                    const double (*seen)[3], const bool *is_new,
                                    int four[4])

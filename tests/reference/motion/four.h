@@ -11,14 +11,17 @@
 #include "bake/motion/localise.h"
 
 enum four_fit {
-    /* weights with respect to the four foods whose tetrahedron is largest */
+    /* by barycentric weights, with respect to the four foods whose tetrahedron
+     * has the largest relative volume */
     FOUR_BEST,
-    FOUR_FIRST, /* weights with respect to the first four foods of the frame */
-    FOUR_CHAIN  /* product of the motions between successive frames */
+    /* by barycentric weights, with respect to the first four foods of the
+     * frame */
+    FOUR_FIRST,
+    FOUR_CHAIN /* by the product of the motions between successive frames */
 };
 
-/* FOUR_FLOAT32 rounds every result to float. As double has more than twice the
- * digits of float, the bits equal those of float arithmetic. */
+/* FOUR_FLOAT32: every result is rounded to float. This gives the same bits as
+ * float arithmetic, as double has more than twice the digits of float. */
 enum four_arithmetic { FOUR_DOUBLE, FOUR_FLOAT32 };
 
 struct four {

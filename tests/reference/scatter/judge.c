@@ -45,7 +45,7 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
     const double line = sqrt(entries);
 
     switch (candidate->kind) {
-    /* the cluster index costs one byte per texel */
+    /* plus one byte per texel for the cluster index */
     case GLINT_CANDIDATE_CLUSTERED:
         return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
@@ -87,7 +87,7 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
         return kept ? 3 * (texels + entries) : 3 * texels * entries;
     case GLINT_CANDIDATE_CLUSTERED:
         return 3 * texels * entries;
-    /* stored sums of mean row G times kernel h_j, per cluster */
+    /* if KEPT, uses stored sums of (mean row G) * (kernel h_j), per cluster */
     case GLINT_CANDIDATE_PEERS:
         return kept ? terms * (texels + candidate->clusters * entries)
                     : (terms + 3) * texels * entries;
@@ -176,8 +176,9 @@ static int compare_doubles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the squared error of the row of texel X. Adds its number of negative
- * entries, its asymmetry and its sum to J and ONE_WAY. */
+/* Returns the squared error of the row of texel X. Counts the row's negative
+ * entries and updates the max row sum in J. Adds the squared asymmetry of its
+ * entries to ONE_WAY. */
 static double measure_row_errors(const struct glint_scatter_rows *rows,
                                  const struct glint_scatter_rows *rebuilt,
                                  int x, struct glint_scatter_judgement *j,

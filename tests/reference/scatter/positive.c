@@ -28,8 +28,9 @@ static void sum_row_terms(const struct glint_positive *p, int x, double *row)
     }
 }
 
-/* Sums for one update of the kernels h: [terms][m] weighted values,
- * [terms][terms][m] weights, and three scratch rows. */
+/* Memory for one update of the kernels h. up: [terms][m] sums of weighted
+ * values; gram: [terms][terms][m] sums of weights; value, weight and left:
+ * scratch rows. */
 struct sums {
     double *up, *gram, *value, *weight, *left;
 };
@@ -102,8 +103,8 @@ static void fit_kernels_h(const struct glint_positive *p, const struct sums *s)
     }
 }
 
-/* Sets the initial factors from two different sequences, as equal terms would
- * stay equal. */
+/* Sets the initial f and h from two different pseudo-random sequences. Terms
+ * with equal initial values would stay equal. */
 static void set_initial_factors(const struct glint_positive *p)
 {
     for (int i = 0; i < p->terms * p->n; i++)
@@ -139,8 +140,8 @@ enum glint_status glint_fit_nonnegative_factors(const struct glint_positive *p,
     return status;
 }
 
-/* Rows divided by the mean row of their cluster; if PLAIN, the unchanged
- * rows. */
+/* The matrix to factorise: rows divided by the mean row of their cluster; if
+ * PLAIN, the unchanged rows. */
 struct over {
     const struct glint_scatter_rows *rows;
     int c, clusters;

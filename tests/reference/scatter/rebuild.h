@@ -4,8 +4,8 @@
  * rows of a scattering matrix and rebuilds the rows from it.
  *
  * Row entries whose texels lie outside the square of the medium are 0. As in
- * the publications, all models except the profiles of [Song09] fit these
- * zeros, too. In rebuilt rows such entries are set to 0.
+ * the publications, all models fit these zeros, too, except the profiles of
+ * [Song09]. In rebuilt rows such entries are set to 0.
  */
 #ifndef REFERENCE_SCATTER_REBUILD_H
 #define REFERENCE_SCATTER_REBUILD_H

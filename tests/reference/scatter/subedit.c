@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models scattering as the geometric mean of two radial profiles [Song09].
+ * Models scattering as the geometric mean of two radial profiles P, those of
+ * the texels i and o where light enters and leaves [Song09].
  *
- * Logarithms make it a sum: ln R'(i, o) = (ln P_i(r) + ln P_o(r)) / 2. In each
- * round, every profile is solved with all others fixed, then moved half of the
- * way to its solution. Profiles are interpolated linearly in r.
+ * Logarithms make the mean a sum: ln R'(i, o) = (ln P_i(r) + ln P_o(r)) / 2. In
+ * each round, every profile is solved with all others fixed, then moved half of
+ * the way to its solution. Profiles are interpolated linearly in the distance
+ * r.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -50,9 +52,10 @@ static void set_entry_radii(const struct subedit *p)
     }
 }
 
-/* Solves the next profile of texel X: for each radius, the mean of the values
- * that the row of X requires, given the profiles of the other texels. ALONE:
- * ignores the other profiles. */
+/* Solves the next profile of texel X. Each entry of the row of X requires a
+ * value of the profile at its radius, given the profile of the entry's texel.
+ * The value at a radius is the mean of the required ones. ALONE: ignores the
+ * profiles of other texels. */
 static void solve_radial_profile(const struct subedit *p, int x, bool alone)
 {
     const float *row = glint_scatter_get_row(p->rows, x, p->c);

@@ -11,7 +11,8 @@
 #include "bake/translucent/linear.h"
 
 enum {
-    /* number of rows on which the parameters a and b are searched */
+    /* number of rows on which the search for the parameters a and b measures
+     * errors */
     SEARCHED = 256
 };
 

@@ -97,10 +97,9 @@ TEST(c1_physics)
         }
 }
 
-/* C3: checks that one term fits badly if 30 % of the rows are shifted by a
- * texel, unless rows are rotated to begin with their maximum; that rotation
- * hardly changes the error of unshifted rows; and that a second term fits
- * shifted rows without rotation. */
+/* C3: if 30 % of the rows are shifted by a texel, one term fits far better
+ * after rotation, where rows begin with their maximum. Rotation hardly changes
+ * the error of unshifted rows. */
 TEST(c3_turned)
 {
     struct glint_scatter_rows off;
@@ -192,10 +191,10 @@ TEST(c5_polynomials)
                 0.6 * compute_row_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
 }
 
-/* C6: checks that for large a the logarithm is nearly linear, so that its fit
- * equals the linear fit, which is optimal. For small a and b = 1 negative
- * entries occur: the published claim "never negative" is wrong. The parameters
- * found by search are at least as good as both. */
+/* C6: for large a the logarithm is nearly linear, so its fit is as good as the
+ * linear fit, which is optimal. With a = 0.01 and b = 1 there are negative
+ * entries: the published claim "never negative" is wrong. The parameters found
+ * by search fit better than these and almost as well as the linear model. */
 TEST(c6_logarithms)
 {
     const double linear = compute_row_rmse(&stone[0], GLINT_CANDIDATE_SVD, 3);
@@ -214,9 +213,9 @@ TEST(c6_logarithms)
     assert_true(found.rmse < 1.05 * linear && found.rmse < j.rmse);
 }
 
-/* C7: checks that models with entries clamped to 0, or of logarithms, have at
- * least the error of the linear model. The linear model may lose a little by
- * fitting entries outside the square. */
+/* C7: models with entries clamped to 0, and models of logarithms, do not fit
+ * better than the linear model. A tolerance of 2 % is needed, as the linear
+ * model also fits entries outside the square. */
 TEST(c7_held)
 {
     for (int i = 0; i < 2; i++)
@@ -290,8 +289,8 @@ TEST(c10_clusters)
     }
 }
 
-/* C11: checks that the sums of rows computed from stored sums of h equal the
- * sums of all entries, with 800 times fewer multiplications. */
+/* C11: the sums of rows that are computed from stored sums of h equal the sums
+ * of all entries. They need 800 times fewer multiplications. */
 TEST(c11_albedo)
 {
     const struct glint_scatter_candidate o =

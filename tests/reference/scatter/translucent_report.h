@@ -26,15 +26,16 @@ enum glint_scatter_candidate_kind {
     GLINT_CANDIDATE_SVD,
     /* decomposition of logarithms: ln(R' / a + b) = sum of f_j h_j [Kurt14] */
     GLINT_CANDIDATE_LOG_SVD,
-    /* mean of R, G, B by successive rank-1 fits of the residual; each row and
-     * channel by a polynomial of that mean [Kurt14] */
+    /* [Kurt14]: the mean of R, G, B is modelled by successive rank-1 fits of
+     * the residual, and each row and channel by a polynomial of this mean */
     GLINT_CANDIDATE_TUCKER,
     GLINT_CANDIDATE_ALS, /* like SVD, with f and h non-negative */
-    /* R' = G sum of f_j h_j, with G the mean row of a cluster, f and h
-     * non-negative, weighted by G^2 [Peers06] */
+    /* [Peers06]: R' = G sum of f_j h_j, where G is the mean row of a cluster. f
+     * and h are non-negative; errors are weighted by G^2. */
     GLINT_CANDIDATE_PEERS,
-    /* R' = sqrt(P_i(r) P_o(r)): radial profiles P of the texels where light
-     * enters and leaves, 12 values per texel and channel [Song09] */
+    /* [Song09]: R' = sqrt(P_i(r) P_o(r)), where P are radial profiles of the
+     * texels where light enters (i) and leaves (o), 12 values per texel and
+     * channel */
     GLINT_CANDIDATE_SUBEDIT,
     GLINT_CANDIDATES
 };
@@ -49,7 +50,7 @@ struct glint_scatter_candidate {
     bool turned;
     int clusters; /* PEERS: clusters, 1 .. GLINT_SCATTER_MAX_TERMS */
     /* parameters a and b of LOG_SVD, both > 0; a is relative to the largest
-     * entry. a = 0: the fit searches for both and sets them */
+     * entry. If a is 0, the fit searches for both and sets them. */
     double a, b;
 };
 
@@ -64,19 +65,21 @@ double
 glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
                               double texels, double entries);
 
-/* Returns the number of multiplications (or roots and exponentials) for summing
- * all rows. KEPT: linear models use stored sums of h. */
+/* Returns the number of multiplications (or roots and exponentials) that the
+ * sums of all rows need. KEPT: linear models use stored sums of their kernels
+ * h. */
 double
 glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
                              double texels, double entries, bool kept);
 
-/* Errors of a model. Owns ERROR and LIGHT. Fractions refer to all entries
- * inside the square; the largest entry of the data is 1. */
+/* Errors of a model. Owns the arrays error and light. Fractions refer to all
+ * entries inside the square. Errors are relative to the largest entry of the
+ * data. */
 struct glint_scatter_judgement {
     /* the candidate, with a and b if the fit searched for them */
     struct glint_scatter_candidate candidate;
-    /* model size in bytes; size of the rows (8 bytes per number) divided by
-     * it */
+    /* bytes: model size; compression: size of the rows, 8 bytes per number,
+     * divided by the model size */
     double bytes, compression;
     double seconds; /* processor time of the fit */
     double rmse, entry_db, light_db;

@@ -18,8 +18,7 @@ enum {
     COEFFICIENTS = 6
 };
 
-/* Iteration stops when the square of a term changes by less than this
- * fraction. */
+/* relative change of the square of a term at which the iteration stops */
 #define STILL 1e-11
 
 struct tucker {
@@ -29,7 +28,8 @@ struct tucker {
     double *f, *h; /* [n] and [k2]: weights f and kernel h of one term */
     float *model;  /* [n][k2]: sum of the terms so far */
     int *first;    /* [n]: index of the largest entry of each row */
-    /* [n]: largest entry of each row; 1 if rows are not rotated */
+    /* [n]: divisor of each row: its largest entry, or 1 if rows are not
+     * rotated */
     double *most;
 };
 

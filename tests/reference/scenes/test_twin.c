@@ -106,8 +106,8 @@ TEST(a2_a3_triangle)
     close_reference(s);
 }
 
-/* A4: checks that a ray through a point in the plane of the tutorial's triangle
- * hits it if and only if the point is inside, however small the triangle is. A
+/* A4: a ray through a point in the plane of the tutorial's triangle hits it if
+ * and only if the point is inside. This is true for triangles of any size. A
  * test by comparing areas fails for most small triangles (baseline in
  * test_scene_rays). */
 TEST(a4_inside)
@@ -213,9 +213,9 @@ static void assert_rgb_light(struct twin_pixel p, double r, double g, double b)
     assert_vec_near(rgb, r, g, b, 1e-6);
 }
 
-/* A7: checks the diffuse light of a floor at (0, 0, 30) under a lamp at (0, 40,
- * 0), at a distance of 50 where its irradiance is 1. The cosine is .8, so the
- * code is 204 of 255. */
+/* A7: the diffuse light of a floor at (0, 0, 30) under a lamp at (0, 40, 0). At
+ * the lamp's distance, 50, its irradiance is 1. The cosine is .8, so the code
+ * is 204 of 255. */
 TEST(a7_diffuse)
 {
     const struct twin_pixel p =
@@ -228,9 +228,10 @@ TEST(a7_diffuse)
     assert_int_equal((int)(255 * (double)p.rgb[0] + .5), 204);
 }
 
-/* A8: checks that along the normal all of Phong's terms have their max: .1 + .6
- * times the material's colour, and .3 times the light's colour. Away from the
- * normal the specular term decreases with its exponent. */
+/* A8: for a light and a viewer in the direction of the normal, all of Phong's
+ * terms have their max: .1 + .6 times the material's colour, and .3 times the
+ * light's colour. For other view directions the specular term decreases with
+ * its exponent. */
 TEST(a8_phong)
 {
     static const char text[] =
@@ -321,10 +322,10 @@ TEST(a10_acne)
     "material w phong 1 0 0 colour .2 .4 .8\n"                \
     "sphere b at 0 0 0 radius 1 material g\n"
 
-/* A11: checks that an object is visible straight through a transparent ball of
- * index 1, scaled by the transmitted fraction, and that the image is
- * bit-identical with and without "refract 1". Elsewhere the background picture
- * is visible. */
+/* A11: an object behind a transparent ball of index 1 is visible straight
+ * through the ball, scaled by the transmitted fraction. Where there is no
+ * object, the background picture is visible. The image is bit-identical with
+ * and without "refract 1". */
 TEST(a11_pass)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
@@ -338,8 +339,8 @@ TEST(a11_pass)
             trace_ray_in_text(plain, 0, 0, -5, k * .005, 0, 1);
         const struct twin_pixel b =
             trace_ray_in_text(one, 0, 0, -5, k * .005, 0, 1);
-        /* the ray hits the ball behind if it passes the point (1, 6) within
-         * .5 */
+        /* the ray's distance from (1, 6), the middle of the ball behind, of
+         * radius .5 */
         const double off = fabs(11 * (k * .005) - 1) / hypot(k * .005, 1);
 
         assert_memory_equal(&a, &b, sizeof a);
@@ -351,24 +352,24 @@ TEST(a11_pass)
     assert_true(seen > 10 && seen < 35);
 }
 
-/* A12: checks the refraction of a ray half a radius off the centre of a ball of
- * index 1.5. It enters at 30 degrees, continues at asin(1/3) = 19.4712 degrees,
- * is deflected by twice the difference, and crosses the axis .8949 behind the
- * ball. */
+/* A12: refraction of a ray half a radius off the centre of a ball of index 1.5.
+ * It enters at 30 degrees to the normal and continues at asin(1/3) = 19.4712
+ * degrees. It is deflected by twice the difference, and crosses the axis .8949
+ * behind the ball. */
 TEST(a12_refract)
 {
     struct stage *s = open_reference_for_text(
         GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
     const struct twin_ray ray = make_ray(.5, 0, -5, 0, 0, 1);
     const double a = asin(.5), b = asin(.5 / 1.5);
-    /* The ray leaves the ball at the angle ROUND from the axis and then runs at
-     * TURN degrees to the axis. */
+    /* The ray leaves the ball at a point at the angle ROUND from the axis. From
+     * there it runs at TURN radians to the axis. */
     const double round = 2 * b - a, turn = 2 * (a - b);
     const double cross = cos(round) + sin(round) / tan(turn);
     struct glint_described_object *w = &s->scene.object[1];
 
-    /* A small ball where the ray crosses the axis is visible; a ball next to
-     * that point is not. */
+    /* A small ball at the crossing of ray and axis is visible, but not a ball
+     * beside it. */
     w->kind = GLINT_DESCRIBED_SPHERE;
     w->radius = 1e-6;
     w->at[0] = 0;
@@ -421,9 +422,8 @@ TEST(a12_outside)
     assert_in_range(seen, 20, 180);
 }
 
-/* A13: checks that each corner of a triangle shows its texel, that light is
- * interpolated linearly between texel centres, and that the texture repeats
- * outside 0 .. 1. */
+/* A13: each corner of a triangle shows its texel. Light is interpolated
+ * linearly between texel centres. The texture repeats outside 0 .. 1. */
 TEST(a13_texture)
 {
     static const char text[] =
@@ -439,8 +439,8 @@ TEST(a13_texture)
     assert_rgb_light(trace_ray_in_text(text, 0, 0, 0, 0, 0, 1), .5, .5, .5);
 }
 
-/* A14: checks that a ray misses a triangle without area, and misses an object
- * if the ray lies in the object's plane. */
+/* A14: a ray misses a triangle without area. It also misses an object if the
+ * ray lies in the object's plane. */
 TEST(a14_misses)
 {
     static const struct {
@@ -495,8 +495,8 @@ TEST(a15_sphere)
     close_reference(s);
 }
 
-/* Checks that a shadow catcher of strength .6 removes .6 of the occluded light
- * from the picture, and leaves the picture unchanged where no light arrives. */
+/* A shadow catcher of strength .6 removes .6 of the occluded light from the
+ * picture. Where no light arrives, it leaves the picture unchanged. */
 TEST(catcher)
 {
     static const char text[] =

@@ -68,9 +68,9 @@ void reference_close(struct twin *twin)
 
 /* ------------------------------------------------------------------ lights */
 
-/* Computes the light of LIGHT at PLACE. Sets TOWARD to its direction and RGB to
- * the light that a white surface facing it reflects. Returns the distance of
- * LIGHT. */
+/* Computes the light of LIGHT at PLACE. Sets TOWARD to the direction of LIGHT,
+ * and RGB to the light that a white surface facing LIGHT reflects. Returns the
+ * distance of LIGHT. */
 static double compute_light_at_place(const struct glint_described_light *light,
                                      const double place[3], double toward[3],
                                      double rgb[3])
@@ -105,8 +105,8 @@ compute_light_sine_radius(const struct glint_described_light *light,
                : fmin(light->radius / vec_normalise(off), .5);
 }
 
-/* Points on the disc of a light, the targets of shadow rays; the same points as
- * in the run time. */
+/* points on the unit disc, which shadow rays to a light aim at; the same as in
+ * the run time */
 static const double four[4][2] = {
     {.66446, .24185}, {-.24185, .66446}, {-.66446, -.24185}, {.24185, -.66446}};
 static const double sixteen[16][2] = {
@@ -117,9 +117,9 @@ static const double sixteen[16][2] = {
     {-.76474, -.44318}, {.89713, -.19724},  {-.54752, .77878},
     {-.12650, -.97610}};
 
-/* Changes TOWARD from the direction of the centre of a light at DISTANCE to the
- * direction of point I of N points of the light's disc. The axes of the disc
- * are those of the run time, whose z axis points into the picture. */
+/* Changes TOWARD from the direction of the centre of a light to that of point I
+ * of N points on its disc. The light is at DISTANCE. The axes of the disc are
+ * those of the run time, whose z axis points into the picture. */
 static void aim_at_light_disc(const struct glint_description *scene,
                               const struct glint_described_light *light,
                               double toward[3], double distance, int i, int n)
@@ -145,8 +145,8 @@ static void aim_at_light_disc(const struct glint_description *scene,
     vec_normalise(toward);
 }
 
-/* Returns the fraction of the light at DISTANCE that reaches HIT. Objects
- * beyond the light do not occlude it (A10). */
+/* Returns the fraction of a light at DISTANCE that reaches HIT. Objects farther
+ * away than the light do not occlude it (A10). */
 static double
 compute_light_visibility(const struct twin *twin, const struct twin_hit *hit,
                          const struct glint_described_light *light,
@@ -238,7 +238,8 @@ static void compute_phong_terms(const struct twin *twin,
 
         if (facing <= 0)
             continue;
-        /* cosine between the mirrored light R = 2 (N.L) N - L and the viewer */
+        /* glint: the cosine between the viewer and the mirrored light R = 2
+         * (N.L) N - L */
         glint = vec_dot(l, toward) - 2 * facing * vec_dot(hit->shading, toward);
         glint = glint > 0 ? pow(glint, m->power) : 0;
         if (m->is_metal)
@@ -288,7 +289,7 @@ struct passing {
     bool is_bent; /* true: refraction has changed the ray's direction */
 };
 
-/* Refracts RAY at a surface, or mirrors it at total reflection. Returns
+/* Refracts RAY at a surface; at total reflection mirrors it instead. Returns
  * whether it was mirrored. */
 static bool refract_or_reflect(struct twin_ray *ray, const double normal[3],
                                double eta)
@@ -319,8 +320,8 @@ static void move_to_ball_exit(const struct twin *twin,
         refract_or_reflect(&p->ray, back, index);
 }
 
-/* Moves P through the surface at HIT: through a ball to its exit point (A11),
- * in other objects through this surface only. */
+/* Moves P through the surface at HIT: if the object is a ball, to the point
+ * where it leaves the ball (A11), else just behind the surface. */
 static void pass_through_surface(const struct twin *twin,
                                  const struct twin_hit *hit, struct passing *p)
 {

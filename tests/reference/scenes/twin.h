@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reference renderer of scenes, in double precision. It follows the same light
- * paths as the integer renderer, ray by ray; tests compare the integer
- * renderer with it.
+ * paths as the integer renderer, ray by ray; tests compare the integer renderer
+ * with it.
  *
  *     reference_open(&twin, &scene);
  *     reference_render_image(&twin, &view, workers, pixels);
@@ -12,13 +12,13 @@
  *   out  for each pixel the light of objects, and the fraction of the
  *        background that they cover
  *
- * Method: several primary rays per pixel. At a hit, Phong's terms of all lights
- * that are not occluded, then one mirrored ray, and one transmitted ray through
- * at most eight surfaces. Hits of these rays are lit likewise, but do not
- * mirror. twin_around.c adds environment light. Triangles are intersected by
- * [Moller97] in a tree of bounding boxes, spheres and planes by their
- * equations. A ray skips the object that it starts from, or for a mesh the
- * triangle.
+ * Method: each pixel has several primary rays. A hit gets Phong's terms of all
+ * lights that are not occluded. It starts one mirrored ray, and one transmitted
+ * ray, which passes through at most eight surfaces. Hits of these rays get the
+ * same light, but start no mirrored rays. twin_around.c adds environment light.
+ * Triangles are intersected by [Moller97] in a tree of bounding boxes, spheres
+ * and planes by their equations. A ray skips the object that it starts from, or
+ * only the triangle if the object is a mesh.
  */
 #ifndef GLINT_TOOLS_SCENES_TWIN_H
 #define GLINT_TOOLS_SCENES_TWIN_H
@@ -41,9 +41,10 @@ struct twin {
     const struct glint_description *scene;
     /* shadow rays per light: 1, 4 or 16; reference_open() sets 1 */
     int shadow_points;
-    /* Samples of a Ward lobe. 1 to 32: the same samples as in the run time;
-     * reference_open() sets 8. More than 32: this number of samples of the
-     * whole lobe from the finest mipmap level, different for each ray. */
+    /* Number of samples of a Ward lobe. 1 to 32: the same samples as in the run
+     * time; reference_open() sets 8. More than 32: the samples cover the lobe
+     * without blur by mip levels; they read the finest level and differ from
+     * ray to ray. */
     int ward_samples;
     /* tangent of the angle that a pixel subtends; set by
      * reference_render_image() */
@@ -58,9 +59,9 @@ struct twin {
     /* [n_objects]: light maps of translucent objects; NULL: the scene has no
      * translucent object */
     struct twin_map *map;
-    /* [n_stones]: exact scattering rows for meshes, of the same resolution as
-     * the baked fits, which they replace. NULL, as reference_open() sets: the
-     * baked fits are used. */
+    /* [n_stones]: exact scattering rows, which replace the baked fits for
+     * meshes; they must have the resolution of the fits. NULL, as set by
+     * reference_open(): the baked fits are used. */
     const struct glint_scatter_rows *rows;
 };
 
@@ -127,15 +128,15 @@ bool reference_intersect_object(const struct twin *twin, int object,
                                 const struct twin_ray *ray, double most,
                                 struct twin_hit *hit);
 
-/* Completes HIT on object O. On entry, HIT contains the triangle, and uv the
- * barycentric coordinates of its second and third corner. */
+/* Completes HIT on object O. On entry, hit->triangle is the triangle, and
+ * hit->uv the barycentric weights of its second and third corner. */
 void reference_complete_triangle_hit(const struct twin *twin,
                                      const struct glint_described_object *o,
                                      struct twin_hit *hit);
 
-/* Computes the light of LIGHT at HIT. Sets TOWARD to its direction, RGB to
- * the light that a white surface facing it would reflect, SHARE to the
- * visible fraction of LIGHT. Returns the cosine between TOWARD and the
+/* Computes the light of LIGHT at HIT. Sets TOWARD to the direction of LIGHT,
+ * RGB to the light that a white surface facing LIGHT would reflect, and SHARE
+ * to the visible fraction of LIGHT. Returns the cosine between TOWARD and the
  * shading normal. */
 double reference_compute_light_at_hit(const struct twin *twin,
                                       const struct twin_hit *hit,

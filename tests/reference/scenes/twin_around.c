@@ -92,9 +92,9 @@ static void interpolate_within_mipmap_level(const struct glint_environment *e,
     }
 }
 
-/* Sets RGB to the light at a fractional mipmap LEVEL. The weights of the two
- * nearest levels interpolate the variance of their blur, which is 4 times as
- * large for the coarser level. */
+/* Sets RGB to the light at a fractional mipmap LEVEL, blended from the two
+ * nearest levels. The weights interpolate the variance of their blur, which is
+ * 4 times as large in the coarser level. */
 static void interpolate_between_mipmap_levels(const struct glint_environment *e,
                                               const double toward[3],
                                               double level, double rgb[3])
@@ -197,8 +197,9 @@ void reference_make_metal_frame(const struct twin *twin,
     vec_cross(frame[2], frame[0], frame[1]);
 }
 
-/* Returns the weight of a lobe sample: the normalisation of the material's lobe
- * (1992 or later), not divided by the sampling density. */
+/* Returns the weight of a lobe sample, which is the lobe times the cosine of
+ * incidence, divided by the sampling density. The lobe is normalised as the
+ * material states (1992 or later). */
 static double compute_lobe_weight(const struct glint_described_material *m,
                                   double ho, double hn, double ni, double no)
 {
@@ -245,8 +246,8 @@ double reference_compute_metal_reflection(const struct twin *twin,
            (area * vec_dot(h, o) * hn * hn * hn);
 }
 
-/* Returns the factor from the spacing of N lobe samples to the blur of each, as
- * in scene/ward/ward_lobe.c. */
+/* Returns the blur of each of N lobe samples as a fraction of the lobe, like
+ * compute_footprint_of_sample_q16() in scene/ward/ward_lobe.c. */
 static double compute_footprint_factor(int n)
 {
     static const int at[5] = {1, 4, 8, 16, 32};
@@ -271,8 +272,8 @@ static double radical_inverse(unsigned i, int n)
     return v;
 }
 
-/* Computes N half-vector slopes, which sample the lobe of alpha 1. Their mean
- * square along each axis is SPREAD / 2. */
+/* Computes the slopes of N half vectors, which sample the lobe of alpha 1. Then
+ * scales them such that their mean square along each axis is SPREAD / 2. */
 static void compute_lobe_sample_slopes(int n, const double spread[2],
                                        double slope[GLINT_WARD_SAMPLES][2])
 {
@@ -297,9 +298,9 @@ static void compute_lobe_sample_slopes(int n, const double spread[2],
     }
 }
 
-/* Adds the light of one of N lobe samples, whose half-vector has slope SLOPE,
- * looked up in mipmap LEVEL and corrected by the angle between half-vector and
- * view. */
+/* Adds the light of one lobe sample to RGB. SLOPE: slopes of its half vector
+ * for alpha 1. LEVEL: mipmap level of a half vector in view direction, which is
+ * corrected by the angle between half vector and view. */
 static void add_lobe_sample(const struct twin *twin, const double slope[2],
                             const struct glint_described_material *m,
                             const double frame[3][3], const double out[3],
@@ -323,8 +324,9 @@ static void add_lobe_sample(const struct twin *twin, const double slope[2],
         rgb[c] += weight * light[c];
 }
 
-/* Adds N samples of the whole lobe from the finest mipmap level. TOWARD selects
- * an offset of the samples, so that the rays of a pixel use different ones. */
+/* Adds N samples of the complete lobe from the finest mipmap level. The samples
+ * have an offset that depends on TOWARD, so that the rays of a pixel use
+ * different ones. */
 static void add_lobe_by_samples(const struct twin *twin, const double toward[3],
                                 const struct glint_described_material *m,
                                 const double frame[3][3], const double out[3],

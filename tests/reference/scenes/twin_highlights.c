@@ -112,9 +112,9 @@ static int compare_highlight_flux(const void *a, const void *b)
     return p < q ? 1 : p > q ? -1 : 0;
 }
 
-/* Merges each of the highlights S[N] that is nearer than NEAR to a brighter one
- * into it. S is sorted by descending brightness. Returns the number of
- * remaining highlights. */
+/* Merges highlights of S[N] that are nearer to each other than NEAR, the
+ * fainter one into the brighter one. S is sorted by descending brightness.
+ * Returns the number of remaining highlights. */
 static int merge_near_highlights(struct sums *s, int n)
 {
     for (int i = 0; i < n; i++)

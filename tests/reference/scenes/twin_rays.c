@@ -7,8 +7,9 @@
 #include "glint/view.h"
 #include "reference/scenes/vec.h"
 
-/* Min distance between two triangles of a mesh along a ray, as a fraction of
- * the ray's length; prevents a second hit at a shared corner. */
+/* A ray that starts on a mesh is first moved forward by this fraction of 1 +
+ * its distance from the mesh's origin. So it does not hit a neighbouring
+ * triangle at a shared corner. */
 #define ACNE 1e-9
 
 /* ------------------------------------------------------ spheres and planes */
@@ -38,9 +39,9 @@ static bool intersect_sphere(const struct glint_described_object *o,
     return true;
 }
 
-/* Sets the texture coordinates on a ball. u is the longitude about the y axis,
- * 1/2 at the point that faces an unrotated camera; v is the latitude, upwards
- * from the lowest point. */
+/* Sets the texture coordinates on a ball. u is the longitude about the y axis;
+ * it is 1/2 at the point that faces an unrotated camera. v is the latitude,
+ * upwards from the lowest point. */
 static void set_ball_uv(const struct glint_description *scene,
                         const struct glint_described_object *o,
                         struct twin_hit *hit)

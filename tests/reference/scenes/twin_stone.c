@@ -74,8 +74,8 @@ static bool compute_barycentric(const struct twin_map *m,
     return inside;
 }
 
-/* Assigns each texel the triangle that covers it; a texel just outside a chart
- * gets the triangle of a neighbour texel. */
+/* Assigns each texel the triangle that covers its centre. A texel just outside
+ * a chart gets the triangle of a neighbouring texel. */
 static void assign_triangles_to_texels(const struct glint_description *s,
                                        const struct glint_described_object *o,
                                        struct twin_map *m)
@@ -401,9 +401,8 @@ void reference_compute_media_maps(const struct twin *twin)
  */
 
 /* Returns the reflectance of the coat divided by its reflectance at normal
- * incidence, from the transmittance PASSED. All light that is not
- * transmitted is reflected. The ratio is limited such that no channel
- * reflects more than 1. */
+ * incidence. PASSED: transmittance of the coat; all other light is reflected.
+ * The ratio is limited such that no channel reflects more than 1. */
 static double compute_coat_reflectance(const struct glint_described_material *m,
                                        const struct twin_map *map,
                                        double passed)

@@ -16,9 +16,10 @@ void reference_free_media_maps(struct twin *twin);
 /* Computes all light maps, with shadow_points shadow rays per light. */
 void reference_compute_media_maps(const struct twin *twin);
 
-/* Changes RGB from the light that the coat at HIT would mirror at normal
- * incidence to its light in direction TOWARD, and adds the light that leaves
- * the medium. */
+/* Completes the light RGB of a translucent object. On entry RGB is the light
+ * that the coat at HIT would mirror with its reflectance at normal incidence.
+ * Scales it to the reflectance for direction TOWARD, and adds the light that
+ * leaves the medium. */
 void reference_add_medium_light(const struct twin *twin,
                                 const struct twin_hit *hit,
                                 const double toward[3], double rgb[3]);

@@ -126,7 +126,8 @@ static bool ray_passes_box(const struct twin_node *node,
         const double a = (node->low[i] - ray->from[i]) * inverse;
         const double b = (node->high[i] - ray->from[i]) * inverse;
 
-        if (isnan(a) || isnan(b)) /* the ray lies in the plane of a side */
+        /* The quotients are NaN if the ray lies in the plane of a face. */
+        if (isnan(a) || isnan(b))
             continue;
         from = fmax(from, fmin(a, b));
         to = fmin(to, fmax(a, b));
@@ -135,8 +136,8 @@ static bool ray_passes_box(const struct twin_node *node,
 }
 
 /* Finds the intersection of RAY with triangle I nearer than hit->t, by
- * [Moller97]. V0, V1, V2 are the corners; the point is V0 + u (V1 - V0) + v (V2
- * - V0) (A13). */
+ * [Moller97]. The point is V0 + u (V1 - V0) + v (V2 - V0), where V0, V1 and V2
+ * are the corners (A13). */
 static bool intersect_triangle(const struct twin *twin, int i,
                                const struct twin_ray *ray, struct twin_hit *hit)
 {
