@@ -22,8 +22,8 @@ struct passing {
     int64_t spread_q40; /* angular variance of the rays of a pixel, radians^2 */
 };
 
-/* Starts a secondary ray at SURFACE, on the side from which the previous ray
- * came, or, if BEYOND is set, on the opposite side. */
+/* Starts a secondary ray at SURFACE. It starts on the side from which the
+ * previous ray came, or on the opposite side if BEYOND is set. */
 static void start_secondary_ray(const struct glint_scene *s,
                                 const struct glint_met_surface *surface,
                                 int beyond, struct passing *p)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Computes the light that lamps and suns cast on a point, and traces rays to
- * find the fraction of it that is in shadow. */
+ * Computes the light that lamps and suns cast on a point. Traces rays to find
+ * the fraction of this light that is in shadow. */
 #include "base/divide.h"
 #include "scene/state.h"
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Returns the lights of the scene that the camera sees, as lamps for which the
- * engine draws lens flares, and the fraction of a region of the picture that
- * objects hide. */
+ * Converts the scene's lights that the camera sees to lamps, for which the
+ * engine draws lens flares. Computes the fraction of a region of the picture
+ * that objects hide. */
 #include "base/real.h"
 #include "scene/state.h"
 
@@ -28,9 +28,9 @@ static int count_visible_light_points(const struct glint_scene *s,
     return seen * (POINTS / n);
 }
 
-/* Sets the flux of LAMP, whose light LIT is at distance T: pi times the light
- * of a white surface at that distance, times the number of pixels per solid
- * angle, f^2 / cosine^3 (f: focal length, pixels). */
+/* Sets the flux of LAMP, whose light LIT is at distance T. The flux is pi times
+ * the light of a white surface at that distance, times the number of pixels per
+ * solid angle, f^2 / cosine^3. f is the focal length in pixels. */
 static void set_lamp_flux(const struct glint_scene *s,
                           const struct glint_lit *lit, int32_t t,
                           int32_t cosine_q30, struct glint_scene_lamp *lamp)

@@ -654,8 +654,8 @@ static int find_end_pixel_left_of(int32_t x_q8, int side, int32_t off_q8)
  * such a triangle its edge functions, and the sum of any two, are below 2^30 */
 enum { SMALL_Q8 = 48 << 8 };
 
-/* Returns the box of pixels that a triangle may cover: the whole picture if a
- * corner is behind the camera or far off-screen. */
+/* Returns the box of pixels that a triangle may cover. It is the whole picture
+ * if a corner is behind the camera or far off-screen. */
 static struct glint_box
 compute_triangle_box(const struct glint_scene *s, uint32_t object,
                      const struct glint_scene_triangle *t, int *is_small)
@@ -727,9 +727,9 @@ static int is_triangle_facing_camera(const struct glint_scene *s,
 
 enum { BOTH_SIDES = -1 };
 
-/* If FACING is BOTH_SIDES, counts the entries in tile lists (bins) for the
- * triangles of all meshes. Otherwise appends to these lists the triangles that
- * face the camera (1) or those that face away (0). */
+/* Counts the triangles of all meshes in the tiles' lists (bins) if FACING is
+ * BOTH_SIDES. Otherwise appends to these lists the triangles that face the
+ * camera (FACING 1) or face away from it (0). */
 static void sort_triangles_into_tile_lists(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {
@@ -805,9 +805,9 @@ compute_edge_function_of_corners(const struct glint_corner *a,
                          (int64_t)a->x * b->y - (int64_t)b->x * a->y};
 }
 
-/* Decides on which side of an edge samples exactly on the edge lie, by the sign
- * of the edge function's first nonzero coefficient. Returns 0 if all
- * coefficients are 0. */
+/* Assigns samples exactly on an edge to one of its sides, by the sign of the
+ * edge function's first nonzero coefficient. Returns 0 if all coefficients are
+ * 0. */
 static int assign_edge_samples_to_side(struct line *l)
 {
     const int is_out =

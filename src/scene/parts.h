@@ -147,9 +147,9 @@ struct glint_scene_highlights {
                                            struct glint_arena *arena);
     /* Clears the sums of light of the previous picture. */
     void (*begin)(struct glint_highlight_state *bright);
-    /* Adds the fraction SHARE_Q4 of light RGB_Q15, which object OBJECT
-     * reflects, to the sums at the pixel whose middle is (X, Y), pixels q8 from
-     * the top left corner. */
+    /* Adds the fraction SHARE_Q4 of light RGB_Q15 to the sums of a pixel.
+     * Object OBJECT reflects this light. (X, Y) is the pixel's middle, pixels
+     * q8 from the top left corner. */
     void (*note)(struct glint_highlight_state *bright, uint32_t object,
                  int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
                  int share_q4);

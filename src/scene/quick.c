@@ -91,8 +91,9 @@ static void prepare_row_spans_of_ball(const struct glint_scene *s,
     p->span.is_there = 1;
 }
 
-/* Solves for X the quadratic (C - M.x^2) X^2 - 2 M.x h X + C (1 + Y^2) - h^2 <=
- * 0 with h = M.y Y + M.z; prepare_row_spans_of_ball() defines C, M, X and Y. */
+/* Solves for X the quadratic inequality (C - M.x^2) X^2 - 2 M.x h X + C (1 +
+ * Y^2) - h^2 <= 0. h is M.y Y + M.z. prepare_row_spans_of_ball() defines C, M,
+ * X and Y. */
 int glint_scene_find_ball_span(const struct glint_scene *s,
                                const struct glint_placed *p, int y, int32_t *x0,
                                int32_t *x1)

@@ -56,10 +56,10 @@ static inline void glint_quick_normalise(const int32_t v[3],
 void glint_quick_prepare_balls(struct glint_scene *scene);
 
 /* Sets RAY to the ray through position (X, Y), with an error of 2^-24 per
- * component, and SURFACE to its intersection with object or triangle ID; a ray
- * that just misses a triangle is moved to the triangle's edge. Returns 0 if the
- * fast path does not apply: near the rim of a ball, and for triangles that are
- * near the camera or have a texture. */
+ * component. Sets SURFACE to the ray's intersection with object or triangle ID.
+ * A ray that just misses a triangle is moved to the triangle's edge. Returns 0
+ * if the fast path does not apply: near the rim of a ball, and for triangles
+ * that are near the camera or have a texture. */
 int glint_quick_find_surface(struct glint_scene_worker *w, uint32_t id,
                              int32_t x_q8, int32_t y_q8,
                              struct glint_scene_ray *ray,

@@ -86,10 +86,10 @@ struct glint_spot_on {
 void glint_ray_shear_to_axis(const struct glint_scene_ray *ray,
                              struct glint_sheared *to);
 
-/* Finds the intersection of RAY with the triangle, edges included; returns 0 if
- * RAY misses it. A vertex is sheared and rounded in the same way in every
- * triangle that has it, and all other steps are exact, so no ray passes between
- * two triangles that share an edge. */
+/* Finds the intersection of RAY with the triangle, edges included. Returns 0 if
+ * RAY misses the triangle. A vertex is sheared and rounded in the same way in
+ * every triangle that has it, and all other steps are exact. So no ray passes
+ * between two triangles that share an edge. */
 int glint_ray_intersect_triangle(const struct glint_sheared *ray,
                                  const int32_t *const vertex[3],
                                  struct glint_spot_on *spot);

@@ -7,12 +7,13 @@
  *   in positions of objects; the directions to the points of a sun's disc
  *   out whether a point of the scene sees a point of the disc
  *
- * Grid coordinates are u and v across and h along the ray from the middle of
- * the sun's disc, integer steps, within +-2^29. Vertices are rotated once per
+ * Grid coordinates are integer steps within +-2^29: u and v across the ray from
+ * the middle of the sun's disc, h along this ray. Vertices are rotated once per
  * frame and rounded in the same way in all their triangles, so that no ray
  * passes between two triangles that share an edge. Rays to other points of the
- * disc are slanted: an object's footprint in the grid is enlarged by the slant
- * between the object's top and the lowest point for which the grid is valid. */
+ * disc are slanted. So the footprint of an object in the grid is enlarged by
+ * the max offset of such rays, over the height from the lowest point for which
+ * the grid is valid to the object's top. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/mesh.h"
@@ -24,8 +25,8 @@ enum {
     SORTED = 64 /* max length of a cell's list that is sorted by height */
 };
 
-/* Returns the max offset, across the grid, of the rays to any point of the
- * sun's disc over a height of HEIGHT steps. HEIGHT must be below 2^32. */
+/* Returns the max offset, across the grid, that rays to any point of the sun's
+ * disc reach over a height of HEIGHT steps. HEIGHT must be below 2^32. */
 static inline int64_t compute_max_ray_offset(const struct glint_shadow *shadow,
                                              int64_t height)
 {
@@ -514,9 +515,8 @@ struct below {
     int32_t across_q8[2];
 };
 
-/* Returns whether the ray from BELOW to a point of the sun's disc hits any
- * object in the list of BELOW's cell, other than the object of SURFACE
- * itself. */
+/* Returns whether the ray from BELOW to a point of the sun's disc hits an
+ * object in the list of BELOW's cell. Skips the object of SURFACE itself. */
 static int is_ray_blocked_in_cell(const struct glint_scene *s,
                                   const struct glint_shadow *shadow,
                                   const struct below *below,

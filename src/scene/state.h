@@ -456,10 +456,10 @@ glint_scene_lit_fraction(const struct glint_scene *scene,
 void glint_scene_find_perpendicular_vectors(const int32_t d_q30[3],
                                             int32_t u_q30[3], int32_t v_q30[3]);
 
-/* Sets TOWARD_Q30 to the direction from PLACE to LIT, and LEVEL_Q15 to the
+/* Sets TOWARD_Q30 to the direction from PLACE to LIT. Sets LEVEL_Q15 to the
  * light that LIT casts on a white surface at PLACE that faces LIT. Returns the
- * distance of LIT in steps; GLINT_FAR for a sun; 0 if PLACE is the position of
- * LIT. */
+ * distance of LIT: in steps for a lamp, GLINT_FAR for a sun, or 0 if LIT is at
+ * PLACE. */
 int32_t glint_scene_compute_light_at(const struct glint_scene *scene,
                                      const struct glint_lit *lit,
                                      const int32_t place[3],
@@ -473,9 +473,9 @@ void glint_gloss_fill_power_table(struct glint_gloss *gloss, int32_t power_q8);
  * K_Q8 at least 1. */
 int32_t glint_compute_power_q15(int32_t x_q30, int32_t k_q8);
 
-/* Turns RAY, which points to the middle of a light source T steps away, to
- * sample point I of N (1, 4 or 16) on the light's disc. RADIUS is in steps, or,
- * if T is GLINT_FAR, the sine of the angular radius, q30. */
+/* Turns RAY from the middle of a light source, T steps away, to sample point I
+ * of N (1, 4 or 16) on the light's disc. RADIUS is in steps, or, if T is
+ * GLINT_FAR, the sine of the angular radius, q30. */
 void glint_scene_aim_at_light_point(struct glint_scene_ray *ray, int32_t t,
                                     int32_t radius, int i, int n);
 

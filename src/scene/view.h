@@ -34,8 +34,8 @@ struct glint_corner {
     int32_t x, y, w;
 };
 
-/* Depth of a plane as a function of position: at (x, y) of the picture, 2^30 *
- * (min z of the frame) / z is (across x + down y + at) >> shift. */
+/* The depth of a plane at position (x, y) of the picture: 2^30 * (min z of the
+ * frame) / z = (across x + down y + at) >> shift. */
 struct glint_depth {
     int64_t across, down, at;
     int shift;
@@ -63,8 +63,8 @@ struct glint_corner
 glint_view_project_vertex(const struct glint_scene_view *view,
                           const int32_t v[3]);
 
-/* Returns the pixels of the bounding box of N points V, in camera coordinates;
- * the whole picture if a point is behind the camera or too near. */
+/* Returns the box of pixels around N points V, in camera coordinates. It is the
+ * whole picture if a point is behind the camera or too near. */
 struct glint_box
 glint_view_find_box_of_points(const struct glint_scene_view *view,
                               const int32_t (*v)[3], int n);

@@ -109,7 +109,7 @@ struct glint_scene_motions {
     /* Lists in W the overlays that may cover row Y of its tile, from back to
      * front. */
     void (*list)(struct glint_scene_worker *w, int y);
-    /* Sets W->over to those overlays of the row's list that cover pixel X.
+    /* Sets W->over to the overlays in the row's list that cover pixel X.
      * Returns the end of the run of pixels, from X on, that the same overlays
      * cover. */
     int (*next)(struct glint_scene_worker *w, int x);

@@ -3,9 +3,9 @@
  * Resamples a panorama to an octahedron map.
  *
  * Each pixel is subdivided into points at most half a texel apart. Each point
- * adds its light to the texel in which it lies, so a texel averages the area
- * that it covers, and energy is preserved. Texels without points, which occur
- * if the picture is coarser than the map, get the light of the pixel at their
+ * adds its light to the texel in which it lies. So a texel averages the area
+ * that it covers, and energy is preserved. If the picture is coarser than the
+ * map, some texels have no points. They get the light of the pixel at their
  * centre.
  */
 #include "bake/environment/sphere.h"

@@ -16,8 +16,8 @@
 
 #include "glint/view.h"
 
-/* Min luminance x solid angle of an extracted light, as a fraction of the sum
- * over the whole sphere. */
+/* min luminance x solid angle of an extracted light, as a fraction of the sum
+ * over the sphere */
 #define LEAST_SHARE .002
 
 enum {

@@ -40,10 +40,10 @@ struct glint_located {
 
 void glint_localiser_init(struct glint_localiser *localiser, bool average);
 
-/* Locates the body in the next frame from the positions SEEN of N foods, in the
- * body's axes; IS_NEW marks foods that occur for the first time. N must be the
- * same for all frames. Returns NULL, or an error text; the pose is then not
- * set. */
+/* Locates the body in the next frame. SEEN: positions of N foods in the body's
+ * axes. IS_NEW marks foods that occur for the first time. N must be the same
+ * for all frames. Returns NULL, or an error text; the pose is not set after an
+ * error. */
 const char *glint_localise_body(struct glint_localiser *localiser, int n,
                                 const double (*seen)[3], const bool *is_new,
                                 struct glint_located *located);

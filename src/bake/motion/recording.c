@@ -221,8 +221,8 @@ static bool consume_json_value(struct recording *r)
     return true;
 }
 
-/* Sets an error at LINE and COLUMN of the current piece, from 1, with the
- * frame's index if the piece is a frame. Returns false. */
+/* Sets an error at LINE and COLUMN of the current piece, both counted from 1.
+ * Adds the frame's index to the text if the piece is a frame. Returns false. */
 static bool set_error_in_piece(const struct recording *r, int line, int column,
                                const char *format, ...)
 {

@@ -210,9 +210,9 @@ bool glint_describe_parse_plane(struct glint_describer *d)
 
 /* -------------------------------------------------------------------- mesh */
 
-/* Sets OF[n_names] to the indices of those materials of the scene that MESH
- * names. Unknown names get the material of object O; if O has no material, they
- * are errors. */
+/* Sets OF[n_names] to the indices of the scene's materials for the names in
+ * MESH. A name that the scene does not define gets the material of object O, or
+ * is an error if O has none. */
 static bool find_mesh_materials(struct glint_describer *d,
                                 const struct glint_described_object *o,
                                 const struct glint_mesh *mesh, const char *file,

@@ -32,8 +32,8 @@ struct mesher {
     bool has_uv, has_normals;
     struct corner *corner;
     struct glint_scene_triangle *triangle;
-    /* [n_slots]: hash table of vertices by content; an entry is the vertex
-     * index + 1; 0: free */
+    /* [n_slots]: hash table of vertices by content; entries are vertex indices
+     * + 1, or 0 if free */
     uint32_t *slot;
     uint32_t n_slots, n_corners, n_triangles;
 };

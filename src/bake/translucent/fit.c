@@ -222,8 +222,8 @@ static void mirror_kernels(struct glint_scatter_fit *fit)
     }
 }
 
-/* Returns the sum of those entries of kernel H around texel X that lie inside
- * the map. */
+/* Returns the sum of the entries of kernel H, centred at texel X, that lie
+ * inside the map. */
 static double sum_kernel_inside_map(const struct glint_scatter_fit *fit, int x,
                                     const double *h)
 {

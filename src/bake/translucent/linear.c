@@ -215,8 +215,8 @@ static void compute_gram_matrix(const struct glint_tall *a, double *g,
             g[j * m + k] = g[k * m + j];
 }
 
-/* Sets TERMS to the leading terms of A from the left vectors Y[][rows], which
- * must be orthogonal but not normalised, and the right vectors V[][columns]. */
+/* Sets TERMS to the leading terms of A. Y[][rows]: left vectors, which must be
+ * orthogonal but not normalised. V[][columns]: right vectors. */
 static void set_leading_terms(const double *y, const double *v,
                               const struct glint_tall *a,
                               struct glint_terms *terms)
@@ -317,9 +317,9 @@ static int orthogonalise_work_columns(struct work *w, int i, int j)
     return 1;
 }
 
-/* Multiplies the vector of N numbers at X, STEP apart, by L', where L L' is the
- * correlation matrix of light. Correlation decreases by the same factor per
- * texel of distance. */
+/* Multiplies the vector of N numbers at X, STEP apart, by L'. L L' is the
+ * correlation matrix of light, which decreases by a constant factor per texel
+ * of distance. */
 static void apply_correlation_weights(double *x, int n, int step)
 {
     const double own = sqrt(1 - correlation * correlation);

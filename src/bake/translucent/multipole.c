@@ -75,15 +75,15 @@ double glint_slab_compute_exit(const struct glint_slab *slab, int n)
     return slab->diffusion * k * cos(k * slab->beyond);
 }
 
-/* Returns the solid angle / 4 pi of the rectangle from (0, 0) to (U, V), seen
- * from height Z above (0, 0). */
+/* Returns the solid angle, divided by 4 pi, of the rectangle from (0, 0) to (U,
+ * V) seen from height Z above (0, 0). */
 static double compute_rectangle_solid_angle(double u, double v, double z)
 {
     return atan2(u * v, z * sqrt(u * u + v * v + z * z)) / (4 * PI);
 }
 
-/* Returns the flux through a square of side STEP around (U, V), in the plane z
- * = 0, from a point source at depth Z, which may be negative. LOSS:
+/* Returns the flux from a point source at depth Z, which may be negative,
+ * through a square of side STEP around (U, V) in the plane z = 0. LOSS:
  * attenuation, 1 / mm, applied at the square's centre. */
 static double compute_flux_through_square(double u, double v, double z,
                                           double step, double loss)
@@ -98,8 +98,8 @@ static double compute_flux_through_square(double u, double v, double z,
     return (z < 0 ? -1 : 1) * angle * (1 + far) * exp(-far);
 }
 
-/* Returns the flux through a square of side STEP around (U, V) from the source
- * and its images: PAIRS pairs on either side of the slab. */
+/* Returns the flux through a square of side STEP around (U, V), summed over the
+ * source and its images. PAIRS: pairs of images on either side of the slab. */
 static double sum_image_fluxes(const struct glint_slab *s, int pairs, double u,
                                double v, double step)
 {

@@ -19,15 +19,15 @@
 
 /* ------------------------------------------------------------------- blocks */
 
-/* Computes the blocks of the inverse of a grid's matrix that lie near its
- * diagonal.
+/* Computes the blocks near the diagonal of the inverse of a grid's matrix.
  *
- * S_j are the diagonal blocks after elimination from the top, E_j the couplings
- * of block j to the next block, G(j, l) the blocks of the inverse. T_j = S_j^-1
- * E_j gives blocks above from blocks below: G(j, l) = T_j G(j + 1, l) for l >
- * j, and G(j, j) = S_j^-1 + T_j G(j + 1, j). Only blocks up to REACH from the
- * diagonal are stored. Entries of T decrease exponentially away from its
- * diagonal; entries below SMALL times the largest are dropped. */
+ * S_j are the diagonal blocks after elimination from the top. E_j are the
+ * couplings of block j to the next block. G(j, l) are the blocks of the
+ * inverse. With T_j = S_j^-1 E_j, each row of blocks follows from the row below
+ * it: G(j, l) = T_j G(j + 1, l) for l > j, and G(j, j) = S_j^-1 + T_j G(j + 1,
+ * j). Only blocks up to REACH from the diagonal are stored. Entries of T
+ * decrease exponentially away from its diagonal. Entries below SMALL times the
+ * largest are dropped. */
 #define SMALL 1e-11
 
 /* A symmetric positive definite matrix of side x side blocks of side x side
@@ -469,8 +469,8 @@ static double compute_harmonic_mean(double a, double b)
     return 2 * a * b / (a + b);
 }
 
-/* Sets the matrix of mode N, the source of each texel, and the light that
- * leaves each texel per unit of the mode. */
+/* Sets the matrix of mode N and, for each texel, its source and the light that
+ * leaves it per unit of the mode. */
 static void set_mode_matrix(struct compute *p, int n)
 {
     const int w = p->wide;

@@ -229,7 +229,7 @@ static bool (*const read[N_LINES])(struct reader *) = {
     read_slab_line,    read_index_line, read_medium_line,
     read_pattern_line, read_data_line,  read_model_line};
 
-/* Checks that the lines do not contradict each other and none is missing. */
+/* Checks that no line is missing and that no lines contradict each other. */
 static bool check_line_consistency(struct reader *r)
 {
     struct glint_stone_text *t = r->to;

@@ -113,8 +113,9 @@ struct glint_box_sample {
     struct glint_pupil box;
 };
 
-/* Boxes over a range of angles, ascending: for each angle the box that contains
- * the visible light of the whole band, and the boxes at single wavelengths. */
+/* The boxes of visible light at ascending angles of a range: one per angle,
+ * which contains the light of the complete band, and the boxes at single
+ * wavelengths. */
 struct glint_visible_profile {
     int n, n_samples;
     double sine[GLINT_PROFILE];

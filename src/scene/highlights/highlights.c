@@ -127,8 +127,8 @@ static void add_cell_to_highlight(const struct glint_highlight_cell *c,
     }
 }
 
-/* Appends the neighbours of square I that have light and belong to no highlight
- * yet to the list that ends with square LAST; returns the new last square. */
+/* Appends neighbours of square I to the list that ends with square LAST: those
+ * with light that belong to no highlight yet. Returns the new last square. */
 static int append_lit_neighbours(struct glint_highlight_state *b, int i,
                                  int last)
 {
@@ -260,8 +260,8 @@ static int remove_highlight(struct gathered *kept, int n, int i)
     return n - 1;
 }
 
-/* Merges the first pair of the *N highlights whose spots are near each other,
- * and sorts the list by brightness again. Returns 0 if there is no such
+/* Merges the first pair of highlights, among *N, whose spots are near each
+ * other. Then sorts the list by brightness again. Returns 0 if there is no such
  * pair. */
 static int merge_first_pair_of_near_highlights(struct glint_highlight_state *b,
                                                struct gathered *kept, int *n)

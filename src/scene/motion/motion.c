@@ -164,8 +164,8 @@ static int is_valid_pose(const struct glint_motion_header *h,
 
     for (int k = 0; k < 4; k++)
         square_q28 += (int64_t)p->turn_q14[k] * p->turn_q14[k];
-    /* each component of the quaternion has an error of at most half a unit, so
-     * the sum has an error of at most 2^15 */
+    /* Each component of the quaternion has an error of at most half a unit. So
+     * the sum of squares has an error of at most 2^15. */
     return is_position_in_motion_box(h, p->at) &&
            square_q28 >= (1 << 28) - (1 << 16) &&
            square_q28 <= (1 << 28) + (1 << 16);

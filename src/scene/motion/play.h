@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Playback of a recorded motion in a scene: play.c moves objects and finds the
- * food items that sensors see, layers.c draws overlays.
+ * Playback of a recorded motion in a scene. play.c moves objects and finds the
+ * food items that sensors see; layers.c draws overlays.
  *
  * Shells and lines are overlays, not objects: rays do not hit them. They are
  * composited from back to front over the shaded objects of a pixel, at samples
@@ -61,10 +61,10 @@ struct glint_motion_state {
     int n_layers, max_layers;
 };
 
-/* Returns whether a sensor sees a food item: whether the angle between D, the
- * vector from the sensor to the item, and the sensor's axis AXIS_Q30 is smaller
- * than half the angle of view, whose cosine is COS_HALF_Q30. Exact. D must be
- * within +-2^29. */
+/* Returns whether a food item is inside the view cone of a sensor. D is the
+ * vector from the sensor to the item, within +-2^29, and AXIS_Q30 the sensor's
+ * axis. The angle between them must be smaller than half the angle of view,
+ * whose cosine is COS_HALF_Q30. The result is exact. */
 int glint_motion_is_in_view_cone(const int32_t axis_q30[3],
                                  int32_t cos_half_q30, const int32_t d[3]);
 

@@ -22,9 +22,9 @@ enum { GLINT_STRIP = 32 };
 struct glint_spread {
     const struct glint_translucent *stone;
     glint_convolve_fn *convolve;
-    /* Size of the map in texels, powers of two; the translucent medium is tiled
-     * over it. If is_ball is set, columns wrap around and rows continue across
-     * the poles; otherwise no light enters outside the map. */
+    /* Size of the map in texels, powers of two. The translucent medium is tiled
+     * over the map. If is_ball is set, columns wrap around and rows continue
+     * across the poles. Otherwise no light enters outside the map. */
     int width, height;
     int is_ball;
     int16_t *light[3]; /* [height][width]: light that enters */

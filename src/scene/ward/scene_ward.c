@@ -167,8 +167,8 @@ static int is_slope_outside_lobe(uint32_t along_q30, int32_t hn_q30,
 }
 
 /* Computes the half vector between ray and light. Returns 0 if the light or the
- * eye is behind the surface, or if the lobe with squared alphas ALPHA_Q40 is 0
- * at this half vector. */
+ * eye is behind the surface. Also returns 0 if the lobe with squared alphas
+ * ALPHA_Q40 is 0 at this half vector. */
 static int compute_half_vector(const struct glint_scene_ray *ray,
                                const struct glint_brushed *brushed,
                                const int32_t toward_q30[3],

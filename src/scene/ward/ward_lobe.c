@@ -165,7 +165,7 @@ static void set_half_vector(struct glint_ward_lobe *lobe, int k,
 }
 
 /* Sets the spans of all samples. A texel of level 0 has a solid angle of 4 pi /
- * side^2, and level 0 blurs light by a variance of a quarter of that. */
+ * side^2. Level 0 blurs light by a quarter of that, as a variance. */
 static void set_spans_of_all_samples(struct glint_ward_lobe *lobe, int n,
                                      const int32_t alpha_q24[2], uint64_t b_q48,
                                      const struct glint_ward_options *options,
