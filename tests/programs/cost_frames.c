@@ -4,7 +4,9 @@
  * fitted, a third of them through lenses that are held out for validation.
  * Writes a line per frame to FILE: 1 if the frame is held out, its parameters,
  * the numbers of operations that its plan predicts, and the numbers counted
- * while drawing. If FILE exists, only draws the frames from number N on:
+ * while drawing.
+ *
+ * If FILE exists, only draws the frames from number N on.
  * tools/measure/cost-fit counts their instructions with callgrind.
  *
  * Lights, image sizes, quality settings, f-numbers and enabled effects are

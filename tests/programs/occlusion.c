@@ -31,7 +31,8 @@ enum {
 
 struct scene {
     const char *name;
-    /* lamp radius, px; width of the pole, px; its speed, px per frame */
+    /* radius of the lamp and width of the pole, px; speed of the pole, px per
+     * frame */
     double radius, pole, speed;
 };
 

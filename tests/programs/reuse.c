@@ -4,10 +4,11 @@
  * stationary lights. Frames have 1920x1080 codes on black, LIGHTS lights of a
  * night street, the default quality and three wavelengths.
  *
- * SCALE is a factor on the powers of the lights. With it, draws one frame and
- * then calls draw_and_time_frame() several times, for profilers: without reuse,
- * with reuse of the same lights, and with reuse of lights that moved by up to
- * half a pixel and changed their powers by up to a fifth.
+ * SCALE is a factor on the powers of the lights. With SCALE, only calls
+ * draw_and_time_frame(), for profilers: without reuse, with reuse of the same
+ * lights, and with reuse after the lights moved by up to 0.4 pixels and changed
+ * their powers by up to a fifth. The first frames without and with reuse do
+ * more work than later ones.
  *
  * Without SCALE, prints
  *   - the scale at which all but 1e-4 of the samples are at most a quarter of

@@ -2,11 +2,13 @@
  *
  * stone_rows DIR - bakes two translucent media, chess and veins, with all
  * scattering models that the run time can draw, for
- * tools/measure/scenes/stone-table. Prints a line each: medium, model, PSNR in
- * dB of the fit, and of the fit rounded to integers, against the light
- * scattered by the exact rows, and CPU seconds of the fit. The models of the
- * first medium are written to DIR/MODEL.glint. Media have 128 x 128 texels,
- * kernels 29 x 29.
+ * tools/measure/scenes/stone-table. Media have 128 x 128 texels, kernels 29 x
+ * 29.
+ *
+ * Prints a line for each medium and model: their names, the PSNR of the fit in
+ * dB, that of the fit rounded to integers, and the CPU seconds of the fit.
+ * PSNRs compare with light scattered by the exact rows. Writes the models of
+ * the first medium to DIR/MODEL.glint.
  */
 #include <math.h>
 #include <stdio.h>

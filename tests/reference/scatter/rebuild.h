@@ -38,8 +38,8 @@ void glint_store_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x,
 double glint_fit_tucker_term(float *left, int n, int k2, double *f, double *h);
 
 /* Factorises V, n rows of m entries, into non-negative F[terms][n] and
- * H[terms][m] by alternating least squares, one term after the other, clamped
- * to 0 [Cichocki09]. No round increases the weighted error. */
+ * H[terms][m]. Fits them by alternating least squares, one term after the
+ * other, clamped to 0 [Cichocki09]. No round increases the weighted error. */
 struct glint_positive {
     int n, m, terms;
     void (*row)(const void *ctx, int i, double *value, double *weight);

@@ -73,9 +73,9 @@ static double compute_row_rmse(struct glint_scatter_rows *rows,
     return judge_rows(rows, &o).rmse;
 }
 
-/* C1: physical plausibility. Checks that non-negative models have no negative
- * entries, that only the model of radial profiles is reciprocal, and that no
- * model creates energy. */
+/* C1: models are physically plausible. Non-negative models have no negative
+ * entries, only the model of radial profiles is reciprocal, and no model
+ * creates energy. */
 TEST(c1_physics)
 {
     for (int i = 0; i < 2; i++)
@@ -270,8 +270,8 @@ TEST(c9_profiles)
                     compute_row_rmse(&stone[i], GLINT_CANDIDATE_SUBEDIT, 0));
 }
 
-/* C10: checks that at equal size a decomposition of ten or more terms has a
- * smaller error than clusters with as many non-negative terms. */
+/* C10: at equal size, a decomposition of ten or more terms has a smaller error
+ * than clusters with as many non-negative terms. */
 TEST(c10_clusters)
 {
     for (int i = 0; i < 2; i++) {
@@ -342,8 +342,8 @@ TEST(c13_spread)
     glint_scatter_free_judgement(&j);
 }
 
-/* Checks that all models give finite results for a black medium and for a
- * medium of one texel, and that parameters out of range are rejected. */
+/* All models give finite results for a black medium and for a medium of one
+ * texel. Parameters out of range are rejected. */
 TEST(extremes)
 {
     struct glint_scatter_rows black, one;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Compares models of subsurface scattering: fits that the run time can draw,
- * and published models, all rebuilt from the same rows, in double precision.
+ * and published models. All are fitted to the same rows, in double precision,
+ * and the rows rebuilt from them are compared.
  *
  *     glint_scatter_judge(&rows, &candidate, &watch, &judgement);
  *     glint_scatter_free_judgement(&judgement);
@@ -96,10 +97,10 @@ struct glint_scatter_judgement {
 };
 
 /* Fits CANDIDATE to ROWS, rebuilds the rows from the fit and measures their
- * errors. Needs as much memory as ROWS, and half as much more for Tucker.
- * ROWS are unchanged afterwards. Returns GLINT_E_ARGUMENT if CANDIDATE is
- * out of range; may return GLINT_E_MEMORY or GLINT_E_CLOSED; JUDGEMENT is
- * then empty. */
+ * errors. Needs as much memory as ROWS, and half as much more for Tucker. ROWS
+ * are unchanged afterwards. Returns GLINT_E_ARGUMENT if CANDIDATE is out of
+ * range. May return GLINT_E_MEMORY or GLINT_E_CLOSED. After an error JUDGEMENT
+ * is empty. */
 enum glint_status
 glint_scatter_judge(struct glint_scatter_rows *rows,
                     const struct glint_scatter_candidate *candidate,

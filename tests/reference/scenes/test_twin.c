@@ -151,8 +151,7 @@ TEST(a4_inside)
     }
 }
 
-/* A5: checks that of three triangles behind each other the nearest is
- * visible. */
+/* A5: of three triangles behind each other, the nearest is visible. */
 TEST(a5_nearest)
 {
     struct stage *s = open_reference_for_text(
@@ -267,9 +266,9 @@ TEST(a9_mirror)
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, -1), 0, 0, 0);
 }
 
-/* A10: checks that a point is shadowed by a ball between it and a lamp at
- * height 5, but not by a ball below the point or beyond the lamp; includes
- * balls that nearly reach the lamp. */
+/* A10: a ball between a point and a lamp at height 5 shadows the point. Balls
+ * below the point, above the lamp or beside the ray do not. Some balls nearly
+ * reach the lamp, and one contains it. */
 TEST(a10_shadow)
 {
     static const struct {
@@ -378,8 +377,8 @@ TEST(a12_refract)
     w->at[0] = 2e-6;
     assert_rgb_light(reference_trace_ray(&s->twin, &ray), 0, 0, 0);
     close_reference(s);
-    /* Inside the ball, light that arrives beyond the critical angle of 41.8
-     * degrees does not leave it. */
+    /* Light that meets the ball's surface from inside, at more than the
+     * critical angle of 41.8 degrees to the normal, does not leave the ball. */
     assert_rgb_light(
         trace_ray_in_text(
             GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
@@ -394,8 +393,8 @@ TEST(a12_refract)
         .1, .2, .4);
 }
 
-/* A12: checks that a ball of lower index than its surroundings reflects all
- * light beyond an angle of incidence of 14.48 degrees. */
+/* A12: a ball of lower index than its surroundings reflects all light whose
+ * angle of incidence exceeds 14.48 degrees. */
 TEST(a12_outside)
 {
     static const char text[] =
@@ -470,8 +469,8 @@ TEST(a14_misses)
     }
 }
 
-/* A15: checks that a ray finds both intersections with a ball, from outside and
- * from inside, and that a grazing ray finds its single one. */
+/* A15: a ray finds both intersections with a ball, from outside and from
+ * inside. A grazing ray finds its single intersection. */
 TEST(a15_sphere)
 {
     struct stage *s =

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Environment light in the reference renderer: lookups in the baked
- * environment, and Ward's lobe under the environment and under lights, in
- * double precision, along the same light paths as the run time. Directions are
- * in the axes of baked scenes, whose z points away from the viewer.
+ * Environment light in the reference renderer, in double precision: lookups in
+ * the baked environment, and Ward's lobe under the environment and under
+ * lights. Light paths are those of the run time. Directions are in the axes of
+ * baked scenes, whose z points away from the viewer.
  */
 #include "reference/scenes/twin_around.h"
 
@@ -374,7 +374,7 @@ static void add_metal_reflection(const struct twin *twin,
     reference_make_metal_frame(twin, hit, frame);
     for (int k = 0; k < 3; k++) {
         out[k] = vec_dot(frame[k], back);
-        /* from the axes of baked scenes to those of the scene text */
+        /* converts from the axes of baked scenes to those of the scene text */
         frame[k][2] *= hand;
         rotate_to_environment(twin, frame[k], frame[k]);
     }
