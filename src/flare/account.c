@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frame statistics per bundle (ghost, light, wave): whether the bundle was
- * drawn, why not, and its work. No other file of the library refers to this
- * file, so only programs that call it link it.
- */
+ * Reports statistics of a drawn frame per bundle (one ghost, light and wave):
+ * whether the bundle was drawn, the reason if it was not, and its cost. No
+ * other file of the library calls these functions, so only programs that use
+ * them link this file. */
 #include "base/q.h"
 #include "flare/by_edges.h"
 #include "flare/dim.h"
 #include "flare/wave_sets.h"
 
-/* Returns the number of a bundle, counted over all combinations of ghost, light
- * and wave. */
+/* Returns the number of the bundle of GHOST, LIGHT and WAVE. All combinations
+ * are numbered by light first, then by ghost, then by wave. */
 static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
                                      int light, int wave)
 {
@@ -22,8 +22,8 @@ static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
 }
 
 /* Returns the index of the first planned bundle whose number is at least
- * NUMBER, or n_bundles if all are below; a binary search, as planned bundles
- * are sorted by number. */
+ * NUMBER. Returns n_bundles if all numbers are lower. Planned bundles are
+ * sorted by number, so this is a binary search. */
 static int find_first_planned_bundle(const struct glint_flare *f,
                                      int64_t number)
 {
@@ -55,8 +55,8 @@ static int find_planned_bundle(const struct glint_flare *f, int64_t number)
                : -1;
 }
 
-/* Returns the index of the wave set that the plan chose for GHOST and LIGHT; 0
- * if it planned no bundle of them. */
+/* Returns the index of the set of wavelengths that the plan chose for GHOST and
+ * LIGHT. Returns 0 if no bundle of GHOST and LIGHT was planned. */
 static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                                 int light)
 {
@@ -69,11 +69,11 @@ static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                : 0;
 }
 
-/* Returns the index of the bundle slot (of max_bundles) without which the plan
- * does not consider this bundle. Without wave sets it is the bundle's number.
- * With wave sets the plan first considers all waves of the first set, for each
- * ghost and light, and then chooses a set; the index is that of the last of
- * these waves. */
+/* Returns the index of the bundle slot that the plan must have in order to
+ * consider this bundle. The frame has max_bundles slots. Without wave sets the
+ * index is the bundle's number. With wave sets the plan first considers all
+ * waves of the first set, for each ghost and light, and then chooses a set. The
+ * index is then that of the last of these waves. */
 static int64_t compute_bundle_slot_index(const struct glint_flare *f, int ghost,
                                          int light, int wave)
 {
@@ -160,7 +160,7 @@ void glint_flare_account(struct glint_flare *flare, int ghost, int light,
         return;
     }
     if (place >= flare->cfg.max_bundles && place < flare->stats.need_bundles) {
-        /* the probe rays were traced by this function, not by the plan */
+        /* This function traced the probe rays; the plan did not. */
         account->probed = 0;
         account->outcome = GLINT_OUTCOME_NO_ROOM;
     } else if (at >= flare->n_drawn)

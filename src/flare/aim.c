@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts pixel positions to directions of light, in integers; for programs
- * without floating point. glint/view.h does the same in doubles.
- */
+ * Converts pixel positions to directions of light, in integers, for programs
+ * without floating point. glint/view.h has the same conversion in doubles. */
 #include "base/real.h"
 #include "glint/flare.h"
 
@@ -19,7 +18,8 @@ struct glint_real glint_flare_pixels_per_mm(const struct glint_lens *lens,
     return real_less(across, down) ? down : across;
 }
 
-/* Returns SMALL / LARGE, clamped to 1; 0 if SMALL is 0, whatever LARGE is. */
+/* Returns SMALL / LARGE, clamped to 1. Returns 0 if SMALL is 0, even if LARGE
+ * is 0, too. */
 static int32_t compute_clamped_ratio_q30(struct glint_real small,
                                          struct glint_real large)
 {
@@ -28,8 +28,8 @@ static int32_t compute_clamped_ratio_q30(struct glint_real small,
     return (int32_t)real_integer(real_over(small, large), 30, 1 << 30);
 }
 
-/* Computes COSINE and SINE of the angle between the x axis and the vector (X,
- * Y), whose components are 0 or more. For (0, 0) the angle is 0. */
+/* Sets COSINE and SINE to those of the angle between the x axis and the vector
+ * (X, Y). X and Y must be 0 or more. For (0, 0) the angle is 0. */
 static void compute_unit_direction(struct glint_real x, struct glint_real y,
                                    int32_t *cosine_q30, int32_t *sine_q30)
 {

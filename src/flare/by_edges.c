@@ -9,8 +9,8 @@
 
 /* ------------------------------------------------------------------ memory */
 
-/* Returns the max number of jobs of a parallel step: max number of bundles or
- * number of rows of tiles, whichever is larger. */
+/* Returns the max number of jobs of a parallel step. The first step has a job
+ * per bundle, the last a job per row of tiles. */
 static size_t count_max_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
@@ -18,8 +18,9 @@ static size_t count_max_jobs(const struct glint_flare_config *c)
     return rows > (size_t)c->max_bundles ? rows : (size_t)c->max_bundles;
 }
 
-/* This function and the next are called twice: with an arena that only measures
- * (they return NULL), then to allocate. */
+/* Allocates the memory from A. This function and the next are called twice:
+ * first with an arena that only measures, so that they return NULL, then to
+ * allocate. */
 struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
                                             const struct glint_flare_config *c)
 {
@@ -76,8 +77,8 @@ void glint_edges_clear_sums(struct glint_flare *f)
 
 typedef int weight_fn(const struct glint_flare *f, int job);
 
-/* Sorts N jobs by falling log2 of WEIGHT (their work), so that no worker begins
- * a long job when the others have finished. The order does not change the
+/* Sorts N jobs by falling log2 of their work, WEIGHT. So no worker begins a
+ * long job when the others have finished. The order does not affect the
  * picture. */
 static void sort_jobs_by_weight(struct glint_flare *f, int n, weight_fn *weight)
 {
@@ -110,8 +111,8 @@ static int count_tile_row_edges(const struct glint_flare *f, int row)
 
 /* ----------------------------------------------------------------- bundles */
 
-/* Returns the flux of bundle B if all its rays had energy 1, in display white
- * times pixels, clamped to 2^26. */
+/* Returns the flux that bundle B would have if all its rays had energy 1. The
+ * unit is display white times pixels; the result is clamped to 2^26. */
 static int64_t compute_bundle_flux(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* at most 2^20 */
@@ -125,11 +126,11 @@ static int64_t compute_bundle_flux(const struct glint_bundle *b)
     return ((up < 0 ? flux >> -up : flux << up) >> 8) + 1;
 }
 
-/* Returns the max light that one cell may give a pixel, display white, so that
- * sums do not overflow. Sums of _q36 in colours up to 4 stay below 2^63 as long
- * as no pixel gets more than 2^24. A cell cannot give a pixel more than the
- * cell's flux. If the flux of all bundles reaches 2^24, each cell is limited to
- * 2^23 / number of cells. */
+/* Returns the max light that one cell of a ray grid may add to a pixel, 1 =
+ * display white, so that sums do not overflow. Sums of _q36 in colours up to 4
+ * stay below 2^63 as long as no pixel gets more than 2^24. A cell cannot add
+ * more than its flux to a pixel. If the flux of all bundles reaches 2^24, each
+ * cell is limited to 2^23 / number of cells. */
 static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -156,10 +157,10 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
     return refs;
 }
 
-/* Converts bundle BUNDLE to edges, which are stored after the earlier edges of
- * worker WORKER. If not all fit into the worker's range, none is stored; then,
- * unless BINS is NULL, member refs of the bundle's slot is set to the number of
- * entries in BINS that the edges would need. */
+/* Converts bundle BUNDLE to edges and stores them after the earlier edges of
+ * worker WORKER. Stores no edge if they do not all fit into the worker's range.
+ * In this case, unless BINS is NULL, it sets member refs of the bundle's slot
+ * to the number of entries in BINS that the edges would need. */
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {
@@ -216,8 +217,8 @@ static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
     w->n_edges += ghost.n_edges;
 }
 
-/* Returns a copy of the flare's bins in which each tile begins at WORKER's own
- * entries. */
+/* Returns a copy of the flare's bins in which the list of each tile begins at
+ * the entries of WORKER. */
 static struct glint_bins make_worker_bins(const struct glint_flare *f,
                                           int worker)
 {
@@ -279,8 +280,8 @@ static int are_all_bundles_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Converts the bundles whose edges did not fit into the range of their worker;
- * their edges go to the range of any worker with enough space left. */
+/* Converts the bundles whose edges did not fit into the range of their worker.
+ * Stores their edges in the range of any worker that has enough space left. */
 static void emit_bundles_without_space(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);
@@ -298,9 +299,9 @@ static void emit_bundles_without_space(struct glint_flare *f)
         }
 }
 
-/* Converts all bundles to edges again, one after the other into one array, so
- * that the bundles that do not fit do not depend on the timing of workers.
- * After the first bundle that does not fit, all are dropped. */
+/* Converts all bundles to edges again, one after the other into one array. So
+ * the choice of dropped bundles does not depend on the timing of workers. Drops
+ * the first bundle that does not fit and all bundles after it. */
 static void emit_bundles_in_order(struct glint_flare *f)
 {
     int full = 0;
@@ -343,9 +344,8 @@ static void emit_all_bundles(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Reduces n_drawn to the bundles, counted from the first, whose entries fit
- * into the bins. The counts in the bins are undefined afterwards.
- */
+/* Reduces n_drawn to the number of leading bundles whose edges fit into the
+ * bins. The counts in the bins are undefined afterwards. */
 static void drop_bundles_that_overflow_bins(struct glint_flare *f)
 {
     struct glint_bins bins = make_worker_bins(f, 0);
@@ -364,9 +364,9 @@ static void drop_bundles_that_overflow_bins(struct glint_flare *f)
     f->n_drawn = n_kept;
 }
 
-/* Converts the workers' counts of entries per tile to start indices; a tile's
- * entries are in the order of workers. Returns the total number of entries.
- */
+/* Converts the workers' counts of bin entries per tile to start indices. In
+ * each tile the entries of worker 0 come first, then those of worker 1, and so
+ * on. Returns the total number of entries. */
 static int assign_bin_indices(struct glint_flare *f)
 {
     const int n_tiles = f->bins.tiles_x * f->bins.tiles_y;
@@ -387,9 +387,9 @@ static int assign_bin_indices(struct glint_flare *f)
     return sum;
 }
 
-/* Worker function: puts the edges that worker JOB has counted into the bins, at
- * the indices that assign_bin_indices() assigned to worker JOB. The calling
- * worker may be another one. */
+/* Worker function: puts the edges that worker JOB has emitted into the bins, at
+ * the indices that assign_bin_indices() reserved for worker JOB. WORKER, which
+ * runs this job, may be another worker. */
 static void bin_worker_edges_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;

@@ -33,7 +33,7 @@ void glint_flare_capacities(struct glint_flare_config *cfg,
 void glint_flare_frame_defaults(struct glint_flare_frame *frame,
                                 const struct glint_lens *lens)
 {
-    /* 1/8 code near black, in linear light: 0.125 / 255 / 12.92 */
+    /* light of 1/8 code near black in 8-bit sRGB: 0.125 / 255 / 12.92 */
     static const struct glint_real faintest = {1334925791, -45};
 
     *frame = (struct glint_flare_frame){.lens = lens,

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Computes the default wavelengths of a frame, their colours and weights, in
- * integers, for programs without floating point. */
+ * Computes the three default wavelengths of a frame, and their colours and
+ * weights. It uses integers, for programs without floating point. */
 #include "base/real.h"
 #include "glint/flare.h"
 
-/* Returns the flux of the lens's direct image, mm^2, with FRAC fraction bits.
- * W_Q30 is the wavelength as a position in the model's band, -1 .. 1. Each
- * coefficient of the polynomial is clamped to 2^27, so sums stay below 2^30. */
+/* Returns the flux of the lens's direct image (the light that is not
+ * reflected), mm^2, with FRAC fraction bits. W_Q30 is the wavelength as a
+ * position in the band of the model H, -1 .. 1. Each coefficient of the
+ * polynomial is clamped to 2^27, so sums stay below 2^30. */
 static int32_t compute_direct_image_flux(const struct glint_model_header *h,
                                          int32_t w_q30, int frac)
 {
@@ -26,8 +27,8 @@ void glint_flare_waves(struct glint_wave wave[GLINT_FLARE_WAVES],
         Q_CONST(1 / (0.650 * 0.650), 24), Q_CONST(1 / (0.532 * 0.532), 24),
         Q_CONST(1 / (0.450 * 0.450), 24)};
     const struct glint_model_header *h = lens->header;
-    /* number of fraction bits that gives the polynomial's constant term 27 bits
-     */
+    /* number of fraction bits with which the polynomial's constant term has 27
+     * bits */
     const int frac = -4 - h->direct_flux[0].exponent;
     const int32_t band_q24 = h->wave_hi_q24 - h->wave_lo_q24;
 

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Interpolates the table of ghost brightness (dim.h). Logarithms are
- * interpolated between nodes, which are sampled angles, so that the fraction of
- * a ghost that is drawn with its own rays changes smoothly as the light moves
- * or fades. If some wave of a ghost is blocked at a node, the ghost counts as
- * bright from the previous node to the next one.
- */
+ * Reads the table of ghost brightness (dim.h). The table has logarithms at
+ * sampled angles of the light (nodes), and they are interpolated between nodes.
+ * So the fraction of a ghost that is drawn with rays of each wave changes
+ * smoothly as the light moves or fades. If some wave of a ghost is blocked at a
+ * node, the ghost counts as bright from the previous node to the next one. */
 #include "flare/dim.h"
 
 enum { BRIGHT_Q8 = 1 << 16 };
 
-/* Returns value K of the table (glint_dim_get_values()) for GHOST, a logarithm,
- * interpolated at the angle whose sine is SINE; GLINT_DIM_DARK if one of the
- * two nodes around that angle has this value. */
+/* Returns value K of the table (glint_dim_get_values()) for GHOST, interpolated
+ * at the angle whose sine is SINE. The value is a logarithm. Returns
+ * GLINT_DIM_DARK if one of the two nodes around that angle has this value. */
 static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
                                      int32_t sine_q30, int ghost, int k)
 {
@@ -26,9 +25,9 @@ static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
     return a + q_narrow(q_shift((int64_t)(b - a) * (at_q16 & 65535), 16));
 }
 
-/* Returns whether the table has the brightness of GHOST for all waves at node
- * NODE, which means that no wave is blocked there. Returns 1 if NODE is out of
- * range. */
+/* Returns whether the table has the brightness of GHOST in all waves at node
+ * NODE. A brightness is missing where the wave is blocked. Returns 1 if NODE is
+ * out of range. */
 static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
                                      int ghost, int node)
 {
@@ -43,10 +42,10 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
     return 1;
 }
 
-/* If the ghost counts as bright in the interval before or after the current
- * interval of nodes, the result falls continuously, from 1 at the node that
- * both intervals share to the interpolated value, which it reaches halfway to
- * the other node at the latest. */
+/* A ghost may count as bright in the interval of nodes before or after the
+ * current one. Then the result falls continuously from 1 at the node between
+ * both intervals. It reaches the interpolated value at most half an interval
+ * away from that node. */
 int32_t
 glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)

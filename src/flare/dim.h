@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Table of the brightness of the ghosts of a lens, by wave and angle of the
- * light. If a ghost is so dim that its coloured outlines cannot be
- * distinguished, it is drawn with the rays of one wave instead of three.
+ * Table of the brightness of each ghost of a lens, by wavelength and by angle
+ * of the light. If a ghost is so dim that its coloured outlines cannot be
+ * distinguished, it is drawn with the rays of one wavelength instead of three.
  * nodes.c fills the table. */
 #ifndef GLINT_FLARE_DIM_H
 #define GLINT_FLARE_DIM_H
@@ -15,8 +15,8 @@
 enum {
     GLINT_DIM_WAVE = 1,  /* index of the wave whose rays also draw the other
                             waves of a dim ghost */
-    GLINT_DIM_WAVES = 3, /* number of waves with which dim ghosts share rays;
-                            with any other number they never do */
+    GLINT_DIM_WAVES = 3, /* number of waves for which the table exists; frames
+                            with another number of waves do not use it */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
     GLINT_DIM_DARK = INT16_MIN, /* table value of a wave that does not pass
@@ -33,54 +33,54 @@ struct glint_dim_method {
     /* Computes those nodes (sampled angles) of the table that the plan's first
      * N_LIGHTS lights need and that have not been computed before. */
     void (*fill_nodes)(struct glint_flare *flare, int n_lights);
-    /* Merges near lights of the plan's first N_LIGHTS lights, separately for
-     * each ghost: if the ghost is so dim that the shift is invisible, a light
-     * is merged into the nearest light that precedes it in the list, and both
-     * are drawn as one light at a position between them. The merged fraction of
-     * the light falls gradually with the brightness of the ghost. */
+    /* Merges lights that are close together, separately for each ghost, among
+     * the plan's first N_LIGHTS lights. If the ghost is so dim that the shift
+     * is invisible, a light is merged into the nearest light before it in the
+     * list. Both are then drawn as one light at a position between them. The
+     * brighter the ghost, the smaller is the merged fraction of the light. */
     void (*merge_near_lights)(struct glint_flare *flare, int n_lights);
     /* Returns the merged light that replaces LIGHT for GHOST, or NULL if
      * max_bundles is too small. The pointer is valid until the first bundle of
      * this ghost and light is planned. */
     struct glint_light *(*merged_light)(struct glint_flare *flare, int ghost,
                                         int light);
-    /* Returns the fraction of light I that is not merged into another light for
-     * GHOST, 0 .. GLINT_DIM_WHOLE_Q8. LIGHT is light I plus all light that was
-     * merged into it. */
+    /* Returns the fraction of LIGHT that is not merged into another light for
+     * GHOST, 0 .. GLINT_DIM_WHOLE_Q8. LIGHT is light number I plus all light
+     * that was merged into it. */
     int (*unmerged_fraction_q8)(const struct glint_flare_frame *frame,
                                 const struct glint_light *light, int i,
                                 int ghost);
-    /* Point to glint_dim_compute_own_rays_fraction_q8() and
-     * glint_dim_compute_wave_ratio_q16().
-     */
+    /* Pointers to glint_dim_compute_own_rays_fraction_q8() and
+     * glint_dim_compute_wave_ratio_q16(). */
     int (*own_rays_q8)(const struct glint_flare_frame *frame,
                        const struct glint_light *light, int ghost);
     int64_t (*wave_ratio_q16)(const struct glint_flare_frame *frame,
                               int32_t sine_q30, int ghost, int wave);
 };
 
-/* Returns log2 of the mean light of GHOST from LIGHT / the frame's parameter
- * dimmest, below which ghosts count as dim. If the table does not have the mean
- * light, returns 256, which is far above any ratio. */
+/* Returns log2 of the mean light of GHOST from LIGHT divided by the frame's
+ * parameter dimmest. Ghosts below that parameter count as dim. Returns 256, far
+ * above any ratio, if the table does not have the mean light. */
 int32_t
 glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light,
                                      int ghost);
 
-/* Returns the fraction of each wave's light, in ghost GHOST of LIGHT, that is
- * drawn with rays of the wave itself, 0 .. GLINT_DIM_WHOLE_Q8. The rest is
- * drawn with the rays of GLINT_DIM_WAVE. */
+/* Returns the fraction of a wave's light that is drawn with rays of this wave,
+ * 0 .. GLINT_DIM_WHOLE_Q8. It is the same for all waves of GHOST and LIGHT. The
+ * rest is drawn with the rays of GLINT_DIM_WAVE. */
 int glint_dim_compute_own_rays_fraction_q8(
     const struct glint_flare_frame *frame, const struct glint_light *light,
     int ghost);
 
-/* Returns the light of GHOST in wave WAVE / its light in GLINT_DIM_WAVE, at the
- * angle whose sine is SINE, without the colours of the waves; at most 2^11. */
+/* Returns the light of GHOST in wave WAVE divided by its light in
+ * GLINT_DIM_WAVE, at the angle whose sine is SINE; at most 2^11. The colours of
+ * the waves are not included. */
 int64_t glint_dim_compute_wave_ratio_q16(const struct glint_flare_frame *frame,
                                          int32_t sine_q30, int ghost, int wave);
 
-/* Returns the squared distance of two directions on the unit sphere, at most 4.
- */
+/* Returns the squared distance between two directions on the unit sphere, at
+ * most 4. */
 uint64_t glint_light_compute_squared_distance_q60(const struct glint_light *a,
                                                   const struct glint_light *b);
 
@@ -109,9 +109,9 @@ glint_dim_find_node_q16(const struct glint_flare_frame *frame, int32_t sine_q30)
 }
 
 /* Returns the GLINT_DIM_VALUES table values of ghost GHOST at node NODE, for a
- * white light of power 1. Value 0: log2 of the ghost's mean light in
- * GLINT_DIM_WAVE, 1 = display white, or of eight times that if the ghost is
- * folded. Value 1 + w: log2 of the total light of wave w. */
+ * white light of power 1. All are logarithms to base 2 of light, 1 = display
+ * white. Value 0: mean light in GLINT_DIM_WAVE; eight times that if the ghost
+ * is folded. Value 1 + w: total light of wave w. */
 static inline int16_t *
 glint_dim_get_values(const struct glint_flare_frame *frame, int node, int ghost)
 {

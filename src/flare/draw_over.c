@@ -34,8 +34,8 @@ void glint_flare_draw_over_passes(struct glint_flare *flare,
         pass[i] = under->pass[i];
     if (flare->stats.primitives > 0)
         glint_edges_draw(flare, &tiles, pass, under->n);
-    else /* without primitives the bins may still contain the edges of an
-            earlier frame */
+    else /* Without primitives the flare is not drawn, as its bins may contain
+            the edges of an earlier frame. */
         glint_workers_run(flare->cfg.workers, glint_tiles_count_rows(&tiles),
                           draw_tile_row_job, &alone);
 }

@@ -9,15 +9,15 @@
 #include "tile/blend.h"
 
 struct glint_flare_under {
-    const struct glint_pass *pass; /* [n], from back to front */
+    const struct glint_pass *pass; /* [n]: the passes, from back to front */
     int n;                         /* 0 .. GLINT_MAX_PASSES - 1 */
     const struct glint_blend *blend;
     struct glint_blend_rows *rows; /* [number of workers of the flare] */
 };
 
-/* Like glint_flare_draw(), with the passes of UNDER behind the flare. These are
- * called with the flare's tiles: at half resolution the pixels of a tile are 2
- * x 2 pixels of the picture. */
+/* Like glint_flare_draw(), but draws the passes of UNDER behind the flare. The
+ * passes get the tiles of the flare. At half resolution each pixel of a tile
+ * covers 2 x 2 pixels of the picture. */
 void glint_flare_draw_over_passes(struct glint_flare *flare,
                                   const struct glint_image *image,
                                   const struct glint_flare_under *under);

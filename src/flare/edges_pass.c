@@ -1,20 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * The flare as a pass (tile/pass.h): accumulates the edges of a tile into sums,
- * and converts the sums to light, row by row.
- */
+ * Draws the flare as a pass over tiles (tile/pass.h): accumulates the edges of
+ * a tile into sums, and converts the sums to light, row by row. */
 #include <stddef.h>
 
 #include "flare/by_edges.h"
 #include "flare/edges/ghost_shade.h"
 
-/* Frames with more outlines than this use sums of _q20 instead of _q16.
- * Rounding to _q16 has an error of up to half a unit per outline, which is 1/40
- * of a code near black. */
+/* Number of ghost outlines above which sums have 20 fraction bits instead of
+ * 16. With 16 bits, rounding has an error of up to half a unit per outline.
+ * Such an error is 1/40 of a code near black. */
 enum { FINE_OUTLINES = 1024 };
 
-/* Returns whether F has so many outlines that it needs sums of _q20. With a
- * soft edge each bundle may have GLINT_SOFT_RINGS outlines. */
+/* Returns whether F has so many outlines that its sums need 20 fraction bits.
+ * With a soft edge each bundle may have GLINT_SOFT_RINGS outlines. */
 static int are_fine_sums_needed(const struct glint_flare *f)
 {
     const struct glint_shade *shade = f->cfg.stop.shade;
@@ -23,7 +22,7 @@ static int are_fine_sums_needed(const struct glint_flare *f)
     return f->n_bundles > FINE_OUTLINES / rings;
 }
 
-/* Returns whether any row carries light into the tile on the right. */
+/* Returns whether any row carries light over to the tile on its right. */
 static int has_light_carry(const struct glint_edge_sums *s)
 {
     int64_t any = 0;
@@ -44,8 +43,8 @@ static void *begin_tile_row(const void *self, struct glint_box row, int worker)
     w->at_tile = ((row.y0 - f->bins.region.y0) >> log2) * f->bins.tiles_x;
     s->shade = f->cfg.stop.shade;
     s->patch = s->shade ? s->shade->method->draw : NULL;
-    s->scratch = w->rows; /* the rows are used only while edges are made, so now
-                             they are free as scratch memory */
+    s->scratch = w->rows; /* The memory of rows is unused once all edges are
+                             made, so it serves as scratch memory. */
     s->linear = glint_flare_get_edges(f)->linear;
     s->fine = are_fine_sums_needed(f);
     s->lit = 0;
@@ -64,8 +63,8 @@ static int accumulate_tile_edges(void *state, struct glint_box tile)
     const int n = start[1] - start[0];
     struct glint_edge_sums *s = &w->sums;
 
-    /* Carries change only in tiles that are drawn, so has_light_carry() need
-     * not be called after a dark tile. */
+    /* Carries change only in tiles that are drawn. So after a dark tile
+     * has_light_carry() would return 0 again and is not called. */
     s->lit = n > 0 || (s->lit && has_light_carry(s));
     if (!s->lit)
         return 0;

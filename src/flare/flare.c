@@ -8,7 +8,7 @@
 #include "flare/wave_sets.h"
 
 enum {
-    /* opening at which the stop's radius equals that of the model */
+    /* opening of a stop with the radius of the model's stop */
     WHOLE_OPENING_Q30 = 1 << 30,
     LEAST_OPENING_Q30 = 1 << 20
 };
@@ -28,8 +28,8 @@ static void allocate_worker(struct glint_flare_worker *w, struct glint_arena *a,
     w->edges = glint_edges_allocate_worker(a, c);
 }
 
-/* Allocates a flare from arena A. Called twice: with an arena that only
- * measures (returns NULL), then to allocate. */
+/* Allocates a flare from arena A. Called twice: first with an arena that only
+ * measures, so that it returns NULL, then to allocate. */
 static struct glint_flare *allocate_flare(struct glint_arena *a,
                                           const struct glint_flare_config *c)
 {
@@ -149,8 +149,8 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 
 /* ------------------------------------------------------------------ bundles */
 
-/* Sets the size of the drawn area, in pixels of the drawing resolution: that of
- * the picture, or half its width and height if HALF is 1. */
+/* Sets the size of the drawn area, in pixels of the drawing resolution. If HALF
+ * is 1, it has half the width and half the height of the picture. */
 static void set_drawn_size(struct glint_flare *f, int half)
 {
     f->half = half;
@@ -216,9 +216,9 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns the number of LIGHTS after removing those at the end of the list that
- * lie outside the model's range of angles, so that a frame with only such
- * lights costs nothing. */
+/* Returns the number of lights that remain of the N LIGHTS after those at the
+ * end of the list that the model does not cover are removed. So a frame with
+ * only such lights costs nothing. */
 static int count_lights_in_range(const struct glint_lens *lens,
                                  const struct glint_light *lights, int n)
 {
@@ -227,15 +227,16 @@ static int count_lights_in_range(const struct glint_lens *lens,
     return n;
 }
 
-/* Worker function: plans the bundles of all waves of the pair JOB of a ghost
- * and a light. */
+/* Worker function: plans the bundles of all waves for one ghost and one light.
+ * JOB is the number of this pair. */
 static void plan_ghost_and_light_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int ghost = job % n_ghosts, i = job / n_ghosts;
-    /* a copy, as a merged light is stored in the memory of the first bundle */
+    /* This is a copy, as the first bundle overwrites the memory of a merged
+     * light. */
     const struct glint_light light =
         f->plan.dims ? *r->dim->method->merged_light(f, ghost, i)
                      : f->plan.light[i];
@@ -255,10 +256,11 @@ static void plan_ghost_and_light_job(void *ctx, int job, int worker)
     }
 }
 
-/* Marks the bundles of invisible ghosts among the first N bundles by n_cells =
- * 0. The peaks of a ghost in a wave are summed over all lights, as the sum may
- * be visible although no single peak is; so a ghost is removed, in a wave, for
- * all lights or for none. Sums are integers, so their order does not matter. */
+/* Removes invisible ghosts among the first N bundles by setting n_cells to 0. A
+ * sum of light may be visible although no single peak is. So the peaks of a
+ * ghost in one wave are summed over all lights, and the wave is removed either
+ * for all lights or for none. The order of summation does not matter, as sums
+ * are integers. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -290,8 +292,8 @@ static void compact_visible_bundles(struct glint_flare *f, int n)
     }
 }
 
-/* Plans the bundles of all waves of N_JOBS pairs of a ghost and a light.
- * Returns the number of bundles planned, at most max_bundles. */
+/* Plans the bundles of N_JOBS pairs of a ghost and a light, in all waves.
+ * Returns the number of planned bundles, at most max_bundles. */
 static int plan_all_bundles(struct glint_flare *f, int n_jobs)
 {
     const int n_waves = f->plan.frame->n_waves;
@@ -397,8 +399,8 @@ int64_t glint_flare_looked(const struct glint_flare *flare)
     return n;
 }
 
-/* Sets the statistics of the frame to the totals over the bundles whose edges
- * fit into the bins. */
+/* Sets the statistics of the frame to totals over the drawn bundles: the first
+ * n_drawn, whose edges fit into the bins. */
 static void sum_drawn_statistics(struct glint_flare *f)
 {
     struct glint_flare_stats *s = &f->stats;
@@ -456,7 +458,7 @@ void glint_flare_draw(struct glint_flare *flare,
     if (flare->bins.region.y0 == 0)
         glint_flare_reset_tile_state(flare);
     if (flare->stats.primitives == 0)
-        return; /* the bins may contain the edges of an earlier frame */
+        return; /* The bins may contain the edges of an earlier frame. */
     tiles = glint_flare_prepare_tiles(flare, image);
     glint_edges_draw(flare, &tiles, pass, 0);
 }

@@ -36,11 +36,12 @@
 enum {
     CURVES = 3, /* number of curves (rounds) by which lights too close to be
                    distinguished are found */
-    PART = 4,   /* a round merges 1 / PART of the surplus lights */
+    PART = 4,   /* fraction of the surplus lights that a round merges: 1 / PART
+                 */
     BINS = 64,  /* number of bins of the histogram of merge costs */
     HELD = GLINT_LIGHT_HELD,
-    WORDS = 10 /* number of 32-bit words of struct glint_light that determine
-                  the sort order */
+    WORDS = 10 /* number of 32-bit words of struct glint_light by which lights
+                  are sorted */
 };
 
 #define ONE_Q30 (INT32_C(1) << 30)
@@ -70,9 +71,9 @@ uint64_t glint_light_compute_squared_distance_q60(const struct glint_light *a,
     return (uint64_t)(x * x) + (uint64_t)(y * y) + (uint64_t)(z * z);
 }
 
-/* Sets the azimuth of light B to that of (X, Y), and returns the length of (X,
- * Y). The length is 0 for a light on the axis, whose azimuth does not matter.
- */
+/* Sets the azimuth of light B to that of the vector (X, Y), and returns the
+ * vector's length. A length of 0 means a light on the axis, for which any
+ * azimuth is correct. */
 static int64_t set_light_azimuth(struct glint_light *b, int32_t x_q30,
                                  int32_t y_q30)
 {
@@ -91,15 +92,15 @@ static int64_t set_light_azimuth(struct glint_light *b, int32_t x_q30,
     return (length + scale / 2) / scale;
 }
 
-/* Sets the direction of light B to that of vector D, whose length does not
- * matter. */
+/* Sets the direction of light B to that of the vector D, which need not have
+ * unit length. */
 static void set_light_direction(struct glint_light *b,
                                 const struct direction *d)
 {
     const int64_t off = set_light_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
 
-    /* The length of the mean direction of two opposite lights is 0. */
+    /* Two opposite lights have a mean direction of length 0. */
     b->sine_q30 =
         length ? q_clamp_sat(off * ONE_Q30 / length, 0, ONE_Q30) : ONE_Q30;
     b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
@@ -107,12 +108,12 @@ static void set_light_direction(struct glint_light *b,
 
 /* ------------------------------------------------------------------- order */
 
-/* The array of lights that is sorted, and its sort order. */
+/* An array of lights to sort, and the sort order. */
 struct order {
     struct glint_light *light;
     int by_power; /* 1: the brightest first; 0: along a curve */
-    /* Corner of the plane of direction sines at which the curve begins, as
-     * offsets below (-1, -1), _q30. */
+    /* Corner at which the curve begins, in the plane of the sines of
+     * directions, as offsets below (-1, -1), _q30. */
     uint32_t x0, y0;
 };
 
@@ -130,8 +131,9 @@ static void list_light_members_as_words(const struct glint_light *b,
     word[9] = b->apart_q30;
 }
 
-/* Returns whether A comes before B in the order of falling power; lights of
- * equal power are ordered by their other members. */
+/* Returns whether A comes before B in the order of falling power. Lights of
+ * equal power are ordered by their other members, so that the order is
+ * unique. */
 static int is_brighter_light(const struct glint_light *a,
                              const struct glint_light *b)
 {
@@ -145,8 +147,8 @@ static int is_brighter_light(const struct glint_light *a,
     return 0;
 }
 
-/* Returns V - (-1 - ZERO): the coordinate V, -1 .. 1, relative to the corner at
- * which the curve begins, _q30. */
+/* Returns the coordinate V, -1 .. 1, relative to the corner at which the curve
+ * begins, which is at -1 - ZERO. */
 static uint32_t compute_curve_offset(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
@@ -166,9 +168,8 @@ static int is_light_before_in_order(const void *order, int i, int j)
 
     if (o->by_power || (dx | dy) == 0)
         return is_brighter_light(a, b);
-    /* Compares positions along the Z-order curve: the highest bit in which x or
-     * y differ decides; the bit of y ranks above the bit of x of the same
-     * weight. */
+    /* The Z-order curve compares the highest bit in which x or y differ. If the
+     * highest bits of both have the same weight, the bit of y decides. */
     return dx < dy && dx < (dx ^ dy) ? py < qy : px < qx;
 }
 
@@ -188,8 +189,9 @@ static void sort_lights(struct order *o, int n)
     glint_heap_sort(&heap, n);
 }
 
-/* Sorts N lights along the curve of round ROUND. Curves begin at multiples of
- * irrational numbers, so that no two curves separate the same neighbours. */
+/* Sorts N lights along the curve of round ROUND. The curve's corner is shifted
+ * by a multiple of irrational numbers, so that no two curves separate the same
+ * neighbours. */
 static void sort_lights_along_curve(struct glint_light *b, int n, int round)
 {
     const uint32_t k = (uint32_t)round;
@@ -232,8 +234,8 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
     set_light_direction(a, &mean);
 }
 
-/* Returns the binary exponent of the squared cost of merging A and B, (a b
- * d)^2; see the head of this file. */
+/* Returns the binary exponent of (a b d)^2, the squared cost of merging the
+ * lights A and B. The head of this file defines a, b and d. */
 static int compute_merge_cost_log2(const struct glint_light *a,
                                    const struct glint_light *b)
 {
@@ -245,13 +247,14 @@ static int compute_merge_cost_log2(const struct glint_light *a,
         .exponent;
 }
 
-/* The condition under which neighbours on the curve are merged. */
+/* The condition under which two lights that are neighbours on the curve are
+ * merged. */
 struct rule {
-    uint64_t near2_q60; /* if not 0: only lights whose squared distance is at
-                           most this are merged */
-    int cost; /* if near2_q60 is 0: only lights whose compute_merge_cost_log2()
-                 is at most this are merged */
-    int most; /* number of lights at which merging stops */
+    uint64_t near2_q60; /* max squared distance of two lights that are merged;
+                           0: COST is the condition */
+    int cost; /* max compute_merge_cost_log2() of two lights that are merged;
+                 used if near2_q60 is 0 */
+    int most; /* min number of lights, at which merging stops */
 };
 
 static int can_lights_merge(const struct rule *r, const struct glint_light *a,
@@ -279,7 +282,7 @@ static int merge_neighbouring_lights(struct glint_light *b, int n,
 }
 
 /* Returns the cost limit at which one round merges 1 / PART of the N - MOST
- * surplus lights, with a resolution of 1 / BINS of the range of costs. */
+ * surplus lights. The limit is exact to 1 / BINS of the range of costs. */
 static int find_next_merge_cost_limit(const struct glint_light *b, int n,
                                       int most)
 {
@@ -300,8 +303,8 @@ static int find_next_merge_cost_limit(const struct glint_light *b, int n,
     return low + (bin + 1) * width - 1;
 }
 
-/* Removes lights without power or colour, and adds HELD fraction bits to the
- * colours of the others. Returns the number of lights left. */
+/* Removes lights without power or colour. Adds HELD fraction bits to the
+ * colours of the remaining lights. Returns the number of lights left. */
 static int prepare_lights_for_merging(struct glint_light *b, int n)
 {
     int kept = 0;

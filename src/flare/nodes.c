@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * Computes the table of flare/dim.h: logarithms of the light of each ghost,
- * on-screen or not, for a white light of power 1 at sampled sines of its angle
- * (nodes). Also merges near lights for dim ghosts.
- */
+ * Computes the table of ghost brightness (flare/dim.h). It has the logarithm of
+ * the light of each ghost, on-screen or not, for a white light of power 1. Its
+ * nodes are sampled sines of the light's angle. This file also merges lights
+ * that are close together for dim ghosts. */
 #include "base/compiler.h"
 #include "flare/dim.h"
 #include "flare/state.h"
 
 enum {
     MOST_Q8 = 1 << 14,
-    FOLD_Q8 = 3 << 8 /* log2 of light at a fold of a ghost / mean light of the
-                        ghost */
+    FOLD_Q8 = 3 << 8 /* log2 of (light at a fold of a ghost / mean light of the
+                        ghost), an estimate */
 };
 
 struct fill {
@@ -27,7 +27,7 @@ static int16_t clamp_log2_to_int16(int32_t log2)
     return (int16_t)q_clamp_sat(log2, -MOST_Q8, MOST_Q8);
 }
 
-/* Returns the max magnitude over the colour channels of wave W. */
+/* Returns the largest magnitude among the colour channels of wave W. */
 static struct glint_real find_max_channel(const struct glint_wave *w)
 {
     int32_t most = 0;
@@ -40,8 +40,8 @@ static struct glint_real find_max_channel(const struct glint_wave *w)
     return real_of(most, -14);
 }
 
-/* Worker function: computes the table values of GHOST at one node, as drawn in
- * a picture so large that it contains the whole ghost. */
+/* Worker function: computes the table values of GHOST at one node. The picture
+ * is assumed to be so large that it contains the complete ghost. */
 static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
 {
     const struct fill *fill = ctx;
@@ -51,7 +51,7 @@ static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
     for (int wave = 0; wave < GLINT_DIM_WAVES; wave++) {
         struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
         struct glint_bundle bundle;
-        /* total light of the wave if all its rays had energy 1 */
+        /* total light that the wave would have if all its rays had energy 1 */
         struct glint_real light;
 
         value[1 + wave] = GLINT_DIM_DARK;
@@ -121,16 +121,16 @@ static void fill_brightness_nodes(struct glint_flare *flare, int n_lights)
 /* ----------------------------------------------------------------- sharing */
 
 enum {
-    /* Two lights at a distance of 1 / SIDE of the picture's longer side (four
-     * pixels of 1920) may be merged for a ghost whose brightness equals the
-     * frame's parameter dimmest; nearer lights for brighter ghosts. Errors of N
-     * lights add up to sqrt(N) times the error of one. */
+    /* Max distance of merged lights for a ghost whose brightness equals the
+     * frame's parameter dimmest: 1 / SIDE of the picture's longer side, or four
+     * pixels of 1920. For brighter ghosts the distance is smaller. The errors
+     * of N merged lights add up to sqrt(N) times the error of one. */
     SIDE = 480,
     FARTHEST_Q8 = 1 << 14
 };
 
-/* Returns the merged light that replaces LIGHT for GHOST. It is stored in the
- * memory of the first bundle of this ghost and light; NULL if that bundle
+/* Returns the merged light that replaces LIGHT for GHOST. The memory of the
+ * first bundle of GHOST and LIGHT stores it. Returns NULL if that bundle
  * exceeds max_bundles. */
 static struct glint_light *get_merged_light(struct glint_flare *f, int ghost,
                                             int light)
@@ -144,9 +144,9 @@ static struct glint_light *get_merged_light(struct glint_flare *f, int ghost,
 
 STATIC_ASSERT(sizeof(struct glint_light) <= sizeof(struct glint_bundle_plan));
 
-/* For each of N lights, finds the nearest of the lights that precede it in the
- * list, and log2 of the distance to that light. The unit of distance is 1 /
- * SIDE of the picture's longer side, divided by sqrt(N). */
+/* Finds, for each of N lights, the nearest of the lights before it in the list,
+ * and log2 of the distance to that light. The unit of distance is 1 / SIDE of
+ * the picture's longer side, divided by sqrt(N). */
 static void find_nearest_preceding_lights(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -179,10 +179,10 @@ static void find_nearest_preceding_lights(struct glint_flare *f, int n)
     }
 }
 
-/* Returns the fraction of light I that is not merged into another light for
- * GHOST, 0 .. GLINT_DIM_WHOLE_Q8. The error of a merged ghost is its light
- * times the distance by which it moves: up to half the allowed error all light
- * is merged; from the allowed error on, none. */
+/* Returns the fraction of LIGHT, light number I, that is not merged into
+ * another light for GHOST, 0 .. GLINT_DIM_WHOLE_Q8. The error of a merged ghost
+ * is its light times the distance by which it moves. Up to half the allowed
+ * error, all light is merged. From the allowed error on, no light is merged. */
 static int compute_unmerged_fraction_q8(const struct glint_flare_frame *frame,
                                         const struct glint_light *light, int i,
                                         int ghost)
@@ -196,9 +196,9 @@ static int compute_unmerged_fraction_q8(const struct glint_flare_frame *frame,
         0, GLINT_DIM_WHOLE_Q8);
 }
 
-/* Divides B, which is light I for GHOST, into a fraction that is drawn
- * separately and a rest that is merged into the nearest preceding light.
- */
+/* Divides B, which is light number I for GHOST, into two parts. One is drawn
+ * separately; the other is merged into the nearest light before B in the
+ * list. */
 static void merge_fraction_into_nearest_light(struct glint_flare *f,
                                               struct glint_light *b, int ghost,
                                               int i)
@@ -221,9 +221,8 @@ struct gather {
     int n_lights;
 };
 
-/* Worker function: merges the lights of GHOST, from the last to the first, so
- * that light that was merged into a light can be merged again together with it.
- */
+/* Worker function: merges the lights of GHOST, from the last to the first. So a
+ * light that has received light from a later one can be merged in turn. */
 static void merge_ghost_lights_job(void *ctx, int ghost, int worker)
 {
     const struct gather *g = ctx;

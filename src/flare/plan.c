@@ -8,8 +8,8 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* number of cells across the small probe; its rows have GLINT_RAYS rays, as
-     * many as are computed at once */
+    /* number of cells across the small probe; a row of its rays is as long as
+     * GLINT_RAYS, the number of rays that are traced at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6,
@@ -29,29 +29,30 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* Returns X, a length within a ghost in pixels, multiplied by the ghost's
- * enlargement. */
+/* Returns the length X, pixels, of a part of a ghost after the ghost is
+ * enlarged. */
 static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
                                     int64_t x_q8)
 {
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
 
-/* The bounding box of a bundle's light, pixels, in coordinates along and across
- * the light's azimuth: the position of its middle (middle, across), and half
- * its size (wide, high). */
+/* The bounding box of a bundle's light, pixels. One axis points along the
+ * light's azimuth, the other is perpendicular to it. The box has the centre
+ * (middle, across) and half the size (wide, high). */
 struct reach {
     int64_t middle_q8, across_q8, wide_q8, high_q8;
 };
 
-/* Returns half the size of extent E across the light's azimuth. */
+/* Returns half the height of E, measured perpendicular to the light's
+ * azimuth. */
 static int64_t compute_extent_half_height(const struct glint_probe_extent *e)
 {
     return (e->y_high - e->y_low) / 2;
 }
 
-/* Returns the bounding box, in pixels, of the extent E of probed rays, made
- * larger by a tenth and one pixel. */
+/* Returns the bounding box, in pixels, of E, the extent of the probed rays,
+ * enlarged by a tenth and one pixel. */
 static struct reach compute_bundle_box(const struct glint_plan *p,
                                        const struct glint_bundle_plan *planned,
                                        const struct glint_transfer *t,
@@ -71,8 +72,8 @@ static struct reach compute_bundle_box(const struct glint_plan *p,
             256};
 }
 
-/* Returns whether the box E, rotated by TURN, overlaps the picture. Its member
- * across is nonzero only for ghosts that are not rotated. */
+/* Returns whether the box E, rotated by TURN, overlaps the picture. Member
+ * across of E is 0 for all ghosts that are rotated. */
 static int is_box_in_picture(const struct glint_plan *p,
                              struct glint_azimuth turn, const struct reach *e)
 {
@@ -87,8 +88,8 @@ static int is_box_in_picture(const struct glint_plan *p,
                p->height * 128 >> p->half;
 }
 
-/* Returns the fraction of the interval MIDDLE +- WIDE that lies within -HALF ..
- * HALF, in 1/255. */
+/* Returns the fraction of the interval MIDDLE - WIDE .. MIDDLE + WIDE that lies
+ * within -HALF .. HALF; 255 means all of it. */
 static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
                                            int64_t half)
 {
@@ -98,8 +99,8 @@ static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the fraction, in 1/255, of a bundle's bounding box that lies in the
- * picture: the axis-parallel bounding box of E rotated by TURN. */
+/* Returns the fraction of a bundle's bounding box that is on-screen; 255 means
+ * all of it. The box is axis-parallel and encloses E rotated by TURN. */
 static uint8_t compute_visible_fraction_q8(const struct glint_plan *p,
                                            struct glint_azimuth turn,
                                            const struct reach *e)
@@ -123,9 +124,9 @@ static struct glint_real get_pupil_box_side(const struct glint_transfer *t,
 }
 
 /* Returns the light of wave WAVE that is drawn with the rays of bundle PLANNED,
- * divided by the light of the bundle's own wave. It is 1 for the own wave; for
- * other waves of a dim ghost it is only the fraction that is not drawn with
- * their own rays. */
+ * divided by the light of the bundle's own wave. For the bundle's own wave it
+ * is 1. For other waves of a dim ghost it covers the fraction that is not drawn
+ * with rays of WAVE itself. */
 static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                                       const struct glint_bundle_plan *planned,
                                       int wave, int share_q8)
@@ -138,9 +139,9 @@ static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                    8);
 }
 
-/* Sets RGB to the bundle's colour: the product of the colours of its light, its
- * waves and its tint, scaled such that the max channel is 1. Returns the max
- * channel before scaling. */
+/* Sets RGB to the colour of the bundle, scaled such that its largest channel is
+ * 1. The colour is the product of the colours of its light, its waves and its
+ * tint. Returns the largest channel before scaling. */
 static struct glint_real
 compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
                       const struct glint_bundle_plan *planned, int share_q8,
@@ -176,9 +177,10 @@ compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
                 : real_of(most, -28);
 }
 
-/* Returns the flux of the bundle, display white times pixels, if all rays of
- * its window had energy 2^EXPONENT. The area of the hole of an annular pupil
- * box is excluded. */
+/* Returns the flux that the bundle would have if all rays of its window had
+ * energy 2^EXPONENT, display white times pixels. The window is a rectangle of
+ * the lens's pupil. If the pupil is an annulus, the area of its hole is
+ * excluded. */
 static struct glint_real compute_bundle_flux(const struct glint_plan *p,
                                              const struct glint_light *b,
                                              const struct glint_bundle_plan *s,
@@ -190,8 +192,8 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
     struct glint_real x =
         real_times(get_pupil_box_side(t, 1), get_pupil_box_side(t, 2));
 
-    /* Both sides are half sides of the pupil box. The window's height also
-     * covers half of the box only, unless T covers the whole box. */
+    /* Both factors are half sides of the pupil box. The window's height also
+     * covers half of the box only, unless T covers the complete box. */
     x.exponent += (t->whole ? 1 : 2) + exponent;
     /* A pixel at half resolution covers four pixels of the picture. */
     x.exponent -= 2 * p->half;
@@ -205,11 +207,11 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Returns an upper bound on the light that the bundle adds to a pixel, display
- * white: twice the flux of a cell of the probe, divided by the min area of such
- * a cell on the sensor. Twice, as light between probed rays may be brighter.
- * Returns 0 for folded ghosts, whose cell areas do not bound their brightness.
- */
+/* Returns an upper bound on the light that the bundle adds to a pixel, 1 =
+ * display white. It is twice the flux of a cell of the probe divided by the min
+ * area of such a cell on the sensor. The factor 2 allows for brighter light
+ * between probed rays. Returns 0 for folded ghosts: the areas of their cells do
+ * not bound their brightness. */
 static struct glint_real
 compute_max_light(const struct glint_plan *p,
                   const struct glint_bundle_plan *planned,
@@ -230,13 +232,14 @@ compute_max_light(const struct glint_plan *p,
             area,
             real_of((int64_t)planned->wider_q16 * planned->wider_q16, -32));
     flux.exponent += 1;
-    /* number of cells of the whole pupil box */
+    /* number of cells of the complete pupil box */
     area = real_times(area, real_of(s->across * s->rows, 0));
     return real_over(flux, area);
 }
 
-/* Returns BRIGHTEST, the max light of a pixel, in units of the min visible
- * light; 2^20 units if BRIGHTEST is 0 (not known) or the picture is linear. */
+/* Returns the max light of a pixel, BRIGHTEST, in units of the min visible
+ * light. Returns 2^20 units if BRIGHTEST is 0 (unknown) or the picture is
+ * linear. */
 static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
                                                  struct glint_real brightest)
 {
@@ -247,9 +250,9 @@ static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets two members of PLANNED that glint_flare_planned() returns: inside_q8,
- * the fraction of probed rays that are not blocked, and contrast_q4, log2 of
- * BRIGHTEST / mean irradiance. */
+/* Sets the members inside_q8 and contrast_q4 of PLANNED for
+ * glint_flare_planned(). The first is the fraction of probed rays that are not
+ * blocked, the second log2 of (BRIGHTEST / mean irradiance). */
 static void set_inside_and_contrast(const struct glint_probe *s,
                                     struct glint_real brightest,
                                     struct glint_bundle_plan *planned)
@@ -310,8 +313,8 @@ glint_plan_map_sensor_to_picture(const struct glint_plan *plan,
     return place;
 }
 
-/* Returns the left shift by which energies can be scaled up without overflow if
- * they are at most 5/4 of ENERGY, the max of the probe. */
+/* Returns the left shift that scales energies up as far as possible without
+ * overflow. Energies may be up to 5/4 of ENERGY, the max of the probed rays. */
 static int compute_energy_shift(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
@@ -338,9 +341,9 @@ int glint_plan_is_light_outside_model(const struct glint_lens *lens,
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
-/* Returns whether ghost GHOST (or part of a ghost) is to be drawn: its tint is
- * not 0, and it belongs to the same pair of surfaces as only_ghost, if that is
- * set. */
+/* Returns whether ghost GHOST, or a part of a ghost, is to be drawn. Its tint
+ * must not be 0. If only_ghost is set, GHOST must come from the same pair of
+ * surfaces as that ghost. */
 static int is_ghost_selected(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
@@ -360,14 +363,14 @@ static int64_t compute_vector_length(int64_t x, int64_t y)
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Sets the enlargement of the ghost, at most WIDEST_Q16, and its fixed point. A
- * lamp of visible extent is sampled by point lights. If the ghosts of these
- * points were smaller than the distance between them, the ghost of the lamp
- * would become a pattern of dots; so each ghost is enlarged to two and a half
- * times the distance between neighbours. When a light moves, its ghost moves in
- * proportion to the ghost's distance from the picture's middle; so lights on
- * the axis need no enlargement. The fixed point may lie off the light's azimuth
- * only if the ghost is mirrored rather than rotated. */
+/* Sets the enlargement of the ghost, at most WIDEST_Q16, and the fixed point of
+ * the enlargement. A lamp of visible extent is sampled by point lights. If the
+ * ghosts of these points were smaller than the distance between them, the ghost
+ * of the lamp would become a pattern of dots. So each ghost is enlarged to two
+ * and a half times the distance between neighbours. When a light moves, its
+ * ghost moves in proportion to the ghost's distance from the picture's centre.
+ * So lights on the axis need no enlargement. The fixed point lies on the line
+ * of the light's azimuth unless the ghost is mirrored rather than rotated. */
 static void set_ghost_enlargement(const struct glint_plan *p,
                                   const struct glint_light *b,
                                   struct glint_bundle_plan *planned,
@@ -415,8 +418,9 @@ static int narrow_window_to_stop(const struct glint_plan *plan,
     return any;
 }
 
-/* Traces the rays of a small probe, and of a larger one if fewer than
- * FEW_INSIDE rays pass. Returns whether any ray passes. */
+/* Traces the rays of a small probe. Traces a larger probe, too, if fewer than
+ * FEW_INSIDE rays of the small one pass the lens. Returns whether any ray
+ * passes. */
 static int probe_bundle(const struct glint_plan *plan,
                         struct glint_transfer *transfer, struct glint_probe *s)
 {

@@ -19,34 +19,36 @@
 #include "flare/probe.h"
 #include "flare/window.h"
 
-/* The plan of one bundle, made before its grid is traced: its ghost, light and
- * wave, and how it is to be drawn. */
+/* The plan of one bundle, made before its grid of rays is traced: its ghost,
+ * light and wave, and how to draw it. */
 struct glint_bundle_plan {
     int32_t ghost, light, wave;
-    /* direction of the light that is drawn, as in struct glint_light: that of
-     * light LIGHT, or of the merged light that replaces it */
+    /* direction from which light comes, as in struct glint_light: that of light
+     * LIGHT, or of the merged light that replaces it */
     int32_t sine_q30, cos_q30, sin_q30;
     /* Rotation of the ghost in the picture, see struct glint_place. */
     struct glint_azimuth turn;
     uint8_t energy_up; /* see struct glint_transfer */
     /* as in struct glint_planned */
     uint8_t inside_q8, view_q8, contrast_q4;
-    /* subrange of the pupil box that the stop transmits */
+    /* range of the pupil box that the stop transmits */
     struct glint_box_window window;
-    /* sags: for barrel 0, barrel 1 and a round stop, the mean height of the
-     * straight lines between grid rays above the function (1 + r^2) / 2 */
+    /* mean height of the straight lines between grid rays above the function (1
+     * + r^2) / 2, for barrel 0, barrel 1 and a round stop */
     uint16_t sag_q16[3];
     /* flux of the bundle if all its rays had the max energy of the probed rays,
      * display white times pixels */
     struct glint_real flux;
-    /* wider: factor by which the ghost is enlarged, above 1; 0: the ghost has
-     * its own size. centre: fixed point of the enlargement, in pixels from the
-     * picture's middle, along the light's azimuth and perpendicular to it. */
+    /* Enlargement of the ghost of a lamp that is sampled by several lights.
+     * wider: factor, above 1; 0: no enlargement. centre: fixed point of the
+     * enlargement, in pixels from the picture's centre, along the light's
+     * azimuth and perpendicular to it. */
     int32_t wider_q16, centre_q8[2];
-    /* mean irradiance: flux divided by the area in pixels, 1 = display white */
+    /* mean light of a pixel of the ghost: flux / area in pixels, 1 = display
+     * white */
     struct glint_real irradiance;
     int64_t peak_q20; /* upper bound on the light of a pixel, in units of the
-                         min visible light; clamped to 2^20 units */
+                         min visible light, at most 2^20 units */
 };
 
 struct glint_plan {
@@ -55,13 +57,14 @@ struct glint_plan {
     /* number of lights; size of the picture, pixels */
     int n_lights, width, height;
     unsigned sets;
-    int half; /* 1: half resolution, so the flare's pixels are twice as wide and
-                 high as the picture's */
-    int dims; /* 1: dim ghosts share rays, and the table frame->dim is complete
-                 for all lights */
+    int half; /* 1: the flare is drawn at half resolution, with pixels twice as
+                 wide and high as the picture's */
+    int dims; /* 1: dim ghosts are drawn with the rays of one wave, and the
+                 table frame->dim covers all lights */
     int32_t round_q16; /* curvature of the stop's outline between its corners,
                           in 1 / stop radius: 0 is straight, 2^16 a circle */
-    int shaded;        /* 1: the stop has a shade (soft edge, dust or masks) */
+    int shaded;        /* 1: the light through the stop varies over its area, by
+                          a soft edge, dust or masks */
     /* stop radius / stop radius of the model, 2^20 .. 2^30 */
     int32_t opening_q30;
 };
@@ -78,10 +81,10 @@ struct glint_plan_scratch {
 int glint_plan_is_light_outside_model(const struct glint_lens *lens,
                                       const struct glint_light *light);
 
-/* Plans one bundle for light LIGHT; ghost, light and wave must be set in
- * PLANNED. Sets the other members of PLANNED and BUNDLE. Returns
- * GLINT_OUTCOME_DRAWN, or the reason why the bundle is invisible;
- * BUNDLE->n_cells is then 0. */
+/* Plans the bundle whose ghost, light and wave are set in PLANNED, for light
+ * LIGHT. Sets the other members of PLANNED and BUNDLE. Returns
+ * GLINT_OUTCOME_DRAWN, or the reason why the bundle is invisible. An invisible
+ * bundle has n_cells = 0. */
 enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
                                      const struct glint_light *light,
                                      struct glint_bundle_plan *planned,

@@ -8,17 +8,18 @@
 
 enum { FOLD_OCTAVES = 3, MOST_SHADE_CELLS = 128, SHADE_CELL_LOG2 = 4 };
 
-/* Returns the root mean square of N values, where SUM is the sum of their
- * squares, each divided by 2^10; 0 if N is 0. */
+/* Returns the root mean square of N values. SUM is the sum of their squares /
+ * 2^10. Returns 0 if N is 0. */
 static int64_t compute_root_mean_square(uint64_t sum, int n)
 {
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
-/* Returns the curvature of the outputs A and B over the pupil box as a distance
- * on the sensor: second differences / first differences, times the first
- * differences of the sensor outputs. The unit is that of the sensor outputs
- * times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns how curved the map from the pupil box to the outputs A and B is, as a
+ * distance on the sensor. It is the mean second difference of the outputs
+ * divided by their mean first difference, times the mean first difference of
+ * the sensor position. The unit is that of the sensor outputs times
+ * 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_output_curvature(const struct glint_probe *s, int a,
                                         int b)
 {
@@ -31,12 +32,12 @@ static int64_t compute_output_curvature(const struct glint_probe *s, int a,
                                      s->change[GLINT_OUT_SENSOR_Y].first,
                                  s->n_bends);
 
-    /* at most 2^30 * 2^31 */
+    /* the product is at most 2^30 * 2^31 */
     return first ? q_divide(second * sensor, first) : 0;
 }
 
-/* Returns the root mean square change of the stop position over the pupil box,
- * in units of the stop outputs times 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the root mean square change of the position in the stop over the
+ * pupil box, in units of the stop outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_stop_position_change(const struct glint_probe *s)
 {
     return compute_root_mean_square(s->change[GLINT_OUT_STOP_X].first +
@@ -55,18 +56,18 @@ static int64_t compute_sensor_position_change(const struct glint_probe *s)
 
 static int64_t compute_stop_radius(const struct glint_probe *s)
 {
-    /* the limit for inside rays of the probe is 1.05 stop radii */
+    /* The probe limits inside rays to 1.05 stop radii. */
     const int64_t radius =
         q_divide(s->limit[GLINT_OUT_STOP_X] * 20, 21) >> GLINT_PROBE_FINE_LOG2;
 
-    /* at least 1, as it is a divisor */
+    /* The result is at least 1, as it is a divisor. */
     return radius > 0 ? radius : 1;
 }
 
-/* Like compute_output_curvature(), for the outline of a stop of curvature
- * ROUND. A round stop cuts where (1 + r^2) / 2 is 1, like a barrel: at r = 1
- * this function changes as fast as the stop position s, and its second
- * difference is the square of the first difference of s. */
+/* Like compute_output_curvature(), for the outline of a stop whose sides have
+ * the curvature ROUND. A round stop cuts a ghost where (1 + r^2) / 2 is 1, like
+ * a barrel. At r = 1 this function changes as fast as the stop position s, and
+ * its second difference is the square of the first difference of s. */
 static int64_t compute_round_stop_curvature(const struct glint_probe *s,
                                             int32_t round_q16)
 {
@@ -78,8 +79,8 @@ static int64_t compute_round_stop_curvature(const struct glint_probe *s,
     return q_divide(change * sensor, (compute_stop_radius(s) >> 2) + 1);
 }
 
-/* Reduces N cells per side to the number that a picture in codes (not in linear
- * light) needs. Errors of faint ghosts are less visible: with each octave by
+/* Reduces N, a number of cells per side, to the number that an 8-bit picture
+ * needs. Errors of faint ghosts are less visible in it. With each octave by
  * which a ghost is fainter, its light in codes shrinks by 2^(5/12), and errors
  * are inversely proportional to the square of the number of cells. Folds are
  * brighter than the mean of the ghost. */
@@ -97,18 +98,19 @@ static int reduce_cells_for_codes(const struct glint_probe *s,
 }
 
 /* Returns the ratio of the error allowed for outlines to the error allowed for
- * light, 10 or 5. It is 5 if three or more barrels cut the bundle: the second
- * barrel value of a vertex is then the tightest of all barrels but the first,
- * and has kinks where two of them meet, so that tips of outlines would depend
- * on the grid. It is also 5 for a round stop, which curves all outlines. */
+ * light: 10 or 5. It is 5 for a round stop, which curves all outlines. It is
+ * also 5 if three or more barrels cut the bundle. Then the second barrel value
+ * of a vertex is the tightest of all barrels but the first, which has kinks, so
+ * that tips of outlines would depend on the grid. */
 static int choose_outline_tolerance_ratio(const struct glint_plan *p,
                                           const struct glint_transfer *t)
 {
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* Returns the number of cells per side that is needed to resolve the dust and
- * masks of a stop's shade within cells to a pixel (edges/ghost_shade.h). */
+/* Returns the number of cells per side that a stop with dust or masks needs.
+ * Their image must be exact to a pixel within each cell
+ * (edges/ghost_shade.h). */
 static int compute_cells_for_shade(const struct glint_plan *p,
                                    const struct glint_probe *s,
                                    const struct glint_transfer *t)
@@ -121,8 +123,8 @@ static int compute_cells_for_shade(const struct glint_plan *p,
     return (int)real_integer(pixels, -SHADE_CELL_LOG2, MOST_SHADE_CELLS);
 }
 
-/* Returns the number of grid cells per side by the rule of lens/grid.h, from
- * the differences of the probe's rays. */
+/* Returns the number of grid cells per side by the rule of lens/grid.h. It is
+ * computed from the differences between neighbouring probe rays. */
 static int compute_cells_per_side(const struct glint_plan *p,
                                   const struct glint_probe *s,
                                   const struct glint_transfer *t,
@@ -159,7 +161,7 @@ static int compute_cells_per_side(const struct glint_plan *p,
                                                   GLINT_PROBE_FINE_LOG2),
                                 plan_compute_pixels_per_mm(p)),
                      8, INT64_C(1) << 40);
-    /* sqrt(12.5 * curvature in pixels) * fineness / 64 */
+    /* n = sqrt(12.5 * curvature in pixels) * fineness / 64 */
     n = q_narrow(
         ((int64_t)q_root((uint64_t)bend_q8 * 3200) * r->fineness + 16383) >>
         14);
@@ -175,8 +177,8 @@ static int compute_cells_per_side(const struct glint_plan *p,
     return n < most ? n : most;
 }
 
-/* Returns N + 2, rounded up to an even number and clamped to GLINT_MAX_CELLS:
- * adds the two rows of cells in the hole of an annular pupil box. */
+/* Returns N + 2, rounded up to an even number and clamped to GLINT_MAX_CELLS.
+ * The two additional rows of cells lie in the hole of an annular pupil box. */
 static int add_annulus_hole_cells(int n)
 {
     const int more = (n + 3) / 2 * 2;
@@ -195,7 +197,8 @@ int glint_plan_choose_cells(const struct glint_plan *plan,
 }
 
 /* Returns the mean second difference of output K across the pupil box plus that
- * down the box, in the output's unit times 2^GLINT_PROBE_FINE_LOG2. */
+ * down the box. The unit is that of the output times
+ * 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t sum_mean_second_differences(const struct glint_probe *s, int k)
 {
     int64_t sum = 0;
@@ -207,8 +210,8 @@ static int64_t sum_mean_second_differences(const struct glint_probe *s, int k)
 }
 
 /* Like sum_mean_second_differences(), for the function (1 + r^2) / 2 of a round
- * stop: in each direction it is the square of the change of the stop position,
- * in stop radii. */
+ * stop. In each direction, its second difference is the squared change of the
+ * stop position, in stop radii. */
 static int64_t sum_round_stop_differences_q16(const struct glint_probe *s)
 {
     const struct glint_real change =
@@ -219,9 +222,9 @@ static int64_t sum_round_stop_differences_q16(const struct glint_probe *s)
 }
 
 /* Returns the sag of a grid of N_CELLS cells per side: the mean height of the
- * straight lines between its rays above a paraboloid, which is (D + E) / 12 for
- * second differences D across and E down a cell. BOWL is D + E over the whole
- * pupil box. */
+ * straight lines between its rays above a paraboloid. It is (D + E) / 12 for
+ * the second differences D across and E down a cell. BOWL is D + E over the
+ * complete pupil box. */
 static uint16_t compute_sag_q16(int64_t bowl_q16, int n_cells)
 {
     return (uint16_t)q_clamp_sat(
@@ -229,8 +232,8 @@ static uint16_t compute_sag_q16(int64_t bowl_q16, int n_cells)
 }
 
 /* The function (1 + r^2) / 2 of a barrel is a paraboloid. After the sag is
- * subtracted, drawn outlines lie outside the true outlines as often as inside.
- */
+ * subtracted from it, drawn outlines deviate to the outside as often as to the
+ * inside. */
 void glint_plan_set_sags(struct glint_bundle_plan *planned,
                          const struct glint_probe *probe,
                          const struct glint_transfer *transfer, int n_cells,

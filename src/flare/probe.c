@@ -20,7 +20,8 @@ static int is_stop_output(int kind)
 static void init_probe(struct glint_probe *s, const struct glint_transfer *t,
                        int32_t opening_q30, int across, int down)
 {
-    /* 1.05 times the limits, as rays just outside count as inside */
+    /* Rays just outside count as inside, so the limits are multiplied by
+     * 1.05. */
     const int64_t near_q16 = 68813;
 
     s->across = across;
@@ -87,9 +88,10 @@ static void trace_probe_row(struct glint_probe *s, struct glint_transfer *t,
     }
 }
 
-/* Adds the first and second differences of all outputs at ray B, whose
- * neighbours are A and C, if B is inside. The differences are scaled from STEPS
- * cells to the whole pupil box. WAY: direction, 0 across, 1 down. */
+/* Adds the first and second differences of all outputs at ray B to the sums of
+ * S, if B is inside. A and C are its neighbours. The differences are scaled
+ * from STEPS cells to the complete pupil box. WAY: direction from A to C, 0
+ * across, 1 down. */
 static void add_differences_at_ray(struct glint_probe *s,
                                    const struct glint_probe_node *a,
                                    const struct glint_probe_node *b,
@@ -149,8 +151,8 @@ static void extend_extent_by_ray(const struct glint_probe *s,
     e->y_high = high > e->y_high ? high : e->y_high;
 }
 
-/* Extends s->reach by the cell of the rays A, B and, below them, C, D, if one
- * of these is inside. */
+/* Extends s->reach by a cell if one of its corner rays is inside. The rays A
+ * and B are above C and D. */
 static void extend_reach_by_cell(struct glint_probe *s,
                                  const struct glint_probe_node *a,
                                  const struct glint_probe_node *b,

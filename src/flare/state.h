@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Internal state of a flare: bundles and plan (flare.c), edges and tiles
- * (by_edges.c). */
+ * The private members of struct glint_flare: bundles and plan (flare.c), edges
+ * and tiles (by_edges.c). */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
 
@@ -31,24 +31,23 @@ struct glint_bundle_slot {
                    the edges did not fit */
 };
 
-/* Whether the plan and the bins of this frame can be reused in the next frame.
- */
+/* State of the plan and the bins that the next frame may reuse. */
 enum glint_reusable {
     GLINT_REUSABLE_NOT,
-    GLINT_REUSABLE_PLANNED, /* a plan has been made, but its edges have not been
-                               binned */
-    GLINT_REUSABLE_BINNED   /* the bins contain exactly the edges of the plan */
+    GLINT_REUSABLE_PLANNED, /* a plan without binned edges */
+    GLINT_REUSABLE_BINNED   /* bins with exactly the edges of the plan */
 };
 
 struct glint_flare {
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    /* half: 1 at half resolution. width, height: size of the drawn area in
-     * pixels, at half resolution of twice the width and height. */
+    /* half: 1 at half resolution. width, height: size of the drawn area,
+     * pixels; at half resolution each of these pixels covers 2 x 2 pixels of
+     * the picture. */
     int half, width, height;
     const struct glint_half *quads; /* functions for half resolution, or NULL */
-    int n_bundles, n_vertices;      /* number of bundles and vertices added so
-                                       far */
+    int n_bundles, n_vertices;      /* numbers of bundles and vertices that have
+                                       been added */
     /* source of vertices that are computed on demand; NULL: vertices are
      * stored, or computed by the polynomials of the plan */
     const struct glint_flare_rays *rays;
@@ -58,15 +57,16 @@ struct glint_flare {
         *planned; /* [max_bundles]: the plan of each bundle */
     struct glint_real flux, brightest; /* total flux of all planned bundles; max
                                           of their mean irradiances */
-    int n_drawn; /* number of bundles, counted from the first, whose edges are
-                    in the bins */
+    int n_drawn; /* number of drawn bundles: the edges of the first n_drawn
+                    bundles are in the bins */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
     struct glint_vertex *vertex;
     struct glint_by_edges *edges;
     void *reuse;                  /* state of cfg.reuse, or NULL without it */
-    enum glint_reusable reusable; /* what of this frame can be reused;
-                                     GLINT_REUSABLE_NOT if cfg.reuse is NULL */
+    enum glint_reusable reusable; /* the data of this frame that the next can
+                                     reuse; GLINT_REUSABLE_NOT if cfg.reuse is
+                                     NULL */
     struct glint_bins bins;
     struct glint_flare_worker *worker;
     /* tables for the pixel format of the picture that is being drawn */
@@ -79,9 +79,9 @@ struct glint_reuse {
      * measures. */
     void *(*allocate_state)(struct glint_arena *a,
                             const struct glint_flare_config *c);
-    /* Returns 1, and reuses the last plan, if its inputs were the same and its
-     * edges are still in the bins. Otherwise records the inputs for the next
-     * frame and returns 0. */
+    /* If the inputs equal those of the last plan, and its edges are still in
+     * the bins, reuses the plan and returns 1. Otherwise records the inputs for
+     * the next frame and returns 0. */
     int (*reuse_if_unchanged)(struct glint_flare *f,
                               const struct glint_flare_frame *frame,
                               const struct glint_light *lights, int n_lights);
@@ -90,16 +90,17 @@ struct glint_reuse {
     void (*apply_gains)(struct glint_flare *f);
 };
 
-/* Resets what the workers recorded in the last draw: the numbers of tiles and
+/* Clears the workers' records of the last draw: the numbers of tiles and
  * clamped samples, and the pointer for blending. */
 void glint_flare_reset_tile_state(struct glint_flare *flare);
 
-/* Prepares the flare's tables for the pixel format of IMAGE (NULL: light is
- * discarded). Returns the tiles in which the frame is drawn. */
+/* Prepares the flare's tables for the pixel format of IMAGE. Without an image
+ * (NULL) the light is discarded. Returns the tiles in which the frame is
+ * drawn. */
 struct glint_tiles glint_flare_prepare_tiles(struct glint_flare *flare,
                                              const struct glint_image *image);
 
-/* Returns A + B, numbers of items that need memory, clamped to INT32_MAX. */
+/* Returns A + B, clamped to INT32_MAX. A and B count items that need memory. */
 static inline int glint_flare_add_needed_count(int a, int b)
 {
     return a > INT32_MAX - b ? INT32_MAX : a + b;

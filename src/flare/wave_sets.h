@@ -20,13 +20,13 @@
 #include "flare/state.h"
 
 struct glint_wave_planner {
-    /* Plans N_JOBS pairs of a ghost and a light; all ghosts of the first light
-     * come first. Returns the number of bundles, and sets the statistics of
-     * needed and dropped bundles. */
+    /* Plans N_JOBS pairs of a ghost and a light, sorted by light, then by
+     * ghost. Returns the number of bundles. Sets the statistics of needed and
+     * dropped bundles. */
     int (*plan)(struct glint_flare *flare, int n_jobs);
 };
 
-/* Returns the index of the set to which wave WAVE belongs. */
+/* Returns the index of the set that contains wave WAVE. */
 int glint_wave_sets_find_set_of_wave(const struct glint_wave_sets *sets,
                                      int wave);
 

@@ -13,9 +13,8 @@ enum {
     LEAST_HALF_Q30 = 1 << 12
 };
 
-/* A rectangle of the window, in units of the distance between nodes, counted
- * from the first node.
- */
+/* A rectangle within the window of a bundle. The unit is the distance between
+ * nodes of its grid; the origin is the first node. */
 struct extent {
     int32_t low_q16[2], high_q16[2]; /* [across, down] */
 };
@@ -37,8 +36,8 @@ static void trace_window_nodes(struct glint_window_nodes *n,
 {
     const uint32_t outputs = t->outputs;
 
-    /* Positions on the sensor and energies do not affect the result, so these
-     * outputs are not computed. */
+    /* The positions on the sensor and the energies do not affect the result, so
+     * they are not computed. */
     t->outputs &=
         ~(UINT32_C(1) << GLINT_OUT_SENSOR_X |
           UINT32_C(1) << GLINT_OUT_SENSOR_Y | UINT32_C(1) << GLINT_OUT_ENERGY);
@@ -63,9 +62,9 @@ static void trace_window_nodes(struct glint_window_nodes *n,
     n->n_rays += ACROSS * DOWN;
 }
 
-/* Returns 1/4 of the second difference of output K around node (I, J): twice
- * the distance by which the output may deviate from a straight line between
- * nodes. At most about 2^31, as values are below 2^30. */
+/* Returns 1/4 of the second difference of output K around node (I, J). That is
+ * twice the distance by which the output may deviate from a straight line
+ * between nodes. It is at most about 2^31, as values are below 2^30. */
 static int64_t
 compute_quarter_second_difference(const struct glint_window_nodes *n, int k,
                                   int i, int j)
@@ -81,8 +80,8 @@ compute_quarter_second_difference(const struct glint_window_nodes *n, int k,
     return ((across < 0 ? -across : across) + (down < 0 ? -down : down)) / 4;
 }
 
-/* Returns a bit mask of the sides of the octagon around the stop outside of
- * which (X, Y) lies by more than BEND. */
+/* Returns a bit mask of those sides of the octagon around the stop for which
+ * (X, Y) lies outside by more than BEND. */
 static uint32_t find_outside_octagon_sides(int64_t x, int64_t y, int64_t radius,
                                            int64_t bend)
 {
@@ -110,8 +109,8 @@ static void classify_node_by_stop(struct glint_window_nodes *n, int i, int j)
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
-/* Sets, in the mask n->beyond of each node, a bit for each barrel outside of
- * which the node lies. */
+/* Sets a bit in n->beyond of each node for each barrel outside of which the
+ * node lies, by more than compute_quarter_second_difference(). */
 static void classify_nodes_by_barrels(struct glint_window_nodes *n,
                                       const struct glint_transfer *t)
 {
@@ -146,8 +145,8 @@ static void extend_extent_to_point(struct extent *e, int32_t across_q16,
     }
 }
 
-/* Returns the distance of node (I, J) from the centre of the stop, in units of
- * the stop outputs. */
+/* Returns the distance between the position of node (I, J) in the stop and the
+ * stop's centre, in units of the stop outputs. */
 static int64_t
 compute_distance_from_stop_centre(const struct glint_window_nodes *n, int i,
                                   int j)
@@ -158,9 +157,10 @@ compute_distance_from_stop_centre(const struct glint_window_nodes *n, int i,
     return q_root((uint64_t)(x * x + y * y));
 }
 
-/* Extends E by the point where the stop's circle crosses the line from node (I,
- * J), which must be inside, to a neighbouring node, if that is outside. WAY:
- * direction to the neighbour, 0 across, 1 down; STEP: 1 or -1. */
+/* Extends E by a point where a grid line crosses the stop's circle. The line
+ * runs from node (I, J), which must be inside, to a neighbouring node; nothing
+ * changes if both are inside. WAY: direction to the neighbour, 0 across, 1
+ * down; STEP: 1 or -1. */
 static void extend_extent_to_circle(struct extent *e,
                                     const struct glint_window_nodes *n, int i,
                                     int j, int way, int step)
@@ -181,7 +181,7 @@ static void extend_extent_to_circle(struct extent *e,
 }
 
 /* Returns whether the cell at (I, J) is small compared with the stop and nearly
- * flat, so that the circle of the stop can be located within it. */
+ * flat. Only in such cells is the circle of the stop located exactly. */
 static int is_cell_small_and_flat(const struct glint_window_nodes *n, int i,
                                   int j)
 {
@@ -227,8 +227,8 @@ static void extend_extent_by_cell(struct extent *e,
     }
 }
 
-/* Returns the part of the window of T whose rays may pass the stop and the
- * barrels. */
+/* Returns the rectangle of the window of T that contains all rays that may pass
+ * the stop and the barrels. */
 static struct extent find_transmitted_extent(struct glint_window_nodes *n,
                                              struct glint_transfer *t)
 {
@@ -248,7 +248,7 @@ static struct extent find_transmitted_extent(struct glint_window_nodes *n,
 /* ------------------------------------------------------------------- window */
 
 /* Extends E along axis K (0 across, 1 down) by 1 / PART of its size at both
- * ends, within 0 .. STEPS. Needed because a circle that spans six or more cells
+ * ends, but not outside 0 .. STEPS. A circle that spans six or more cells
  * bulges by 1/100 of its size between the lines of the grid. */
 static void enlarge_extent_along_axis(struct extent *e, int k, int steps,
                                       int part)
@@ -262,8 +262,8 @@ static void enlarge_extent_along_axis(struct extent *e, int k, int steps,
     e->high_q16[k] = e->high_q16[k] < most_q16 ? e->high_q16[k] : most_q16;
 }
 
-/* Narrows the window of T to its part E. Returns whether width or height shrank
- * by more than an eighth. */
+/* Narrows the window of T to E, a rectangle within it. Returns whether width or
+ * height shrank by more than an eighth. */
 static int narrow_window_to_extent(struct glint_transfer *t, struct extent *e)
 {
     struct glint_box_window *w = &t->window;
@@ -301,9 +301,9 @@ int glint_window_narrow_to_stop(struct glint_window_nodes *nodes,
         if (e.high_q16[0] < 0)
             return 0;
         enlarge_extent_along_axis(&e, 0, ACROSS - 1, 48);
-        enlarge_extent_along_axis(
-            &e, 1, DOWN - 1, 24); /* E covers half of the window's height, so
-                                     1/24 of E is 1/48 of the full height */
+        enlarge_extent_along_axis(&e, 1, DOWN - 1,
+                                  24); /* 1/24, not 1/48, as E covers half of
+                                          the window's height */
         more =
             narrow_window_to_extent(t, &e) &&
             t->window.u_half_q30 > LEAST_HALF_Q30 &&

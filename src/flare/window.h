@@ -23,19 +23,20 @@
 enum { GLINT_WINDOW_ACROSS = 2 * GLINT_RAYS, GLINT_WINDOW_DOWN = GLINT_RAYS };
 
 /* Scratch memory of a worker: the outputs at all nodes, in their own units
- * (struct glint_transfer), and what follows from them. */
+ * (struct glint_transfer), and values derived from them. */
 struct glint_window_nodes {
     int32_t at[GLINT_OUT_KINDS][GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     int32_t bend[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     uint32_t beyond[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
     /* nonzero: the ray of the node passes through the stop */
     uint8_t inside[GLINT_WINDOW_DOWN][GLINT_WINDOW_ACROSS];
-    int64_t radius; /* radius of the stop, in units of the stop outputs */
+    int64_t radius; /* radius of the stop, in the unit of the stop position */
     int n_rays;     /* number of rays traced so far */
 };
 
-/* Narrows the window of T to the rays that may pass a stop of OPENING_Q30 times
- * the model's radius, 2^20 .. 2^30. Returns 0 if no ray passes. */
+/* Narrows the window of T to the rays that may pass the stop. The stop has
+ * OPENING_Q30 times the model's radius, 2^20 .. 2^30. Returns 0 if no ray
+ * passes. */
 int glint_window_narrow_to_stop(struct glint_window_nodes *nodes,
                                 struct glint_transfer *t, int32_t opening_q30);
 

@@ -6,7 +6,8 @@
 #include "base/q.h"
 #include "flare/edges/outline.h"
 
-/* Numbers of cuts: side K of the stop is cut K, barrel K is cut BARREL + K. */
+/* Numbers of cuts, as in struct glint_edge_part: side K of the stop is cut K,
+ * barrel K is cut BARREL + K. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ------------------------------------------------------------------- nodes */
@@ -30,9 +31,10 @@ static int count_parallel_side_pairs(const struct glint_stop *stop)
     return stop->n_blades % 2 ? 0 : half;
 }
 
-/* Returns the function of a round stop at V, positive inside: 1 - (1 + r^2) / 2
- * minus the inset, where r is the distance from the stop's centre in stop
- * radii. Clamped far outside. */
+/* Returns the value at V of the function whose zero line is the outline of a
+ * round stop; it is positive inside. The function is 1 - (1 + r^2) / 2 minus
+ * the stop's inset, where r is the distance from the stop's centre in stop
+ * radii. The value is clamped far outside. */
 static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
                                        const struct glint_vertex *v)
 {
@@ -43,11 +45,11 @@ static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
     return value_q16 > -(1 << 30) ? value_q16 : -(1 << 30);
 }
 
-/* Returns a mask with a bit set for each straight side of the stop on or
- * outside of which V lies (glint_side_compute_signed_distance_q16() is 0 or
- * less). LEAST is the apothem minus half a unit of _q16, because that function
- * rounds. HALF is the number of pairs of parallel sides, which are tested
- * together; 0: sides are tested one by one. */
+/* Returns a mask with a bit for each straight side of the stop: 1 if V lies on
+ * that side or outside. LEAST is the apothem minus half a unit of _q16,
+ * because glint_side_compute_signed_distance_q16() rounds. HALF is the number
+ * of pairs of parallel sides, which are tested together. If HALF is 0, sides
+ * are tested one by one. */
 static inline uint64_t find_outside_sides(const struct glint_stop *stop,
                                           int half,
                                           const struct glint_vertex *v,
@@ -67,8 +69,8 @@ static inline uint64_t find_outside_sides(const struct glint_stop *stop,
     return half ? sides | opposite << half : sides;
 }
 
-/* Returns a mask with a bit set for each arc of a stop with round blades on or
- * outside of which V lies. */
+/* Returns a mask with a bit for each arc of a stop with round blades: 1 if V
+ * lies on that arc or outside. */
 static uint64_t find_outside_arcs(const struct glint_stop *stop,
                                   const struct glint_vertex *v)
 {
@@ -120,8 +122,8 @@ int glint_cuts_count_outside_bits(struct glint_outside o)
 
 /* ------------------------------------------------------------------- parts */
 
-/* Returns the value of the function of cut CUT at V, which is positive inside.
- */
+/* Returns the value at V of the function of cut CUT. The function is positive
+ * inside and 0 on the cut. */
 static int64_t evaluate_cut_function_q16(const struct glint_stop *stop, int cut,
                                          const struct glint_vertex *v)
 {
@@ -143,7 +145,7 @@ static void clip_interval_by_cut(const struct glint_stop *stop,
 {
     const int64_t fa = evaluate_cut_function_q16(stop, cut, a),
                   fb = evaluate_cut_function_q16(stop, cut, b);
-    const int end = fb <= 0; /* index of the end that is outside */
+    const int end = fb <= 0; /* index (0 or 1) of the end that lies outside */
     int32_t t_q30;
 
     if (fa > 0 && fb > 0)
@@ -202,10 +204,10 @@ void glint_cuts_find_visible_part(const struct glint_stop *stop,
 
 /* ----------------------------------------------------------------- corners */
 
-/* A plane fitted to the values at the four corners of a cell: middle + u
- * slope_u + v slope_v, where u and v run from -1/2 to 1/2 across the cell. */
+/* A plane that approximates the values at the four corners of a cell: middle +
+ * u slope_u + v slope_v. u and v run from -1/2 to 1/2 across the cell. */
 struct plane {
-    /* 4 middle, 2 slope_u, 2 slope_v, which are integers */
+    /* the coefficients as integers: 4 middle, 2 slope_u, 2 slope_v */
     int64_t middle4, u2, v2;
 };
 
@@ -216,8 +218,8 @@ static struct plane fit_plane_to_corners(const int64_t value[4])
                           value[3] - value[0] + value[2] - value[1]};
 }
 
-/* Sets *Q16 to X / Y, a coordinate u or v in the cell. Returns 0 if it is
- * outside -3/4 .. 3/4, so not in the cell or near it. */
+/* Sets *Q16 to X / Y, a coordinate u or v in the cell. Returns 0 if the
+ * coordinate is outside -3/4 .. 3/4, which is not in the cell or near it. */
 static int divide_in_cell_q16(int64_t x, int64_t y, int64_t *q16)
 {
     const int wide = bit_length(q_magnitude(x));
@@ -251,16 +253,16 @@ int glint_cuts_find_crossing(const struct glint_stop *stop,
         y[k] = v->y_q8;
     }
     down = bit_length(most) > 27 ? bit_length(most) - 27 : 0;
-    /* The sums of fit_plane_to_corners() are then below 2^29, their products
-     * below 2^58. */
+    /* With these values the sums of fit_plane_to_corners() are below 2^29,
+     * their products below 2^58. */
     for (int k = 0; k < 4; k++) {
         fa[k] >>= down;
         fb[k] >>= down;
     }
     pa = fit_plane_to_corners(fa);
     pb = fit_plane_to_corners(fb);
-    /* Both planes are 0: middle4 / 4 + u u2 / 2 + v v2 / 2 = 0, so 2 u u2 + 2 v
-     * v2 = -middle4. */
+    /* At the crossing both planes are 0: middle4 / 4 + u u2 / 2 + v v2 / 2 = 0,
+     * so 2 u u2 + 2 v v2 = -middle4. */
     det = 2 * (pa.u2 * pb.v2 - pb.u2 * pa.v2);
     if (!divide_in_cell_q16(pb.middle4 * pa.v2 - pa.middle4 * pb.v2, det,
                             &u_q16) ||

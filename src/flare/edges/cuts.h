@@ -6,11 +6,11 @@
  *   in   the rays at the ends of an edge, or at the corners of a cell
  *   out  the visible part of the edge; where two cuts cross in a cell
  *
- * The function of a cut is interpolated linearly between the two ends of an
- * edge; in a cell it is approximated by the plane that fits its values at the
- * four corners best. The visible part of an edge depends only on the two ends
- * of the edge, in the order of the grid, so that the two cells at an edge find
- * the same part. */
+ * A cut is the zero line of a function. Between the two ends of an edge the
+ * function is interpolated linearly. In a cell it is approximated by the plane
+ * that fits its values at the four corners best. The visible part of an edge
+ * depends only on its two ends, in the order of the grid. So both cells at an
+ * edge find the same part. */
 #ifndef GLINT_FLARE_CUTS_H
 #define GLINT_FLARE_CUTS_H
 
@@ -19,8 +19,9 @@
 #include "glint/bundle.h"
 #include "glint/light.h"
 
-/* The cuts on or outside of which a node of the grid lies: a bit for each side
- * of the stop (bit 0 for a round stop), and a bit for each barrel. */
+/* The cuts for which a node of the grid lies on the cut or outside. sides: a
+ * bit for each side of the stop (bit 0 for a round stop). barrels: a bit for
+ * each barrel. */
 struct glint_outside {
     uint64_t sides;
     uint8_t barrels;
@@ -32,15 +33,15 @@ void glint_cuts_classify_row(const struct glint_stop *stop,
                              const struct glint_vertex *row, int n,
                              uint64_t *sides, uint8_t *barrels);
 
-/* Returns the number of bits set in O, but at most 3. */
+/* Returns the number of bits set in O, clamped to 3. */
 int glint_cuts_count_outside_bits(struct glint_outside o);
 
 /* The visible part of the edge between two neighbouring nodes. Its ends are in
  * the order of the nodes in the grid. */
 struct glint_edge_part {
     int32_t end_q8[2][2];
-    int cut[2]; /* number of the cut that ends the part there;
-                   GLINT_CUT_NOTHING: the end is the node itself */
+    int cut[2]; /* number of the cut at which this end lies; GLINT_CUT_NOTHING:
+                   the end is the node itself */
     int visible;
 };
 

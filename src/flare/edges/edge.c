@@ -9,9 +9,9 @@
 
 #define ONE_Q40 (INT64_C(1) << 40)
 
-/* Returns ACROSS / DOWN, the slope of an edge, rounded towards 0; the error is
- * at most 2^-31 of the result plus one unit. DOWN must be above 0, both
- * magnitudes below 2^30. */
+/* Returns ACROSS / DOWN, the slope of an edge, rounded towards 0. DOWN must be
+ * above 0, and both magnitudes below 2^30. The error is at most 2^-31 of the
+ * result plus one unit. */
 static int64_t compute_slope_q40(int32_t across, int32_t down)
 {
     const int up = q_count_normalising_shift((uint32_t)down);
@@ -40,7 +40,8 @@ int glint_edge_set_from_points(struct glint_edge *edge, const int32_t a_q8[2],
     return 1;
 }
 
-/* Adds half a pixel to x, so that truncation rounds to the nearest pixel. */
+/* Half a pixel is added to x, so that truncation rounds to the nearest
+ * pixel. */
 void glint_edge_snap_to_pixels(struct glint_edge *edge)
 {
     edge->x_q8 += edge->whole ? 0 : 128;
@@ -51,17 +52,17 @@ void glint_edge_snap_to_pixels(struct glint_edge *edge)
 
 enum visit { COUNT, PUT, SPAN };
 
-/* Returns the index in its row of tiles of the tile that contains column X,
- * clamped to LAST, the last column of the region. */
+/* Returns the index of the tile that contains column X, counted from the left.
+ * X is clamped to LAST, the last column of the region. */
 static inline int find_tile_column(int x, int last, int log2)
 {
     return (x < 0 ? 0 : x > last ? last : x) >> log2;
 }
 
-/* Counts or stores INDEX in the tiles that edge E crosses, or that the bounding
- * box of patch E overlaps, one row of tiles after the other. The part of E left
- * of the region counts to the region's first column. Returns the number of
- * tiles visited. */
+/* Visits the tiles that edge E crosses, one row of tiles after the other. If E
+ * is a patch, visits the tiles that its bounding box overlaps. Counts an entry
+ * in each tile, or stores INDEX in it. Parts of E left of the region count to
+ * the region's first column. Returns the number of tiles visited. */
 static WHOLLY_INLINE int visit_crossed_tiles(const struct glint_edge *e,
                                              const struct glint_bins *bins,
                                              enum visit visit, int32_t index)

@@ -38,19 +38,19 @@ struct glint_edge {     /* 32 bytes */
     int64_t slope_q40;  /* pixels of x per 1/256 pixel of y */
     int32_t x_q8, y_q8; /* upper end, pixels */
     int32_t end_y_q8;   /* y of the lower end, > y_q8, pixels */
-    /* light on the left and right side, packed by glint_light_pack(); negative
-     * for a mirrored ghost
-     */
+    /* light on the left and on the right side, packed by glint_light_pack();
+     * negative for a mirrored ghost */
     int32_t left, right;
     /* patch: 1 if this struct is not an edge but one slot of a patch (patch.h).
-     * whole: for edges, 1 if the edge is pixel-snapped; for patches, 0 in the
-     * patch's first slot, 1 in the others. */
+     * whole: for edges, 1 if the edge is pixel-snapped; for patches, 1 in all
+     * slots but the first. */
     unsigned bundle : 30, patch : 1, whole : 1;
 };
 
 /* Packs light, 1 = display white, into a 32-bit floating-point number with a
- * mantissa of 25 bits above an exponent of 5 bits. Every packed value is an
- * integer in units of 2^-20, so that sums that should cancel do so exactly. */
+ * mantissa of 25 bits above an exponent of 5 bits. Every packed value is a
+ * multiple of 2^-20, so that sums of light and the same light negated are
+ * exactly 0. */
 static inline int32_t glint_light_pack(int64_t light_q20)
 {
     const int wide =
@@ -68,9 +68,9 @@ static inline int64_t glint_light_unpack_q20(int32_t packed)
 /* size of the scratch memory of a patch function, bytes */
 enum { GLINT_PATCH_SCRATCH = 8192 };
 
-/* Adds the part of patch E that lies in the tile of SUMS to the narrow or wide
- * sums. LIGHT: the patch's light through a clear stop, per channel, in the
- * units of the sums. */
+/* Function that adds the part of patch E in the tile of SUMS to the narrow or
+ * to the wide sums. LIGHT is the patch's light through a clear stop, per
+ * channel, in the units of the sums. */
 struct glint_edge_sums;
 typedef void glint_patch_fn(const struct glint_edge_sums *sums, int narrow,
                             const struct glint_edge *e, const int64_t light[3]);
@@ -83,20 +83,22 @@ struct glint_edge_sums {
     struct glint_box tile;
     int tile_log2, stride;
     int linear; /* nonzero: the picture is in linear light */
-    int fine;   /* 1: light is _q20 even if the picture is in codes */
+    int fine;   /* 1: light is _q20 even if the picture has 8-bit codes */
     int lit;    /* nonzero: light may be carried in from the tile on the left;
                    set by the pass (edges_pass.c) */
     /* For patches (patch.h): the function that draws a patch, the shade of the
-     * stop, and scratch memory of GLINT_PATCH_SCRATCH bytes. */
+     * stop (its soft edge, dust and masks), and scratch memory of
+     * GLINT_PATCH_SCRATCH bytes. */
     glint_patch_fn *patch;
     const struct glint_shade *shade;
     void *scratch;
-    int in_narrow; /* set by glint_edges_add_to_sums(); 1: the light is in the
-                      narrow sums, as 32 bits suffice */
+    int in_narrow; /* 1: glint_edges_add_to_sums() put the light into the narrow
+                      sums, as 32 bits suffice */
     uint64_t *wide;
     uint32_t *narrow;
-    int64_t *carry;    /* [3][side rows]: light carried into each row from the
-                          left; after the row is read, the light carried out */
+    int64_t *carry;    /* [3][side rows]: light that is carried into each row
+                          from the left; after the row is read, the light that
+                          it carries out to the right */
     uint64_t *touched; /* [3]: per channel, bit n is set if row n has nonzero
                           differences */
 };
@@ -104,9 +106,10 @@ struct glint_edge_sums {
 /* Number of array elements per row of a tile of 2^LOG2 pixels. */
 #define GLINT_EDGE_STRIDE(log2) ((1 << (log2)) + 16)
 
-/* Sets EDGE to the line from A to B, (x, y) in pixels. If the line goes upwards
- * (y falls from A to B), LIGHT is on its right side and OTHER on its left side,
- * else the reverse. Returns 0 if the line is horizontal, and so not an edge. */
+/* Sets EDGE to the line from A to B, (x, y) in pixels. If y falls from A to B,
+ * LIGHT is on the line's right side and OTHER on its left side. If y rises, the
+ * sides are swapped. Returns 0 if the line is horizontal, as such a line is not
+ * an edge. */
 int glint_edge_set_from_points(struct glint_edge *edge, const int32_t a_q8[2],
                                const int32_t b_q8[2], int32_t light,
                                int32_t other);
@@ -121,14 +124,15 @@ static inline int64_t compute_edge_x_q40(const struct glint_edge *e,
 }
 
 /* Snaps EDGE to the nearest pixel boundary in each row. A snapped edge costs a
- * fraction of a smooth one, and is meant for changes of light that are barely
- * visible. Closed outlines still cancel, as heights are unchanged. */
+ * fraction of a smooth one. It is used for changes of light that are barely
+ * visible. The edges of a closed outline still cancel, as their heights are
+ * unchanged. */
 void glint_edge_snap_to_pixels(struct glint_edge *edge);
 
 /* glint_edge_count_into_bins() increments the counts of the tiles that EDGE
- * crosses and returns their number; glint_edge_put_into_bins() appends INDEX,
- * the index of EDGE, to the lists of these tiles. Parts left of the picture
- * belong to the first column of tiles. */
+ * crosses and returns their number. glint_edge_put_into_bins() appends INDEX,
+ * the index of EDGE, to the lists of these tiles. Parts of EDGE left of the
+ * picture belong to the first column of tiles. */
 int glint_edge_count_into_bins(const struct glint_edge *edge,
                                struct glint_bins *bins);
 void glint_edge_put_into_bins(const struct glint_edge *edge,
@@ -139,8 +143,8 @@ int glint_edge_count_bin_entries(const struct glint_edge *edge,
                                  const struct glint_bins *bins);
 
 /* Adds the edges EDGE[REF[0 .. N_REFS - 1]] to SUMS, each in the colour of its
- * bundle. The light on either side is multiplied by the colour before the
- * difference is taken, so that edges still cancel exactly. */
+ * bundle. The light of both sides is multiplied by the colour before it is
+ * subtracted, so that edges still cancel exactly. */
 void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const struct glint_edge *edge,
                              const struct glint_bundle *bundle,

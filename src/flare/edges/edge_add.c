@@ -14,31 +14,31 @@
 #define ONE_Q16 (INT32_C(1) << 16)
 #define ONE_Q40 (INT64_C(1) << 40)
 
-/* An integer type for values below 2^31, of the width that the CPU adds
- * fastest. */
+/* An integer type for values below 2^31 that the CPU adds fastest. */
 typedef int_fast32_t fast;
 
-/* Sums have 64 bits (WIDE), or 32 bits (NARROW) if the light of the tile stays
- * below MOST_NARROW. */
+/* Width of the sums: 64 bits (WIDE), or 32 bits (NARROW) if the light of the
+ * tile stays below MOST_NARROW. */
 enum mode { WIDE, NARROW };
 
-/* The edges of a tile are scattered in memory, so each is prefetched AHEAD
- * edges in advance. */
+/* Number of edges between an edge that is added and the edge that is
+ * prefetched. The edges of a tile are scattered in memory. */
 enum { AHEAD = 12 };
 #define MOST_NARROW (INT64_C(1) << 23)
 
-/* One row of one channel of a tile, addressed from pixel 0 of the picture. */
+/* One row of one channel of a tile. Pointers are offset so that index 0 is
+ * pixel 0 of the picture. */
 struct run {
     union {
         uint64_t *wide;
         uint32_t *narrow;
-    } row;      /* the mode selects the member */
+    } row;      /* sums of the row, wide or narrow by the mode */
     int less;   /* number of low bits of areas (_q16) that are dropped: 0 for
-                   linear pictures, else 8 */
+                   linear pictures, 8 for all others */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t rise_q32; /* increase of the covered area per pixel of x, see
-                         compute_area_rise() */
+    int64_t rise_q32; /* increase of the covered area per pixel of x;
+                         compute_area_rise() returns it */
 };
 
 static inline void add_light_change(const struct run *r, enum mode mode, int x,
@@ -59,10 +59,10 @@ static inline fast convert_area_to_sum_units(const struct run *r,
     return (area_q16 + (1 << less >> 1)) >> less;
 }
 
-/* Adds a piece of an edge that lies in one row and spans several pixels: from x
- * = A to B (A <= B), HEIGHT high. From pixel to pixel the covered area rises
- * from 0 to HEIGHT; the difference from the pixel before is added to each pixel
- * of the tile. */
+/* Adds a piece of an edge that lies in one row and spans several pixels. It
+ * runs from x = A to B (A <= B) and is HEIGHT high. From pixel to pixel the
+ * covered area rises from 0 to HEIGHT. Each pixel of the tile gets the increase
+ * from the pixel on its left. */
 static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                                        int64_t a_q40, int64_t b_q40,
                                        fast height_q16)
@@ -101,9 +101,9 @@ static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                              before);
 }
 
-/* Returns height / width of an edge, both _q16, with 32 fraction bits. The
- * result is limited for edges so steep that x moves by less than 2^-16 pixels
- * per 1/256 pixel of y. */
+/* Returns height / width of an edge with the slope SLOPE; height and width are
+ * _q16, the result has 32 fraction bits. The result is limited for edges so
+ * steep that x moves by less than 2^-16 pixels per 1/256 pixel of y. */
 static int64_t compute_area_rise(int64_t slope_q40)
 {
     const int64_t size = slope_q40 < 0 ? -slope_q40 : slope_q40;
@@ -114,7 +114,7 @@ static int64_t compute_area_rise(int64_t slope_q40)
     const int64_t r =
         q_reciprocal(q_shift_to_32_bits(by, up)); /* 2^(63 - up) / size */
 
-    /* 1/256 pixel of height is 2^8 in _q16 */
+    /* 1/256 pixel of height is 2^8 in _q16. */
     return (r << 8) >> (7 - up);
 }
 
@@ -151,8 +151,8 @@ static inline void add_piece_in_two_pixels(const struct run *r, enum mode mode,
     }
 }
 
-/* Adds a piece of an edge that lies in one row, from x = A to B, HEIGHT high. A
- * may be larger than B. */
+/* Adds a piece of an edge that lies in one row, from x = A to B, and is HEIGHT
+ * high. A may be larger than B. */
 static inline void add_edge_piece(const struct run *r, enum mode mode,
                                   int64_t a_q40, int64_t b_q40, fast height_q16)
 {
@@ -176,8 +176,8 @@ static inline void add_edge_piece(const struct run *r, enum mode mode,
     }
 }
 
-/* Moves R down by N array elements; N is the stride times the number of rows.
- */
+/* Moves R down by N array elements. N is the stride of rows times the number of
+ * rows. */
 static inline void advance_run_by_rows(struct run *r, enum mode mode,
                                        ptrdiff_t n)
 {
@@ -187,17 +187,15 @@ static inline void advance_run_by_rows(struct run *r, enum mode mode,
         r->row.wide += n;
 }
 
-/* Returns a mask of 64 bits, one per row of the tile, with the bits of rows A
- * .. B - 1 set.
- */
+/* Returns a mask of 64 bits, one per row of the tile, in which the bits of rows
+ * A .. B - 1 are 1. */
 static uint64_t make_row_mask(int a, int b)
 {
     return (UINT64_MAX << a) & (UINT64_MAX >> (64 - b));
 }
 
-/* Adds the part of an edge that crosses N complete rows; it begins at X and
- * moves by STEP per row.
- */
+/* Adds the part of an edge that crosses N complete rows. The part begins at X
+ * and moves by STEP per row. */
 static inline void add_complete_rows(struct run r, enum mode mode, int n,
                                      int64_t x_q40, int64_t step_q40,
                                      int stride)
@@ -256,7 +254,7 @@ static inline struct part clip_edge_to_tile(const struct glint_edge_sums *s,
     return p;
 }
 
-/* Returns the height of edge part P within its first row, 1/256 pixel. */
+/* Returns the height, 1/256 pixel, that edge part P covers in its first row. */
 static inline int32_t compute_first_row_height(const struct part *p)
 {
     return q_smaller((p->y_q8 | 255) + 1, p->end_q8) - p->y_q8;
@@ -305,10 +303,10 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
                        (p.end_q8 - p.y_q8) * 256);
 }
 
-/* Adds one row of a pixel-snapped edge: AREA, the height of the edge in the
- * row, goes to the pixel at X and, by the running sum, to all pixels on its
- * right. X is counted from the tile's left side. An edge left of the picture is
- * treated as one at the picture's left side. */
+/* Adds one row of a pixel-snapped edge. AREA, the height of the edge in the
+ * row, is added to the difference at the pixel X. By the running sum it reaches
+ * all pixels on the right of X, too. X is counted from the tile's left side. An
+ * edge left of the picture is treated as one at the picture's left side. */
 static inline void add_snapped_row(const struct run *r, enum mode mode,
                                    int64_t x_q40, fast area)
 {
@@ -337,8 +335,8 @@ static inline void add_complete_snapped_rows(struct run r, enum mode mode,
         }
         return;
     }
-    /* Skips the rows in which the edge is outside the tile, then adds rows
-     * until the edge leaves the tile, to which it does not return. */
+    /* Rows in which the edge is outside the tile are skipped. Then rows are
+     * added until the edge leaves the tile, as it does not return. */
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
         advance_run_by_rows(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
@@ -394,9 +392,9 @@ static int64_t multiply_by_colour_q20(int32_t light, int32_t colour_q14)
                                  : q_shift(light_q20 * colour_q14, 14);
 }
 
-/* Returns the light on the right of E minus that on its left, in a channel in
- * which the bundle has the colour COLOUR, with LESS of the 20 fraction bits
- * dropped. */
+/* Returns the light on the right of E minus the light on its left, for a
+ * channel in which the bundle's colour is COLOUR. The last LESS of the 20
+ * fraction bits are dropped. */
 static int64_t compute_light_change(const struct glint_edge *e,
                                     int32_t colour_q14, int less)
 {
@@ -404,8 +402,8 @@ static int64_t compute_light_change(const struct glint_edge *e,
            q_shift(multiply_by_colour_q20(e->left, colour_q14), less);
 }
 
-/* Adds patch E in the colour RGB. Returns the max light over the channels,
- * shifted right by LESS bits: with 20 - LESS fraction bits. */
+/* Adds the light of patch E in the colour RGB. Returns the largest light of a
+ * channel with 20 - LESS fraction bits. */
 static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
                                const struct glint_edge *e,
                                const int32_t rgb_q14[3], int less)
@@ -420,10 +418,10 @@ static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
     return most;
 }
 
-/* Adds the edges to the wide or narrow sums. Returns an upper bound of how far
- * a running sum can deviate from its start: the sum of the magnitudes of all
- * changes of light, max over the channels. Stops early in mode NARROW if sums
- * could overflow. */
+/* Adds the edges to the wide or narrow sums, by MODE. Returns an upper bound on
+ * the distance of a running sum from its start: the sum of the magnitudes of
+ * all changes of light, max over the channels. In mode NARROW it stops as soon
+ * as sums could overflow. */
 static WHOLLY_INLINE int64_t add_edges_to_sums(
     const struct glint_edge_sums *s, enum mode mode,
     const struct glint_edge *edge, const struct glint_bundle *bundle,
@@ -486,8 +484,8 @@ void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const int32_t *ref, int n_refs)
 {
     const int64_t most = MOST_NARROW * 256;
-    int64_t far = 0; /* upper bound of how far a running sum (light times area)
-                        deviates from its start, in the units of the sums */
+    int64_t far = 0; /* upper bound on the distance of a running sum (light
+                        times area) from its start, in the units of the sums */
 
     sums->in_narrow = 0;
     if (!sums->linear)

@@ -15,8 +15,8 @@ typedef int32_t point_q8[2];
 
 /* ------------------------------------------------------------------- edges */
 
-/* Returns whether LIGHT and OTHER, packed light on both sides of an edge,
- * differ so little that the edge may be pixel-snapped. */
+/* Returns whether the light on both sides of an edge, LIGHT and OTHER (packed),
+ * differs so little that the edge may be pixel-snapped. */
 static int is_light_change_weak(const struct glint_ghost_edges *g,
                                 int32_t light, int32_t other)
 {
@@ -41,8 +41,8 @@ static void make_ghost_edge(const struct glint_ghost_edges *g,
         glint_edge_snap_to_pixels(edge);
 }
 
-/* Adds to more_refs the number of bin entries that an edge needs which does not
- * fit into the edge array. */
+/* Counts the bin entries of an edge that does not fit into the edge array: adds
+ * their number to more_refs. */
 static void count_edge_bin_entries(struct glint_ghost_edges *g,
                                    const int32_t a_q8[2], const int32_t b_q8[2],
                                    int32_t light, int32_t other)
@@ -54,8 +54,8 @@ static void count_edge_bin_entries(struct glint_ghost_edges *g,
                               glint_edge_count_bin_entries(&edge, g->bins));
 }
 
-/* Stores the edge from A to B, with LIGHT on its inner side and OTHER on its
- * outer side, unless it cannot change any pixel. */
+/* Stores the edge from A to B, unless it cannot change any pixel. LIGHT is the
+ * light on its inner side, OTHER that on its outer side. */
 static void add_ghost_edge(struct glint_ghost_edges *g, const int32_t a_q8[2],
                            const int32_t b_q8[2], int32_t light, int32_t other)
 {
@@ -93,9 +93,8 @@ static void set_cell_corners(const struct glint_ghost_edges *g, int i, int j,
     }
 }
 
-/* Returns twice the signed area of the triangle of the corners I, I + 1 and I +
- * 2 of a cell, pixels^2.
- */
+/* Returns twice the signed area of the triangle of corners I, I + 1 and I + 2
+ * of a cell, pixels^2. */
 static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
                                               int i)
 {
@@ -106,7 +105,7 @@ static int64_t compute_corner_double_area_q16(const struct glint_corners *c,
                                            d->x_q8, d->y_q8);
 }
 
-/* Returns 1 or -1, the sign of the cell's area, if the cell is convex, else 0.
+/* Returns the sign of the cell's area, 1 or -1, if the cell is convex, else 0.
  * The triangles at two opposite corners add up to the cell. */
 static int find_convex_orientation(const struct glint_corners *c)
 {
@@ -121,9 +120,10 @@ static int find_convex_orientation(const struct glint_corners *c)
 }
 
 /* Sets the number of steps per octave to which irradiance is rounded, for each
- * octave. 8-bit codes resolve faint light more coarsely: with each octave that
- * light gets fainter, the light of one code shrinks by only 2^(7/12), so 3/4 of
- * the steps would suffice. 7/8 are used, as many ghosts may overlap. */
+ * octave. 8-bit codes resolve faint light more coarsely. With each octave by
+ * which light gets fainter, the light of one code shrinks by only 2^(7/12), so
+ * 3/4 of the steps of the octave above would suffice. 7/8 are used, as many
+ * ghosts may overlap. */
 static void set_irradiance_steps(struct glint_ghost_edges *g)
 {
     int steps_q8 = g->steps * 256;
@@ -136,9 +136,9 @@ static void set_irradiance_steps(struct glint_ghost_edges *g)
 }
 
 /* Sets, for each octave of light, the change of light below which an edge is
- * pixel-snapped: the light of snap_codes_q8 codes. With each octave below white
- * the light of one code falls to 2/3, about 2^(-7/12), down to where codes are
- * linear in light. */
+ * pixel-snapped. This change is snap_codes_q8 codes. With each octave below
+ * white, the light of one code falls to 2/3, about 2^(-7/12). This continues
+ * down to where codes are linear in light. */
 static void set_snapping_limits(struct glint_ghost_edges *g)
 {
     const int32_t least_q20 = 318;
@@ -153,8 +153,8 @@ static void set_snapping_limits(struct glint_ghost_edges *g)
     }
 }
 
-/* Returns irradiance X rounded to the nearest step of its octave; STEPS_OF has
- * the number of steps per octave. X must be below 2^44. */
+/* Returns irradiance X, below 2^44, rounded to the nearest step of its octave.
+ * STEPS_OF[octave] is the number of steps per octave. */
 static int64_t round_to_irradiance_step(int64_t x, const uint16_t *steps_of)
 {
     const int log2 = bit_length((uint64_t)x | 1) - 1;
@@ -179,7 +179,7 @@ int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
 }
 
 /* Returns the packed irradiance of a primitive that covers AREA2 / 2^FRAC
- * pixels and has 2^SHARE_LOG2 times the flux of a cell. SIGN is -1 for a
+ * pixels. Its flux is 2^SHARE_LOG2 times that of a cell. SIGN is -1 for a
  * mirrored cell, else 1. */
 static int32_t compute_packed_cell_light(struct glint_ghost_edges *g,
                                          int64_t area2, int frac,
@@ -194,7 +194,6 @@ static int32_t compute_packed_cell_light(struct glint_ghost_edges *g,
 
 /* -------------------------------------------------- cells drawn separately */
 
-/* Adds the edges of the closed outline O. */
 static void add_outline_edges(struct glint_ghost_edges *g,
                               const struct glint_outline *o, int32_t light)
 {
@@ -260,8 +259,8 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the edges of a cell that is not a convex quad: of its two triangles, or
- * of one triangle if one corner is invalid. */
+/* Adds the edges of a cell that is not a convex quad, as two triangles. If one
+ * corner is invalid, adds the triangle of the other three corners. */
 static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
                                                const struct glint_ghost_cell *c)
 {
@@ -284,8 +283,9 @@ static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the edges of a cell that is drawn as a closed outline, sharing no edges
- * with its neighbours. TURN is the result of find_convex_orientation(). */
+/* Adds the edges of a cell that is drawn as a closed outline and shares no
+ * edges with its neighbours. TURN is the result of
+ * find_convex_orientation(). */
 static NEVER_INLINE void
 add_cell_separately(struct glint_ghost_edges *g,
                     const struct glint_ghost_cell *c,
@@ -299,8 +299,8 @@ add_cell_separately(struct glint_ghost_edges *g,
 
 /* ------------------------------------------------------------- in the grid */
 
-/* Sets PART to the visible part of side K of cell C, from corner K to corner K
- * + 1. */
+/* Sets PART to the visible part of side K of cell C, which runs from corner K
+ * to corner K + 1. */
 static void find_visible_side_part(const struct glint_ghost_edges *g,
                                    const struct glint_ghost_cell *c, int k,
                                    struct glint_edge_part *part)
@@ -321,8 +321,9 @@ static void find_visible_side_part(const struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the chords of a cell that is cut by the stop or a barrel: the edges that
- * connect the visible parts of its sides, which closes its outline. */
+/* Adds the chords of a cell that is cut by the stop or a barrel. Chords are
+ * edges that connect the visible parts of the cell's sides, and so close its
+ * outline. */
 static void add_cell_chords(struct glint_ghost_edges *g,
                             const struct glint_ghost_cell *c, int32_t light)
 {
@@ -367,8 +368,8 @@ static void set_grid_cell_corners(const struct glint_ghost_edges *g, int i,
 }
 
 /* Returns whether row J of cells lies in the hole of an annular pupil box. Such
- * a row touches the middle row of nodes, which has no rays, and has no light.
- */
+ * rows have no light. They touch the middle row of nodes, for which no rays are
+ * traced. */
 static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
 {
     const int middle = g->bundle->n_cells / 2;
@@ -377,9 +378,9 @@ static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
            (j == middle - 1 || j == middle);
 }
 
-/* If the stop has a shade (soft edge, dust or masks), reduces the energy at the
- * corners of a cell that is drawn separately: DIMMED receives the new corners.
- */
+/* Multiplies the energy at the corners of a cell that is drawn separately by
+ * the light that the stop's shade (soft edge, dust or masks) transmits. Stores
+ * the new corners in DIMMED. Without a shade nothing changes. */
 static void dim_separate_cell(const struct glint_ghost_edges *g,
                               struct glint_ghost_cell *c,
                               struct glint_corners *corners,
@@ -394,9 +395,9 @@ static void dim_separate_cell(const struct glint_ghost_edges *g,
 }
 
 /* Returns the packed light of the cell at (I, J), for the edges that it shares
- * with its neighbours. Returns 0 for cells that are invisible, and for cells
- * that have to be drawn separately; draws the latter. Nearly all cells are
- * completely visible or completely invisible. */
+ * with its neighbours. Returns 0 for invisible cells. Cells that have to be
+ * drawn separately are drawn here, and 0 is returned for them, too. Nearly all
+ * cells are either completely visible or completely invisible. */
 static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
 {
     const struct glint_ghost_rows *r = g->rows;
@@ -420,8 +421,9 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
         add_cell_as_triangles(g, &cell);
         return 0;
     }
-    /* All four corners lie outside the same side or barrel, or off-screen
-     * beyond the same side of the picture, where edges change no pixel. */
+    /* All four corners lie outside the same side of the stop or the same
+     * barrel, or they lie off-screen on the same side of the picture, where
+     * edges change no pixel. */
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;
     set_grid_cell_corners(g, i, j, &corners);
@@ -450,8 +452,8 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
     return light;
 }
 
-/* Adds the visible part of the edge from node A to node B, which separates
- * cells of light LIGHT and OTHER. */
+/* Adds the visible part of the edge from node A to node B. The edge separates a
+ * cell of light LIGHT from a cell of light OTHER. */
 static void
 add_shared_edge(struct glint_ghost_edges *g, const struct glint_vertex *a,
                 struct glint_outside at_a, const struct glint_vertex *b,
@@ -479,8 +481,8 @@ get_outside_bits_of_node(const struct glint_ghost_edges *g, int i, int j)
                                   g->rows->barrels[j & 1][i] & NODE_BARRELS};
 }
 
-/* Adds the edges along row J of nodes, between two rows of cells whose light is
- * ABOVE and BELOW. */
+/* Adds the edges along row J of nodes, which separate two rows of cells. ABOVE
+ * and BELOW are the light of the cells in these rows. */
 static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
                                  const int32_t *above, const int32_t *below)
 {
@@ -492,8 +494,8 @@ static void add_horizontal_edges(struct glint_ghost_edges *g, int j,
                 get_outside_bits_of_node(g, i + 1, j), below[i], above[i]);
 }
 
-/* Adds the edges between neighbouring cells within row J of cells, whose light
- * is LIGHT. */
+/* Adds the edges between neighbouring cells within row J of cells. LIGHT is the
+ * light of these cells. */
 static void add_vertical_edges(struct glint_ghost_edges *g, int j,
                                const int32_t *light)
 {

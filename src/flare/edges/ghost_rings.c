@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the soft edge of a stop as nested outlines (rings), each with an equal
- * part of the light. */
+ * Draws the ghosts of a stop with a soft edge as nested outlines (rings). Each
+ * ring has an equal fraction of the light. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "base/q.h"
@@ -10,8 +10,9 @@
 
 enum { MOST_LOG2 = 4 }; /* log2 of GLINT_SOFT_RINGS */
 
-/* Depth of ring i within the soft edge: the solution x of 3 x^2 - 2 x^3 = (2 i
- * + 1) / 32. */
+/* Position of each ring within the soft edge: 0 at its outer border, 1 at its
+ * inner border. For ring i it is the solution x of 3 x^2 - 2 x^3 = (2 i + 1) /
+ * 32. */
 static const uint16_t depth_q16[GLINT_SOFT_RINGS] = {
     6938,  12393, 16384, 19804, 22914, 25838, 28650, 31402,
     34134, 36886, 39698, 42622, 45732, 49152, 53143, 58598};
@@ -24,22 +25,23 @@ static int compute_floor_log2(struct glint_real x)
     return bit_length((uint64_t)n | 1) - 1;
 }
 
-/* Returns log2 of the number of rings, limited so that rings are at least a
- * pixel apart and each adds at least half a code of light. */
+/* Returns log2 of the number of rings. The number is limited so that rings are
+ * at least a pixel apart and each ring adds at least half a code of light. */
 static int choose_rings_log2(const struct glint_ghost_edges *g)
 {
     int log2 = MOST_LOG2;
 
     if (g->irradiance.mantissa && g->coded) {
-        /* the light of one code falls to 2^(-7/12) per octave of light */
+        /* With each octave by which light gets fainter, the light of one code
+         * falls to 2^(-7/12). */
         const int octaves = -(g->irradiance.exponent + 31);
         const int codes_log2 = 8 - (octaves > 0 ? octaves * 5 / 12 : 0);
 
         log2 = codes_log2 < log2 ? codes_log2 : log2;
     }
     if (g->irradiance.mantissa) {
-        /* the width of the soft edge in pixels, squared and times 4: area of
-         * the ghost in pixels^2 * soft^2 */
+        /* about 4 times the squared width of the soft edge, pixels^2: the
+         * ghost's area, pixels^2, times soft^2 */
         const struct glint_real soft = real_of(g->stop->shade->soft_q16, -16);
         const struct glint_real pixels2 = real_times(
             real_over(g->flux, g->irradiance), real_times(soft, soft));
@@ -50,8 +52,8 @@ static int choose_rings_log2(const struct glint_ghost_edges *g)
     return log2 > 0 ? log2 : 0;
 }
 
-/* Moves the outline of STOP inwards by BY stop radii. Returns 0 if no opening
- * is left. */
+/* Moves the outline of STOP inwards by BY stop radii. Returns 0 if that closes
+ * the stop. */
 static int shrink_stop_outline(struct glint_stop *stop, int32_t by_q16)
 {
     if (stop->n_blades == 0)

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Computes rows of nodes of a ray grid: the vertex of each node, and bit masks
- * of the stop's sides, barrels and sides of the picture outside of which the
- * node lies. */
+ * of what the node lies outside of, which are sides of the stop, barrels, and
+ * sides of the picture. */
 #include "flare/edges/ghost_parts.h"
 
 #include <stddef.h>
@@ -17,9 +17,9 @@ static int is_vertex_valid(const struct glint_vertex *v)
            (uint32_t)v->y_q8 + most <= 2 * most;
 }
 
-/* Corrects a row of vertices by the sags (struct glint_bundle_plan): subtracts
- * them from the barrels' values, and moves the stop positions inwards if the
- * stop is round. */
+/* Corrects a row of vertices for the error of linear interpolation (sags,
+ * struct glint_bundle_plan). Subtracts the sags from the barrels' values and,
+ * if the stop is round, moves the stop positions inwards. */
 static struct glint_vertex *subtract_row_sags(const struct glint_ghost_edges *g,
                                               struct glint_vertex *row)
 {
@@ -38,8 +38,8 @@ static struct glint_vertex *subtract_row_sags(const struct glint_ghost_edges *g,
     return row;
 }
 
-/* Returns the vertices of row J of the grid, computed or stored; they are valid
- * until row J + 2 is requested. */
+/* Returns the vertices of row J of the grid, which are computed or stored. They
+ * are valid until row J + 2 is requested. */
 static const struct glint_vertex *get_grid_row(struct glint_ghost_edges *g,
                                                int j)
 {

@@ -27,15 +27,17 @@ static int compute_level_shift(const struct glint_shade *s, int level)
     return 17 - s->log2 + level;
 }
 
-/* Converts a coordinate in the stop, -1 .. 1 stop radii, to the distance from
- * the first node of the shade's table, 0 .. 2, clamped to that range. */
+/* Converts a coordinate in the stop, -1 .. 1 stop radii, to a coordinate in the
+ * shade's table, 0 .. 2 stop radii from its first node. The result is
+ * clamped. */
 static int32_t clamp_stop_position_to_table(int64_t at_q16)
 {
     return q_clamp_sat(at_q16 + (1 << 16), 0, (1 << 17) - 1);
 }
 
-/* Returns the fraction of light that the shade transmits at (X, Y), stop radii,
- * interpolated between the four nodes of LEVEL around that point. */
+/* Returns the fraction of light that the shade transmits at (X, Y), stop radii.
+ * It is interpolated between the four nodes of level LEVEL around that
+ * point. */
 static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
                                            int level, int64_t x_q16,
                                            int64_t y_q16)
@@ -54,8 +56,9 @@ static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
     return (int32_t)q_shift(low * (one - v) + high * v, 2 * shift);
 }
 
-/* Returns the max difference between LEVEL of the shade's table and finer
- * levels near (X, Y), stop radii. */
+/* Returns how much detail the shade has near (X, Y), stop radii, that level
+ * LEVEL of its table does not show: the max difference between LEVEL and finer
+ * levels. */
 static int read_roughness_q8(const struct glint_shade *s, int level,
                              int64_t x_q16, int64_t y_q16)
 {
@@ -69,9 +72,9 @@ static int read_roughness_q8(const struct glint_shade *s, int level,
                        ((clamp_stop_position_to_table(x_q16) + half) >> shift)];
 }
 
-/* Returns the level of the shade's table whose node distance fits a cell:
- * between half and all of the max distance of the corners CORNER in the stop.
- */
+/* Returns the level of the shade's table for a cell with the corners CORNER.
+ * The distance of its nodes is between half and all of the max distance of the
+ * corners in the stop. */
 static int choose_shade_level(const struct glint_shade *s,
                               const struct glint_vertex *const *corner)
 {
@@ -88,9 +91,10 @@ static int choose_shade_level(const struct glint_shade *s,
     return level < 0 ? 0 : level < s->log2 ? level : s->log2 - 1;
 }
 
-/* Returns the smallest visible difference from LIGHT: LIGHT / 128 for linear
- * pictures, otherwise the light of one code. With each octave below white the
- * light of one code falls to 2/3, down to where codes are linear in light. */
+/* Returns the smallest visible difference from LIGHT. For linear pictures it is
+ * LIGHT / 128, otherwise the light of one code. With each octave below white,
+ * the light of one code falls to 2/3, down to where codes are linear in
+ * light. */
 static int64_t compute_visible_difference_q20(const struct glint_ghost_edges *g,
                                               int64_t light_q20)
 {
@@ -106,15 +110,15 @@ static int64_t compute_visible_difference_q20(const struct glint_ghost_edges *g,
 
 /* ----------------------------------------------------------------- patches */
 
-/* The change of two quantities along a side of a cell, summed over two opposite
- * sides: position in the picture, pixels, and position in the stop, stop radii.
- */
+/* Changes of two positions along a side of a cell, summed over two opposite
+ * sides: of the position in the picture, pixels, and of that in the stop, stop
+ * radii. */
 struct span {
     int64_t x_q8, y_q8, stop_q16[2];
 };
 
-/* Returns the sum of the changes along the side from corner A to corner B and
- * along the side from corner D to corner C. */
+/* Returns the sum of the changes along two opposite sides of a cell: from
+ * corner A to corner B, and from corner D to corner C. */
 static struct span sum_side_changes(const struct glint_vertex *const *at, int a,
                                     int b, int d, int c)
 {
@@ -136,9 +140,9 @@ static int64_t compute_slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                         INT64_C(1) << 32);
 }
 
-/* Sets the linear map of patch P from pixels to positions in the stop, fitted
- * to the corners AT of a cell. The box of P must be set. Returns 0 if a
- * coefficient is out of range. */
+/* Sets the map of patch P from pixels to positions in the stop. The map is
+ * linear and fitted to the corners AT of a cell. The box of P must be set.
+ * Returns 0 if a coefficient is out of range. */
 static int set_pixel_to_stop_map(struct glint_patch *p,
                                  const struct glint_vertex *const *at)
 {
@@ -174,7 +178,8 @@ static int set_pixel_to_stop_map(struct glint_patch *p,
             sum_q16 * 64 + q_shift(across * (p->box.x0 * 256 + 128 - x_q8) +
                                        down * (p->box.y0 * 256 + 128 - y_q8),
                                    8);
-        /* modulo 2^32, as only pixels within the cell are used */
+        /* The map is modulo 2^32, as it is used only for pixels within the
+         * cell. */
         p->at_q24[k] = (int32_t)(uint32_t)(uint64_t)from_q24;
         p->across_q24[k] = (int32_t)across;
         p->down_q24[k] = (int32_t)down;
@@ -213,8 +218,8 @@ static void set_patch_level(struct glint_patch *p, const struct glint_shade *s)
     p->level = p->level < 0 ? 0 : p->level < s->log2 ? p->level : s->log2 - 1;
 }
 
-/* Stores patch P over the cell with the corners AT in the edge array. The
- * corners and the light of P must be set. */
+/* Stores patch P in the edge array. The patch covers the cell with the corners
+ * AT. The corners and the light of P must be set. */
 static void store_patch(struct glint_ghost_edges *g, struct glint_patch *p,
                         const struct glint_vertex *const *at)
 {
@@ -257,8 +262,8 @@ static void add_outline_patch(struct glint_ghost_edges *g, int32_t light)
 
 /* ------------------------------------------------------------------- cells */
 
-/* Returns log2 of the size of a cell (width or height in pixels, whichever is
- * larger), rounded down. */
+/* Returns log2 of the width or the height of a cell in pixels, whichever is
+ * larger, rounded down. */
 static int compute_cell_size_log2(const struct glint_vertex *const *corner)
 {
     int64_t far = 0;
@@ -272,9 +277,9 @@ static int compute_cell_size_log2(const struct glint_vertex *const *corner)
     return bit_length((uint64_t)far >> 8) - 1;
 }
 
-/* Returns an upper bound on the difference between the shade's light anywhere
- * in a cell and the mean of LIGHT, the shade's light at the cell's corners in
- * LEVEL. */
+/* Returns an upper bound on how far the shade's light within a cell may deviate
+ * from the mean of LIGHT. LIGHT has the shade's light at the cell's corners by
+ * level LEVEL of its table. */
 static int bound_cell_roughness_q8(const struct glint_shade *s, int level,
                                    const struct glint_vertex *const *corner,
                                    const int32_t light[4])

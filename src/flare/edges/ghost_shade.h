@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dims ghosts by the shade of the stop, which is its soft edge, dust and masks.
+ * Dims ghosts by the shade of the stop. The shade is the fraction of light that
+ * each point of the stop transmits, due to a soft edge, dust and masks.
  *
  *   in   a cell of a ghost's grid, tables of the light that the stop lets
  *        through
@@ -21,30 +22,31 @@
 
 enum {
     GLINT_SOFT_RINGS = 16
-}; /* max number of nested outlines of a soft edge */
+}; /* max number of nested outlines that draw a soft edge */
 
 struct glint_shade_method {
     /* Converts a bundle to edges; called by glint_ghost_emit_edges(). */
     void (*emit)(struct glint_ghost_edges *g);
-    /* Applies dust and masks to a convex cell of orientation TURN that is
-     * crossed by CUTS cuts. *ENERGY: on entry the mean energy of the cell's
-     * corners, on return the energy that the edges of the cell have to draw.
-     * Returns 0 if the cell was drawn completely; it then shares no edges with
-     * its neighbours. */
+    /* Applies dust and masks to a convex cell of orientation TURN. CUTS cuts
+     * (sides of the stop, barrels) cross the cell. *ENERGY: on entry the mean
+     * energy of the cell's corners, on return the energy that the edges of the
+     * cell have to draw. Returns 0 if the cell was drawn completely. Such a
+     * cell shares no edges with its neighbours. */
     int (*cell)(struct glint_ghost_edges *g, const struct glint_corners *c,
                 int turn, int cuts, int64_t *energy_q16);
-    /* Stores the patch over the outline of a cell that is drawn separately. */
+    /* Stores the patch over the outline of a cell that is drawn separately.
+     * LIGHT is the cell's packed light. */
     void (*patch)(struct glint_ghost_edges *g, int32_t light);
     glint_patch_fn *draw;
-    /* Multiplies the energy at the corners of a cell that is drawn separately
-     * by the shade's light. The new corners are stored in DIMMED, and C is set
-     * to point to them. */
+    /* Multiplies the energy at the corners of cell C, which is drawn
+     * separately, by the light that SHADE transmits. Stores the new corners in
+     * DIMMED, and sets C to point to them. */
     void (*corners)(const struct glint_shade *shade, struct glint_ghost_cell *c,
                     struct glint_vertex dimmed[4]);
 };
 
-/* Value of the member emit: converts the bundle to edges once, or once for each
- * ring of a soft edge. */
+/* Converts the bundle to edges: once if the stop has a hard outline, otherwise
+ * once for each ring of its soft edge. Value of member emit. */
 void glint_rings_emit_edges(struct glint_ghost_edges *g);
 
 /* Returns whether softness and table size of SHADE are in range. */

@@ -16,8 +16,8 @@ int64_t glint_disc_evaluate_function_q16(const struct glint_vertex *v)
                        -(1 << 30), 1 << 30);
 }
 
-/* A point 2^14 stop radii away has a function value of 2^31; times 2^30 it fits
- * into 64 bits. */
+/* A point 2^14 stop radii away has a function value of 2^31. Times 2^30 the
+ * value fits into 64 bits. */
 int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
                                               int64_t straight_q16,
                                               int64_t disc_q16)
@@ -27,8 +27,8 @@ int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
 }
 
 /* Sets VALUE[i], for each of N corners AT[i], to its distance inside side SIDE
- * of the stop, in stop radii; negative outside. If sides are round, DISC[i]
- * must be glint_disc_evaluate_function_q16() of the corner. */
+ * of the stop, in stop radii; outside it is negative. If sides are round,
+ * DISC[i] must be glint_disc_evaluate_function_q16() of AT[i]. */
 static void compute_side_distances(const struct glint_stop *stop, int side,
                                    const struct glint_vertex *const *at, int n,
                                    const int64_t *disc, int64_t *value)
@@ -74,9 +74,9 @@ static enum side classify_by_barrels(const struct glint_corners *c)
     return all;
 }
 
-/* Returns whether a primitive lies inside a round stop, outside, or is cut by
- * it. The circle may bulge into a primitive whose corners all lie outside, so
- * only primitives far outside count as OUTSIDE. */
+/* Returns whether a primitive lies inside a round stop, lies outside, or is cut
+ * by the stop's outline. The circle may bulge into a primitive whose corners
+ * all lie outside. So only primitives far outside count as OUTSIDE. */
 static enum side classify_by_disc(const struct glint_corners *c,
                                   const struct glint_stop *stop)
 {
@@ -135,16 +135,17 @@ static int64_t interpolate_at_uv(const int64_t *value_q16,
                                   28);
 }
 
-/* Returns the coordinate between A and B at which a linear function with the
- * values FA at A and FB at B is 0. Products are below 2^28 times 2^33. */
+/* Returns the coordinate of the zero of a linear function between A and B. The
+ * function is FA at A and FB at B. Products are below 2^28 times 2^33. */
 static int32_t find_zero_coordinate(int32_t a_q28, int32_t b_q28, int64_t fa,
                                     int64_t fb)
 {
     return a_q28 + (int32_t)q_divide((b_q28 - a_q28) * fa, fa - fb);
 }
 
-/* Clips polygon O by a half plane. VALUE has the values of the half plane's
- * linear function at the corners of the triangle; it is negative outside. */
+/* Clips polygon O by a half plane, which is the set of points where a linear
+ * function is 0 or more. VALUE has the values of that function at the corners
+ * of the triangle. */
 static void clip_by_half_plane(struct glint_outline *o,
                                const int64_t *value_q16)
 {
@@ -183,10 +184,10 @@ static void clip_by_barrels(struct glint_outline *o,
     }
 }
 
-/* Returns the mean over the triangle AT of the height of the function (1 - r^2)
- * / 2 above the plane through its values at the corners. At barycentric
- * coordinates l this height is half the sum of l_i l_j |s_i - s_j|^2, where s
- * are stop positions, and the mean of l_i l_j is 1/12. */
+/* Returns how far the function (1 - r^2) / 2 lies above the plane through its
+ * values at the corners of the triangle AT, on average over the triangle. At
+ * barycentric coordinates l this height is half the sum of l_i l_j |s_i -
+ * s_j|^2, where s are stop positions. The mean of l_i l_j is 1/12. */
 static int64_t compute_disc_bulge_q16(const struct glint_vertex *const *at)
 {
     int64_t sum_q16 = 0;
@@ -198,7 +199,7 @@ static int64_t compute_disc_bulge_q16(const struct glint_vertex *const *at)
         const int64_t one = 1 << 16;
 
         if (dx > one || dx < -one || dy > one || dy < -one)
-            return 0; /* the triangle is too large for this approximation */
+            return 0; /* The triangle is too large for this approximation. */
         sum_q16 += (dx * dx + dy * dy) >> 16;
     }
     return sum_q16 / 24;
@@ -248,8 +249,8 @@ static void convert_corners_to_pixels(struct glint_outline *o,
     }
 }
 
-/* Sets share_q28, the area of O / the area of the triangle, which is 1/2 in u
- * and v; and energy_q16, the mean energy. */
+/* Sets share_q28, the area of O divided by the area of the triangle, which is
+ * 1/2 in u and v. Sets energy_q16, the mean energy of the corners of O. */
 static void set_share_and_energy(struct glint_outline *o,
                                  const struct glint_vertex *const *at)
 {
@@ -310,8 +311,9 @@ void glint_outline_set_unclipped(struct glint_outline *outline,
 
 /* ------------------------------------------------------------------- widen */
 
-/* Lengthens the strip from A to B to the min length. Coordinate 0 is along the
- * strip, with A[0] <= B[0]. Returns twice the strip's area, pixels^2, _q32. */
+/* Lengthens the strip from A to B to the min length of a strip. Coordinate 0
+ * runs along the strip, with A[0] <= B[0]. Returns twice the strip's area,
+ * pixels^2. */
 static int64_t lengthen_strip(int64_t a[2], int64_t b[2])
 {
     const int64_t middle = (a[0] + b[0]) >> 1;
@@ -341,9 +343,9 @@ int64_t glint_outline_replace_by_strip_q32(struct glint_outline *o)
     area2_q32 = lengthen_strip(a, b);
     o->n = 4;
     for (int i = 0; i < 4; i++) {
-        /* Both cases give the same cyclic order of corners: left, right, right,
-         * left for a flat strip; top, top, bottom, bottom for an upright one.
-         */
+        /* The cyclic order of corners is the same in both cases: left, right,
+         * right, left for a flat strip, and top, top, bottom, bottom for an
+         * upright strip. */
         const int far = flat ? i == 1 || i == 2 : i >= 2;
         const int beyond = flat ? i >= 2 : i == 1 || i == 2;
         const int64_t along = far ? b[0] : a[0];

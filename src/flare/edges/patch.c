@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stores patches in slots of the edge array, so that they are sorted into tiles
- * like edges. */
+ * Stores patches (patch.h) in slots of the edge array, so that patches are
+ * sorted into tiles like edges. */
 #include "flare/edges/patch.h"
 
-enum { WORDS = 7 }; /* data words per slot */
+enum { WORDS = 7 }; /* number of data words in a slot */
 
 static void write_patch_word(struct glint_edge *e, int i, int32_t word)
 {

@@ -4,12 +4,12 @@
  * pixel is dimmed by the shade at that point of the stop through which its ray
  * passes.
  *
- * Edges draw the polygon with the light of a clear stop, or without light; the
- * patch adds to each pixel the difference between that and the light through
- * the shade. The map from pixels to the stop is linear over a patch, so it has
- * six coefficients. A pixel on a side of the polygon is weighted by the
- * fraction of its area inside; this equals the fraction computed for edges,
- * except where two sides meet in a pixel.
+ * Edges draw the polygon as if the stop were clear, or without light. The patch
+ * adds to each pixel the difference between the light that edges draw and the
+ * light through the shade. The map from pixels to the stop is linear over a
+ * patch, so it has six coefficients. A pixel on a side of the polygon is
+ * weighted by the fraction of its area inside; this equals the fraction
+ * computed for edges, except where two sides meet in a pixel.
  *
  * A patch is stored in several consecutive slots of the array of edges. The
  * first slot has the bounding box, by which the patch is sorted into tiles; the
@@ -24,19 +24,17 @@
 struct glint_patch {
     struct glint_box box; /* bounding box, pixels of the picture */
     int32_t light;        /* packed light through a clear stop */
-    int level;            /* level of the shade's tables whose nodes are about a
+    int level;            /* level of the shade's table whose nodes are about a
                              pixel apart */
     int clear;            /* 1: edges draw the polygon with the light of a clear
                              stop; 0: without light */
-    /* Map from pixels to the stop: position in the stop, stop radii, of the
-     * middle of the box's first pixel (at), and its change per pixel to the
-     * right (across) and downwards (down). */
+    /* Map from pixels to positions in the stop, stop radii. at: position for
+     * the centre of the box's first pixel. across, down: change per pixel to
+     * the right and per pixel downwards. */
     int32_t at_q24[2], across_q24[2], down_q24[2];
-    const struct glint_vertex
-        *cell[4]; /* corners of the cell that the patch
-                     belongs to; not written to the slots */
-    int n;        /* number of corners, in the cyclic
-                     order that gives a positive area */
+    const struct glint_vertex *cell[4]; /* corners of the cell under the patch;
+                                           not written to the slots */
+    int n; /* number of corners, in cyclic order with a positive area */
     int32_t x_q8[GLINT_OUTLINE_CORNERS], y_q8[GLINT_OUTLINE_CORNERS];
 };
 
@@ -56,8 +54,7 @@ void glint_patch_read_slots(struct glint_patch *p,
 /* Draws a patch: the value of member draw of struct glint_shade_method. */
 glint_patch_fn glint_patch_draw;
 
-/* Fills the N slots EDGE with continuation slots, which draw nothing
- * themselves. */
+/* Turns the N slots EDGE into continuation slots, which draw nothing. */
 void glint_patch_fill_empty_slots(struct glint_edge *edge, int n);
 
 #endif

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws patches: adds them to the sums of a tile, row by row, as differences
- * between neighbouring pixels, as edges are. */
+ * Draws patches (patch.h): adds their light to the sums of a tile, row by row.
+ * Like the light of edges, it is stored as differences between neighbouring
+ * pixels. */
 #include <stddef.h>
 
 #include "base/compiler.h"
@@ -15,24 +16,23 @@ enum {
     MOST_TILE = 64,
     RUN_LOG2 = 3, /* log2 of the number of pixels of a run */
     RUN = 1 << RUN_LOG2,
-    STEEP_Q16 = 1 << 10 /* min magnitude of across_q16; sides below it are
-                           nearly horizontal and do not limit the columns of a
-                           row */
+    STEEP_Q16 = 1 << 10 /* min magnitude of across_q16 of a steep side; flatter
+                           sides do not limit the columns of a row */
 };
 
-/* A side of a patch as a linear function of the pixel: distance of the pixel's
- * middle from the side, positive inside, in pixels / (|x| + |y|), where (x, y)
- * is the side's unit normal. */
+/* A side of a patch, as a linear function of the pixel. The value is the
+ * distance of the pixel's centre from the side, positive inside, in pixels /
+ * (|x| + |y|), where (x, y) is the side's unit normal. */
 struct side {
-    int64_t at_q24; /* value of the function at the middle of the box's first
+    int64_t at_q24; /* value of the function at the centre of the box's first
                        pixel */
     int32_t across_q16, down_q16;
-    /* Coefficients for the covered fraction of a pixel. With p <= q, the
-     * magnitudes of the components of the scaled normal: less is p, square is 1
-     * / (2 p q), larger is 1 / q. */
+    /* Coefficients for the covered fraction of a pixel. p and q are the
+     * magnitudes of the components of the scaled normal, p <= q. less is p,
+     * square is 1 / (2 p q), larger is 1 / q. */
     int32_t less_q16, square_q16, larger_q16;
     /* The column at which the function is -1/2 in row 0 (column), and its
-     * change per row (step); not set if the side is nearly horizontal. */
+     * change per row (step). Not set if the side is nearly horizontal. */
     int64_t column_q16, step_q16;
 };
 
@@ -46,9 +46,9 @@ struct draw {
     const struct glint_edge_sums *sums;
     struct glint_patch patch;
     struct side side[GLINT_OUTLINE_CORNERS];
-    /* Nodes of the patch's level of the shade (node), and of the level whose
-     * nodes are two runs of pixels apart (run; NULL if there is no such level).
-     */
+    /* node: nodes of the patch's level of the shade's table. run: nodes of the
+     * level whose node distance is two runs of pixels; NULL if there is no such
+     * level. */
     const uint16_t *node_q15, *run_q15;
     int run_nodes, run_shift;
     uint32_t once_q24[2], twice_q24[2]; /* change of the position in the stop
@@ -57,9 +57,9 @@ struct draw {
     int nodes, shift;     /* number of nodes per side of the level; log2 of
                              their distance, _q24 */
     struct glint_box box; /* pixels of the patch's box within the tile */
-    /* The current row: the sides that cut its pixels (part), and for each
-     * pixel, plus one, the difference between the light through the shade and
-     * the light that edges draw (area, see convert_light_to_area()). */
+    /* The current row. part: the sides of the patch that cut its pixels. area:
+     * for each pixel, the light through the shade minus the light that edges
+     * draw (convert_light_to_area()); then a 0. */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -110,8 +110,8 @@ static int32_t compute_inside_fraction_q16(const struct side *s,
                                            int64_t distance_q16)
 {
     const int upper = distance_q16 > 0;
-    /* distance from the side to the corner of the pixel that is farthest beyond
-     * it */
+    /* distance from the side to that corner of the pixel that lies farthest
+     * outside */
     const int64_t t_q16 = HALF_Q16 - (upper ? distance_q16 : -distance_q16);
     int64_t part_q16;
 
@@ -164,11 +164,11 @@ static inline int32_t interpolate_shade_light_q15(const struct draw *d,
     return (int32_t)((low * (256 - v) + high * v + (1 << 15)) >> 16);
 }
 
-/* The position in the stop, in stop radii, through which the ray of a pixel
- * passes. */
+/* A position in the stop, in stop radii: the point through which the ray of a
+ * pixel passes. */
 struct place {
-    uint32_t at_q24[2]; /* modulo 2^32, as only positions within the stop
-                           matter */
+    uint32_t at_q24[2]; /* The position is modulo 2^32, as it is used only
+                           within the stop. */
 };
 
 static struct place compute_stop_position_of_pixel(const struct draw *d, int y,
@@ -186,8 +186,8 @@ static struct place compute_stop_position_of_pixel(const struct draw *d, int y,
     return at;
 }
 
-/* Returns LIGHT minus the light that edges draw (1 if they draw the clear stop,
- * else 0), in the units of areas in the sums. */
+/* Returns LIGHT minus the light that edges draw, in the units of areas in the
+ * sums. Edges draw 1 for the clear stop, else 0. */
 static inline int32_t convert_light_to_area(const struct draw *d,
                                             int32_t light_q15)
 {
@@ -196,9 +196,10 @@ static inline int32_t convert_light_to_area(const struct draw *d,
     return d->sums->linear ? off_q15 * 2 : (off_q15 + 64) >> 7;
 }
 
-/* Returns whether the run of pixels that begins at AT needs no patch: the shade
- * at the nearest node of the level whose nodes are two runs apart equals the
- * light that edges draw, clear or dark. */
+/* Returns whether the run of pixels that begins at AT needs no patch. The shade
+ * is checked at the nearest node of the level whose nodes are two runs apart.
+ * No patch is needed if the shade's light there equals the light that edges
+ * draw, clear or dark. */
 static int is_run_uniform(const struct draw *d, struct place at)
 {
     const struct glint_patch *p = &d->patch;
@@ -231,10 +232,10 @@ static inline void advance_stop_position(struct place *at,
     at->at_q24[1] += by_q24[1];
 }
 
-/* Sets the areas of the run of pixels that begins at pixel X, whose position in
- * the stop is AT. For linear pictures each pixel is computed; for codes every
- * second pixel, and the others are means of their neighbours. Returns nonzero
- * if any area is nonzero. */
+/* Sets the areas of the run of pixels that begins at pixel X; its position in
+ * the stop is AT. For linear pictures each pixel is computed. For 8-bit
+ * pictures every second pixel is computed, and each pixel between is the mean
+ * of its neighbours. Returns nonzero if any area is nonzero. */
 static int32_t compute_run_areas(struct draw *d, struct place at, int x)
 {
     int32_t any = 0, area = compute_pixel_area(d, &at);
@@ -259,10 +260,10 @@ static int32_t compute_run_areas(struct draw *d, struct place at, int x)
     return any;
 }
 
-/* Sets the areas of row Y, before the patch's sides cut them, for all runs that
- * contain pixels of FROM .. END - 1. Runs begin at multiples of their length,
- * so that the picture does not depend on tiles. Returns whether any area is
- * nonzero. */
+/* Sets the areas of row Y for all runs of pixels that contain pixels of FROM ..
+ * END - 1. The patch's sides are not applied yet. Runs begin at multiples of
+ * their length, so that the picture does not depend on tiles. Returns whether
+ * any area is nonzero. */
 static int compute_uncut_row_areas(struct draw *d, int y, int from, int end)
 {
     int any = 0;
@@ -285,8 +286,8 @@ static void scale_pixel_area(struct draw *d, int x, int32_t cover_q16)
 }
 
 /* Sets the areas of row Y in the columns FROM .. END - 1, which the patch may
- * touch, weighted by the covered fraction of each pixel. Returns 0 if all areas
- * are 0. */
+ * touch, and weights each by the fraction of the pixel that the patch covers.
+ * Returns 0 if all areas are 0. */
 static int compute_patch_row_areas(struct draw *d, int y, int from, int end)
 {
     int32_t cover;
@@ -304,8 +305,8 @@ static int compute_patch_row_areas(struct draw *d, int y, int from, int end)
 }
 
 /* Finds the range of columns FROM .. END - 1 of the box that the patch may
- * touch in row Y. A side whose function rises with x limits it on the left, a
- * side whose function falls on the right. */
+ * touch in row Y. A side limits the range on the left if its function rises
+ * with x, on the right if the function falls. */
 static void find_row_columns(const struct draw *d, int y, int *from, int *end)
 {
     int64_t low = 0, high = d->box.x1 - d->box.x0;

@@ -48,8 +48,8 @@ int glint_corners_test_thinness(const struct glint_corners *corners)
            area2 == 0;
 }
 
-/* The box is enlarged by half the width of the strip that replaces thin
- * primitives, and by 1/256 pixel for rounding. */
+/* The box is enlarged by half the width of the strip that replaces a thin
+ * primitive, and by 1/256 pixel for rounding. */
 struct glint_box
 glint_corners_compute_pixel_box(const struct glint_corners *corners, int width,
                                 int height)
@@ -64,7 +64,7 @@ glint_corners_compute_pixel_box(const struct glint_corners *corners, int width,
         clamp_to_max(((e.y1 + grow) >> GLINT_VERTEX_FRAC) + 1, height)};
 }
 
-/* Returns MANTISSA 2^UP, an irradiance, clamped to LIMIT. Increments *N_HELD if
+/* Returns the irradiance MANTISSA 2^UP, clamped to LIMIT. Increments *N_HELD if
  * it was clamped. */
 static int64_t scale_and_clamp_light(int64_t mantissa, int up, int64_t limit,
                                      int *n_held)
@@ -88,13 +88,13 @@ int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
     /* The area is normalised to 32 bits before the division. */
     const int up = q_count_normalising_shift((uint64_t)area);
     const uint32_t area_32 = q_shift_to_32_bits((uint64_t)area, up);
-    /* exact, by rounding, if the area is a power of two */
+    /* The quotient is exact if the area is a power of two, as it is rounded. */
     const int64_t ratio =
         (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
                    (1 << 30)) >>
                   31);
-    /* The limit is per pixel, so for areas below one pixel it is divided by the
-     * area. limit_q8 is below 2^20, the area at least 2^-33. */
+    /* LIMIT_Q8 applies to a pixel, so for primitives smaller than a pixel it is
+     * divided by the area. limit_q8 is below 2^20, the area at least 2^-33. */
     const int64_t limit_q22 =
         (area >> frac ? (int64_t)limit_q8
                       : q_divide((int64_t)limit_q8 << frac, area))

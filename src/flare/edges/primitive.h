@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Primitives: cells of a ray grid, which are quads, or triangles of them. Size
- * and irradiance of primitives. */
+ * Computes size and irradiance of primitives, which are the cells of a ray grid
+ * (quads) or halves of cells (triangles). */
 #ifndef GLINT_FLARE_PRIMITIVE_H
 #define GLINT_FLARE_PRIMITIVE_H
 
@@ -13,7 +13,8 @@
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross the cell */
     GLINT_CUT_BARREL = 2, /* a barrel may cross the cell */
-    /* the functions of round cuts have already been corrected by their sags */
+    /* the functions of round cuts have already been corrected for interpolation
+     * (sags) */
     GLINT_CUT_LOWERED = 16
 };
 
@@ -30,8 +31,8 @@ struct glint_corners {
     int64_t area2_q16; /* twice the signed area of the primitive, pixels^2 */
 };
 
-/* Returns the cross product (B - A) x (P - A): positive if the triangle A, B, P
- * has the orientation from the x axis to the y axis. Within +-2^60 for
+/* Returns the cross product (B - A) x (P - A). It is positive if the triangle
+ * A, B, P turns from the x axis towards the y axis. It is within +-2^60 for
  * coordinates inside GLINT_VERTEX_LIMIT_Q8. */
 static inline int64_t glint_compute_cross_product_q16(int32_t ax, int32_t ay,
                                                       int32_t bx, int32_t by,
@@ -40,17 +41,17 @@ static inline int64_t glint_compute_cross_product_q16(int32_t ax, int32_t ay,
     return (int64_t)(bx - ax) * (py - ay) - (int64_t)(by - ay) * (px - ax);
 }
 
-/* Returns the irradiance of a primitive that has 2^SHARE_LOG2 times the flux of
- * a cell and covers AREA / 2^FRAC pixels. FRAC must be at most 33, AREA at
- * least 1. The result is clamped so that no pixel gets more than LIMIT_Q8; if
- * so, *N_HELD is incremented. */
+/* Returns the irradiance of a primitive that covers AREA / 2^FRAC pixels and
+ * has 2^SHARE_LOG2 times the flux of a cell. FRAC must be at most 33, AREA at
+ * least 1. The result is clamped so that no pixel gets more than LIMIT_Q8. If
+ * it was clamped, *N_HELD is incremented. */
 int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
                                      int share_log2, int64_t area, int frac,
                                      int32_t limit_q8, int *n_held);
 
-/* Returns the bounding box of all pixels that a primitive may cover, including
- * the strip that replaces it if it is thin; clipped to a picture of WIDTH x
- * HEIGHT pixels. */
+/* Returns the bounding box of all pixels that a primitive may cover, clipped to
+ * a picture of WIDTH x HEIGHT pixels. A thin primitive covers the strip that
+ * replaces it. */
 struct glint_box
 glint_corners_compute_pixel_box(const struct glint_corners *corners, int width,
                                 int height);
@@ -65,8 +66,8 @@ static inline void glint_corners_set(struct glint_corners *corners,
     corners->n = n;
     for (int i = 0; i < 4; i++)
         corners->at[i] = at[i < n ? i : 0];
-    /* The cross product of the diagonals of a quad, or of two sides of a
-     * triangle. */
+    /* For a quad it is the cross product of the diagonals, for a triangle that
+     * of two sides. */
     if (n == 4)
         corners->area2_q16 =
             (int64_t)(p[2]->x_q8 - p[0]->x_q8) * (p[3]->y_q8 - p[1]->y_q8) -
@@ -88,9 +89,9 @@ glint_vertex_compute_distance_q8(const struct glint_vertex *a,
     return (x < 0 ? -x : x) + (y < 0 ? -y : y);
 }
 
-/* Quick test for glint_corners_are_thin(): returns 1 if C is certainly not
- * thin, because twice its area is at least 32 times the sum of its diagonals,
- * and that sum exceeds its width and height. */
+/* Returns 1 if C is certainly not thin, because twice its area is at least 32
+ * times the sum of its diagonals, and that sum exceeds its width and height.
+ * Quick test for glint_corners_are_thin(). */
 static inline int
 glint_corners_are_certainly_thick(const struct glint_corners *c)
 {
@@ -100,8 +101,9 @@ glint_corners_are_certainly_thick(const struct glint_corners *c)
                      glint_vertex_compute_distance_q8(c->at[1], c->at[3]));
 }
 
-/* Return whether a primitive is thinner than a sixteenth of a pixel;
- * glint_corners_are_thin() makes a quick test first. */
+/* Return whether a primitive is thinner than a sixteenth of a pixel.
+ * glint_corners_are_thin() is the faster function, as it makes a quick test
+ * first. */
 int glint_corners_test_thinness(const struct glint_corners *corners);
 static inline int glint_corners_are_thin(const struct glint_corners *corners)
 {

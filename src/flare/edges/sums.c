@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts the accumulated differences of a tile to light by a running sum
- * along each row; see edge.h. */
+ * Converts the accumulated differences of a tile to light, by a running sum
+ * along each row. edge.h describes the method. */
 #include <stddef.h>
 
 #include "flare/edges/edge.h"
@@ -26,7 +26,7 @@ void glint_sums_read_linear_row(const struct glint_edge_sums *sums, int channel,
     sums->touched[channel] &= ~(UINT64_C(1) << row);
 }
 
-/* Returns the number of fraction bits of a sum beyond 16. */
+/* Returns the number of fraction bits that a sum has in addition to 16. */
 static int get_extra_fraction_bits(const struct glint_edge_sums *s)
 {
     return s->fine ? 12 : 8;
