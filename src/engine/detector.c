@@ -7,12 +7,12 @@
 
 #include "engine/frame/block.h"
 
-/* In a still picture at least this many spots are measured; the strongest of
- * these are selected. */
+/* Min number of spots of a still picture whose profiles are measured. The
+ * strongest lamps are selected from these. */
 enum { MEASURED = 16 };
 
-/* Returns the max number of tracks if MAX lamps are shown. It exceeds MAX, so
- * that a lamp that becomes strong has been tracked before. */
+/* Returns the max number of tracked lamps if MAX lamps are shown. It exceeds
+ * MAX, so that a lamp has a track before it is strong enough to be shown. */
 static int choose_max_tracks(int max)
 {
     const int wanted = max < 64 ? 128 : 2 * max;
@@ -114,10 +114,10 @@ static int32_t max_i32(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Returns the min semi-axis, pixels, of the lamp that shows as SPOT in a still
- * picture. Glare around a clipped core hides how small the lamp in it is.
- * Without this minimum such a lamp would be drawn as a point, whose ghosts have
- * unrealistically sharp outlines. */
+/* Returns the min semi-axis, pixels, of a lamp whose image in a still picture
+ * is SPOT. Glare around a clipped core hides how small the lamp is. Without
+ * this minimum it would be drawn as a point, whose ghosts have unrealistically
+ * sharp outlines. */
 static int32_t compute_min_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;
@@ -146,8 +146,8 @@ make_track_of_still_picture(const struct glint_spot *spot, uint32_t id)
 }
 
 /* Sets the power of a spot as if each clipped pixel had the light 2^headroom.
- * For a headroom above 8 stops the unit of power is 2^(headroom - 8), as tracks
- * can store powers only up to 2^42. */
+ * Tracks can store powers only up to 2^42. So for a headroom above 8 stops the
+ * unit of power is 2^(headroom - 8). */
 static void set_spot_power(struct glint_lamp_detector *f,
                            struct glint_spot *spot)
 {
@@ -158,10 +158,10 @@ static void set_spot_power(struct glint_lamp_detector *f,
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds up to MAX spots of IMAGE, and measures the profiles of the strongest,
- * at most max_tracks. Returns the number of spots. Measuring the profiles of a
- * thousand spots, as in a city at night, would cost several times as much as
- * finding them. */
+/* Finds the spots of IMAGE, at most MAX, and measures the profiles of the
+ * strongest, at most max_tracks. Returns the number of spots. In a city at
+ * night, measuring the profiles of all of a thousand spots would cost several
+ * times as much as finding them. */
 static int find_and_measure_spots(struct glint_lamp_detector *f,
                                   const struct glint_image *image, int max)
 {
@@ -176,8 +176,8 @@ static int find_and_measure_spots(struct glint_lamp_detector *f,
     return n;
 }
 
-/* Sorts the MAX strongest of N spots to the beginning of the array, the
- * strongest first; spots of equal power stay in order. */
+/* Moves the MAX strongest of N spots to the beginning of the array, sorted by
+ * falling power. Spots of equal power stay in order. */
 static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
                                           int max)
 {
@@ -194,10 +194,11 @@ static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
     }
 }
 
-/* Finds the lamps of a still picture, without tracking; returns their number,
- * at most f->max. If max is below MEASURED, the spots of the highest measured
- * power are selected of MEASURED spots, because a flat window may have more
- * clipped light than a brighter lamp. */
+/* Finds the lamps of a still picture, without tracking. Returns their number,
+ * at most f->max. If max is below MEASURED, the profiles of MEASURED spots are
+ * measured, and the spots of the highest power are selected. A flat window may
+ * have more clipped light than a brighter lamp, so clipped light alone is not
+ * enough for the choice. */
 static int find_lamps_in_still_picture(struct glint_lamp_detector *f,
                                        const struct glint_image *image)
 {

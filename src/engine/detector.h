@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Finds lamps in pictures of one size, and tracks them if the pictures are
- * frames of a video. Only the functions named open allocate memory.
- */
+ * frames of a video. Memory is allocated only by the functions with open in
+ * their names. */
 #ifndef GLINT_ENGINE_DETECTOR_H
 #define GLINT_ENGINE_DETECTOR_H
 
@@ -16,7 +16,7 @@ enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* equal to GLINT_ENGINE_MAX_LAMPS */
 struct glint_lamp_detector {
     double headroom_ev; /* assumed light of clipped pixels, stops above white;
                            below 0: the light of each lamp is estimated from its
-                           profile */
+                           surroundings */
     int max; /* max number of lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
     /* Lamps of the last frame in picture coordinates, the strongest first. The
@@ -28,58 +28,60 @@ struct glint_lamp_detector {
     struct glint_lamp_finder *lights;
     struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
-    double scale;            /* power of a lamp / power of its track */
+    double scale;            /* factor from the power of a track to the power of
+                                its lamp */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
-    int n_spots; /* number of spots of the last frame, including those rejected
-                    as lamps */
+    int n_spots; /* number of bright spots in the last frame, including spots
+                    that are not lamps */
     int max_tracks;
     void *mem;
 };
 
-/* Opens DETECTOR, whose headroom_ev and max are set. CFG has the thresholds
- * and rules for lamps; its keep_faint is ignored. Returns GLINT_E_ARGUMENT
- * if CFG is out of range, or GLINT_E_MEMORY. */
+/* Opens DETECTOR, whose headroom_ev and max must be set. CFG has the thresholds
+ * and rules for lamps; its member keep_faint is ignored. Returns
+ * GLINT_E_ARGUMENT if CFG is out of range, or GLINT_E_MEMORY. */
 enum glint_status
 glint_lamp_detector_open(struct glint_lamp_detector *detector,
                          const struct glint_lamp_finder_config *cfg);
 
-/* Like glint_lamp_detector_open(), for pictures of WIDTH x HEIGHT. A lamp needs
- * a pixel of at least threshold_ev[0] stops relative to white; its region
- * consists of the pixels of at least threshold_ev[1] stops. */
+/* Like glint_lamp_detector_open(), for pictures of WIDTH x HEIGHT. The pixels
+ * of a lamp have at least threshold_ev[1] stops relative to white, and one of
+ * them has at least threshold_ev[0] stops. */
 enum glint_status
 glint_lamp_detector_open_at(struct glint_lamp_detector *detector, int width,
                             int height, const double threshold_ev[2]);
 void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 
 /* Finds the lamps of IMAGE, writes them to LAMPS, an array of
- * GLINT_LAMP_DETECTOR_MAX, and returns their number. ELAPSED_US: time since the
- * last frame; 0: IMAGE is a still picture. VIEW and FOCAL_MM convert pixels to
- * directions. Lamps of a video fade in and out as described in
- * glint/lamp_tracker.h, so their number may exceed max for a while. */
+ * GLINT_LAMP_DETECTOR_MAX, and returns their number. ELAPSED_US is the time
+ * since the last frame; 0: IMAGE is a still picture. VIEW and FOCAL_MM convert
+ * pixels to directions. Lamps of a video fade in and out as described in
+ * glint/lamp_tracker.h. So their number may exceed max for a while. */
 int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
                                    const struct glint_image *image,
                                    int32_t elapsed_us,
                                    const struct glint_view *view,
                                    double focal_mm, struct glint_lamp *lamps);
 
-/* Returns the light of LAMP that clipping removed from the picture: its power
- * minus its flux in the picture, in white times pixels, at least 0. TRACK is
- * the lamp's track, LEVEL its fade level 0 .. 1, SHARE the visible fraction of
- * the lamp, WHITE the linear light of the picture's white. */
+/* Returns the light of LAMP that is missing in the picture because it was
+ * clipped, in white times pixels. It is the power of LAMP minus its flux in the
+ * picture, at least 0. TRACK is the lamp's track, LEVEL its fade level 0 .. 1,
+ * SHARE the visible fraction of the lamp, WHITE the linear light of the
+ * picture's white. */
 double glint_lamp_compute_excess_light(const struct glint_lamp *lamp,
                                        const struct glint_lamp_track *track,
                                        double level, double share,
                                        double white);
 
-/* Returns a spot of the last frame that was rejected as a lamp but is doubtful:
- * its mean light is within a stop of white, and it is about as compact as a
- * disc. I counts such spots from 0, the strongest first; NULL if there are no
- * more. */
+/* Returns the I-th doubtful spot of the last frame, counted from 0, the
+ * strongest first. Returns NULL if there are no more. A doubtful spot was
+ * rejected as a lamp, but its mean light is within a stop of white, and it is
+ * about as compact as a disc. */
 const struct glint_spot *
 glint_lamp_detector_doubtful(const struct glint_lamp_detector *detector, int i);
 
-/* Forgets all tracks: the next frame is unrelated to the last one, as after a
- * cut to another camera. */
+/* Drops all tracks, for a next frame that is unrelated to the last one, as
+ * after a cut to another camera. */
 void glint_lamp_detector_restart_tracking(struct glint_lamp_detector *detector);
 
 #endif

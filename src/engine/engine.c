@@ -10,8 +10,8 @@
 #include "engine/engine_parts.h"
 #include "glint/kernels.h"
 
-/* Size of struct glint_engine_config in the first version of the library, the
- * min that programs may pass. */
+/* size of struct glint_engine_config in the first version of the library;
+ * programs must not pass a smaller size */
 #define FIRST_SIZE offsetof(struct glint_engine_config, cache)
 
 void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
@@ -38,7 +38,8 @@ void glint_engine_defaults_sized(struct glint_engine_config *cfg, size_t size,
 }
 
 /* Returns whether the reserved members of C are 0. A program that was compiled
- * for a newer library may set members there that this library does not have. */
+ * for a newer library may use them for settings that this library does not
+ * have. */
 static bool are_reserved_members_zero(const struct glint_engine_config *c)
 {
     static const uint64_t zero[16];
@@ -49,8 +50,8 @@ static bool are_reserved_members_zero(const struct glint_engine_config *c)
            UNSET(drawing.dials);
 }
 
-/* Returns a message that names the setting of C that is out of range, or NULL.
- */
+/* Returns a message with the name of a setting of C that is out of range.
+ * Returns NULL if there is none. */
 static const char *check_engine_config(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;
@@ -155,8 +156,8 @@ enum glint_status glint_engine_setup(struct glint_setup *setup,
     return GLINT_OK;
 }
 
-/* Makes the dirt on the front element, unless the caller has set camera->front.
- */
+/* Sets the dirt on the front element: camera->front if the caller has set it,
+ * otherwise dirt that is computed from its description, camera->front_dirt. */
 static enum glint_status
 make_front_dirt(struct glint_engine_optics *o,
                 const struct glint_engine_camera *camera,
@@ -264,8 +265,8 @@ reserve_drawing_memory(struct glint_engine *e,
         f, NULL, bytes - glint_frame_star_count_bytes(f), e->most_lamps, drawn);
 }
 
-/* Writes to ERROR why the engine could not be created; if the arena is too
- * small, also the min size. */
+/* Writes to ERROR why the engine could not be created. If the arena is too
+ * small, also writes the required size. */
 static void describe_creation_failure(struct glint_engine *e,
                                       const struct glint_engine_config *c,
                                       enum glint_status status,
@@ -321,8 +322,8 @@ static enum glint_status init_engine(struct glint_engine *e,
         status = GLINT_E_MEMORY;
     if (status == GLINT_OK)
         status = init_drawing_frame(e, c);
-    /* With an exposure set by hand the response is needed only by
-     * glint_engine_exposed(). Without a model it is measured when a video needs
+    /* If the caller sets the exposure, only glint_engine_exposed() needs the
+     * response. Without a model the response is measured when a video needs
      * it. */
     if (status == GLINT_OK && e->paint.frame.lens &&
         (!c->light.by_hand || c->cache))
@@ -440,14 +441,15 @@ void glint_engine_update_stop(struct glint_engine *engine)
 {
     struct glint_frame *f = &engine->paint.frame;
 
-    if (f->trace) /* frees the cached rays of the former setup */
+    if (f->trace) /* This frees the cached rays of the former setup. */
         f->trace->finish(f);
     glint_setup_stop(engine->optics.setup, &f->cfg.stop);
     glint_frame_apply_config(f);
 }
 
-/* Swaps setup, camera and stop dirt of ENGINE with OTHER, CAMERA and DIRT, and
- * applies the new stop. A second call restores the former state. */
+/* Exchanges the stop of ENGINE for another: swaps setup, camera and stop dirt
+ * with OTHER, CAMERA and DIRT, and applies the new stop. A second call restores
+ * the former stop. */
 static void swap_engine_stop(struct glint_engine *engine,
                              struct glint_setup *other,
                              struct glint_engine_camera *camera,
@@ -489,7 +491,8 @@ glint_engine_change_stop(struct glint_engine *engine,
         return status;
     swap_engine_stop(engine, &setup, &other, &dirt);
     if (measure && engine->expose.light.by_hand)
-        response.n = 0; /* invalid, as it was measured for another stop */
+        response.n = 0; /* The response is invalid now, as it was measured for
+                           another stop. */
     else if (measure)
         status = glint_response_measure(
             f, f->limits.reserved ? f->memory.bytes : 0, &response);

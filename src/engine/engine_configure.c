@@ -5,8 +5,8 @@
 #include "engine/engine_parts.h"
 #include "glint/options.h"
 
-/* Default max number of lamps per picture; most pictures have many more, but
- * those are barely visible. */
+/* default max number of lamps per picture; most pictures have many more, but
+ * the others are barely visible */
 enum { FOUND = 16 };
 
 static unsigned select_flare_parts(int only)
@@ -23,8 +23,8 @@ static unsigned select_flare_parts(int only)
     }
 }
 
-/* Returns the factor on the brightness of starbursts: 0 if a single ghost is
- * drawn, unless option starburst is set. */
+/* Returns the factor on the brightness of starbursts. If a single ghost is
+ * drawn, it is 0 unless option starburst is set. */
 static double choose_starburst_brightness_factor(const struct glint_options *o)
 {
     if (GLINT_OPTION_GIVEN(o, starburst))
@@ -43,8 +43,8 @@ make_drawing_config(const struct glint_options *o)
     struct glint_engine_drawing d = {
         .dials = glint_options_quality(o).dials,
         .budget_ms = o->budget,
-        /* 0 (no limit) if the fineness of grids was requested, as a limit of
-         * work could make grids coarser */
+        /* A requested fineness of grids disables the limit of work (0), as the
+         * limit could make grids coarser. */
         .most_minsn =
             has_grid && !GLINT_OPTION_GIVEN(o, work) ? 0 : 1000 * o->work,
         .apart_px = o->apart,

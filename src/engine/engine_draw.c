@@ -34,8 +34,8 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     return status;
 }
 
-/* Draws the selected parts into RGB, linear light, with the plan and the
- * quality that a picture of 8-bit codes would get. */
+/* Draws the selected parts of the flare into RGB, linear light. Plan and
+ * quality are those of a picture of 8-bit codes. */
 static enum glint_status
 draw_linear_with_8bit_plan(struct glint_frame *f,
                            const struct glint_lamp *lamps, int n, double scale,
@@ -46,7 +46,7 @@ draw_linear_with_8bit_plan(struct glint_frame *f,
         glint_image_over(rgb, GLINT_LINEAR_Q20, f->view.width, f->view.height);
     enum glint_status status;
 
-    /* RGB contains integers, _q20, until they are converted below. */
+    /* Until the conversion below, RGB contains integers, _q20. */
     f->picture.for_codes = true;
     status = glint_frame_draw(f, lamps, n, scale, &layer, report);
     f->picture.for_codes = false;

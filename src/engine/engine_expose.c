@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Chooses the brightness of the flare of a picture: the exposure. */
+ * Chooses the exposure of a picture's flare, which is the factor on its
+ * brightness. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,8 +29,9 @@ bool glint_engine_can_draw_on_image(const struct glint_engine *engine,
 }
 
 /* Returns the factor on the ghosts of the lamp with number ID that the last
- * exposure chose; 1 if it had no such lamp. I: index at which the lamp probably
- * is; it is elsewhere if only some lamps of the picture are drawn. */
+ * exposure chose. Returns 1 if the last exposure had no such lamp. I is the
+ * index at which the lamp is searched first. The index differs if only some
+ * lamps of the picture are drawn. */
 static double find_ghost_exposure_factor(const struct glint_engine_exposing *x,
                                          uint32_t id, int i)
 {
@@ -94,11 +96,10 @@ expose_by_drawing_flare(struct glint_engine *e, int n,
     return status;
 }
 
-/* Returns the light of LAMP, found in the picture, that clipping removed from
- * the picture (glint_lamp_compute_excess_light()), without occlusion; white
- * times pixels. In a video it is smoothed over a third of a second, as the
- * estimate for a clipped lamp may jump from picture to picture.
- */
+/* Returns the light of LAMP that is missing in the picture because it was
+ * clipped (glint_lamp_compute_excess_light()), in white times pixels, without
+ * occlusion. In a video it is smoothed over a third of a second, as the
+ * estimate for a clipped lamp may jump from picture to picture. */
 static double compute_smoothed_excess(const struct glint_engine_exposing *x,
                                       const struct glint_engine_lamp *lamp,
                                       double white, int32_t elapsed_us)
@@ -146,8 +147,9 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         find->is_cut || (find->is_searched && elapsed_us > 0 &&
                          glint_lamp_tracker_was_cut(find->detector.tracks));
     const bool is_drawn = elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing;
-    /* placeholder for the response, which is not needed: drawing the flare
-     * replaces the exposure that is computed from it */
+    /* This placeholder replaces a measured response, which is not needed. The
+     * exposure that is computed from it is replaced when the flare has been
+     * drawn. */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Stops with round blades, soft edges, dust or masks, and dirt on the front
- * element. Only programs that refer to this file link it. */
+ * Makes stops with round blades, soft edges, dust or masks, and dirt on the
+ * front element. Only programs that call these functions link this file. */
 #include "engine/engine_parts.h"
 
 const struct glint_engine_stops glint_engine_all_stops = {

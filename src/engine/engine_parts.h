@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Internal state of an engine, by stage: optics, lamp search, exposure,
- * drawing. Shared by the files engine*.c.
- */
+ * Private data of an engine, one struct per stage: optics, lamp search,
+ * exposure, drawing. Shared by the files engine*.c. */
 #ifndef GLINT_ENGINE_ENGINE_PARTS_H
 #define GLINT_ENGINE_ENGINE_PARTS_H
 
@@ -31,10 +30,12 @@ struct glint_engine_optics {
     /* &own, or the caller's setup */
     const struct glint_setup *setup;
     struct glint_setup own;
-    struct glint_engine_camera camera; /* camera for which OWN was made */
-    struct glint_dirt *dirt; /* dust and masks in the stop of OWN, or NULL */
+    struct glint_engine_camera camera; /* camera settings from which OWN was
+                                          made */
+    struct glint_dirt *dirt; /* dust and masks in the stop of OWN; NULL: none */
     struct glint_front_dirt *own_front;
-    /* dirt on the front element: the engine's own, the caller's, or NULL */
+    /* dirt on the front element, either OWN_FRONT or the caller's; NULL:
+     * none */
     const struct glint_front_dirt *front;
 };
 
@@ -45,10 +46,11 @@ struct glint_engine_finding {
                            unknown, or a still picture */
     bool is_searched;   /* true: the lamps of the next picture have been
                            searched */
-    bool is_cut; /* true: the next picture is unrelated to the last one */
+    bool is_cut; /* true: the next picture does not continue the video, as after
+                    a cut */
 };
 
-/* The light of one lamp that clipping removed from the last picture, white
+/* The light of one lamp that clipping removed from the last picture, in white
  * times pixels. */
 struct glint_engine_before {
     uint32_t id;
@@ -65,13 +67,14 @@ struct glint_engine_exposing {
     bool is_done;    /* true: the next picture has been exposed */
     struct glint_engine_before *before;
     double *part; /* [n_before]: factor on the ghosts of each lamp of the last
-                     picture (engine/strength.h) */
+                     picture, chosen by the exposure (engine/strength.h) */
     int n_before;
 };
 
 struct glint_engine_painting {
     struct glint_frame frame;
-    struct glint_lamp *lamp; /* [most_lamps]: lamps that are drawn */
+    struct glint_lamp *lamp; /* [most_lamps]: the lamps whose ghosts are drawn
+                              */
     unsigned parts;
     bool keep_points, keep_lights;
 };
@@ -84,8 +87,8 @@ struct glint_engine {
     int most_lamps; /* max number of lamps per picture */
 };
 
-/* Sets the stop of CAMERA from the options stop and dust of O; an option that
- * is not set changes nothing. */
+/* Copies the options stop and dust of O to the stop of CAMERA. Options that are
+ * not set change nothing. */
 struct glint_options;
 void glint_engine_configure_stop(struct glint_engine_camera *camera,
                                  const struct glint_options *o);
@@ -98,9 +101,9 @@ glint_engine_change_stop(struct glint_engine *engine,
                          const struct glint_engine_camera *camera, bool measure,
                          struct glint_error *error);
 
-/* Selects the parts of the flare that are drawn next: PARTS, GLINT_ENGINE_
- * flags; STAR: factor on the brightness of starbursts; VEIL: false disables the
- * veil. */
+/* Selects what the engine draws next. PARTS: GLINT_ENGINE_ flags of the parts
+ * of the flare; STAR: factor on the brightness of starbursts; VEIL: false
+ * disables the veil. */
 void glint_engine_select_parts(struct glint_engine *engine, unsigned parts,
                                double star, bool veil);
 
@@ -110,7 +113,8 @@ bool glint_engine_can_draw_on_image(const struct glint_engine *engine,
                                     const struct glint_image *image, int n);
 
 /* Copies N LAMPS to the array from which ghosts are drawn, and returns that
- * array. Powers are multiplied by the factors of the exposure on ghosts. */
+ * array. The powers of the copies are multiplied by the factors on ghosts that
+ * the exposure has chosen. */
 const struct glint_lamp *
 glint_engine_copy_ghost_lamps(struct glint_engine *engine,
                               const struct glint_engine_lamp *lamps, int n);

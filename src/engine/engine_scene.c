@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Lamps of a picture onto which a 3-D scene is composited: objects occlude
- * lamps, and lights of the scene become lamps. */
+ * Adapts the lamps of a picture to a 3-D scene that is composited onto it.
+ * Objects of the scene occlude lamps, and its lights become lamps. */
 #include <math.h>
 
 #include "engine/engine_parts.h"
 #include "glint/area.h"
 #include "glint/scene/scene.h"
 
-/* Lamps that are lights of a scene have ids from this number on. */
+/* first id of lamps that are lights of a scene */
 #define SCENE_IDS UINT32_C(0xffffff00)
 
-/* Multiplies the power of LAMP by its visible fraction SEEN; if SEEN is 0,
- * increments HIDDEN. */
+/* Multiplies the power of LAMP by SEEN, its visible fraction. Increments HIDDEN
+ * if SEEN is 0. */
 static void attenuate_occluded_lamp(struct glint_engine_lamp *lamp, double seen,
                                     int *hidden)
 {
@@ -46,8 +46,8 @@ static int occlude_lamps(const struct glint_engine *e,
     return hidden;
 }
 
-/* Converts FROM, a light of a scene, to LAMP. Returns false if it has no light.
- */
+/* Converts FROM, a light of a scene, to LAMP. Returns false if FROM emits no
+ * light. */
 static bool convert_scene_lamp(const struct glint_engine *e,
                                const struct glint_scene_lamp *from,
                                struct glint_lamp *lamp)
@@ -101,8 +101,8 @@ void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
     for (int i = 0; i < n; i++)
         if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)
             lamps[i].level *= lamps[i].share;
-        else /* removed, as the exposure of a still picture would otherwise
-                raise the remaining light until it is visible */
+        else /* A hidden lamp is removed. Otherwise the exposure of a still
+                picture would raise its remaining light until it is visible. */
             lamps[i].lamp.power = 0;
 }
 

@@ -6,8 +6,7 @@
 #include "engine/engine_parts.h"
 #include "glint/options.h"
 
-/* Applies the value of OPTION in O, which is valid, to the following pictures.
- */
+/* Applies OPTION, whose value in O is valid, to the following pictures. */
 static enum glint_status apply_option(struct glint_engine *engine,
                                       const struct glint_option *option,
                                       const struct glint_options *o,
@@ -46,7 +45,8 @@ static enum glint_status apply_option(struct glint_engine *engine,
     return GLINT_OK;
 }
 
-/* Sets option NAME to TEXT, or to VALUE if TEXT is NULL. */
+/* Sets option NAME to the value that TEXT gives, or to VALUE if TEXT is
+ * NULL. */
 static enum glint_status set_engine_option(struct glint_engine *engine,
                                            const char *name, const char *text,
                                            double value,

@@ -9,15 +9,15 @@
 #include "engine/explain_frame.h"
 #include "engine/frame/frame_parts.h"
 
-/* Returns the cost of N items of KIND, such as edges, in instructions. */
+/* Returns the cost, in instructions, of N items of KIND, such as edges. */
 static double compute_item_cost(enum glint_cost_kind kind, double n)
 {
     return 1e3 * glint_cost_weight[kind].counted * n;
 }
 
-/* Returns the cost of part P of the flare, instructions, and sets STAGE to the
- * cost per kind of item. Lit pixels and subdivided cells are not counted, as
- * they do not belong to a single ghost, light or wave. */
+/* Returns the cost of part P of the flare, in instructions, and sets STAGE to
+ * the cost per kind of item. Lit pixels and subdivided cells are not included,
+ * as they do not belong to a single ghost, light or wave. */
 static double compute_part_cost(const struct glint_explain_part *p,
                                 double *stage)
 {
@@ -54,8 +54,8 @@ static void add_bundle_statistics(struct glint_explain_part *p,
                                   const struct glint_account *a)
 {
     p->probed += a->probed;
-    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* another set of waves was
-                                                  chosen for the ghost */
+    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The plan chose another set of
+                                                  waves for the ghost. */
         return;
     p->of[a->outcome]++;
     if (a->outcome != GLINT_OUTCOME_DRAWN && a->outcome != GLINT_OUTCOME_EMPTY)
@@ -70,8 +70,8 @@ static void add_bundle_statistics(struct glint_explain_part *p,
     p->refs += a->refs;
 }
 
-/* Returns the index in e->wave of the statistics for wave WAVE: those of its
- * wave set, or of the wave itself if there are no sets. */
+/* Returns the index in e->wave of the statistics for wave WAVE. There is one
+ * entry per wave set, or one per wave if there are no sets. */
 static int find_part_of_wave(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->plan.rays.sets;
@@ -127,8 +127,8 @@ void glint_explain_draw(struct glint_explain *explain, int ghost)
     draw_flare_part(explain, ghost, -1, -1);
 }
 
-/* Measures the light of PART of the flare, which must have been drawn last:
- * flux, max, number of lit pixels and of lit tiles. */
+/* Measures PART of the flare, which must have been drawn last: its flux, its
+ * max light, and its numbers of lit pixels and lit tiles. */
 static void measure_part_light(struct glint_explain *e,
                                struct glint_explain_part *part)
 {

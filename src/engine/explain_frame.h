@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Collects statistics per ghost, light and wave of a frame that was drawn
- * without an engine.
- */
+ * Collects statistics of a drawn frame per ghost, per light and per wave. It is
+ * for programs that draw frames without an engine. */
 #ifndef GLINT_ENGINE_EXPLAIN_FRAME_H
 #define GLINT_ENGINE_EXPLAIN_FRAME_H
 

@@ -10,8 +10,9 @@ static size_t count_rgb_samples(const struct glint_float_image *image)
     return 3 * (size_t)image->width * (size_t)image->height;
 }
 
-/* Returns an integer key that orders pixels by luminance, which may be
- * negative: the bits of the float, made monotonic. */
+/* Returns an integer key that sorts pixels by luminance, also if it is
+ * negative. The key is made of the bits of the float, changed such that the
+ * order of keys is that of the floats. */
 static uint32_t encode_luminance_key(const float rgb[3])
 {
     const float y = 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2];
@@ -30,9 +31,9 @@ static double decode_luminance_key(uint32_t key)
     return (double)y;
 }
 
-/* Returns the luminance of the pixel that has index RANK when pixels are sorted
- * by rising luminance. A radix selection finds its key one byte after the
- * other, without allocating memory. */
+/* Returns the luminance of rank RANK among the pixels of IMAGE, sorted by
+ * rising luminance. A radix selection finds the key of that pixel byte by byte,
+ * without allocating memory. */
 static double find_luminance_of_rank(const struct glint_float_image *image,
                                      size_t rank)
 {
@@ -176,8 +177,8 @@ void glint_measure_codes(const uint8_t *reference, const uint8_t *test,
     result->ssim = compute_ssim(reference, test, width, height);
 }
 
-/* Returns the PSNR, dB, of 8-bit codes before they are rounded, for pictures
- * whose rounded codes are equal. */
+/* Returns the PSNR, dB, of two pictures with equal 8-bit codes, computed from
+ * the codes before they are rounded. */
 static double
 compute_unrounded_psnr_db(const struct glint_float_image *reference,
                           const struct glint_float_image *test,

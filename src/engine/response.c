@@ -8,25 +8,25 @@
 #include "glint/area.h"
 #include "engine/setup/spectrum.h"
 
-/* Max number of values that find_largest_values() finds. */
+/* max number of values that find_largest_values() finds */
 enum { TOP_MAX = GLINT_RESPONSE_FINE / 5000 };
 
 static const double none_log2 = -100;
 
-/* Number of measured angles and fineness of grids with exact rays, and fineness
- * with a model. Exact rays have fewer angles and coarser grids, as they cost
- * fifty times as much as a model. */
+/* EXACT_ANGLES, EXACT_GRID: number of measured angles, and fineness of grids,
+ * with exact rays. GRID: fineness of grids with a model. Exact rays cost fifty
+ * times as much as a model, so they have fewer angles and coarser grids. */
 enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
 
 /* The powers of lamps are scaled until the brightest pixels are 2^AIM_LOG2
- * times display white, within a factor of 2^AIM_SPAN: in the middle between
- * saturation and the quantisation step. */
+ * times display white, within a factor of 2^AIM_SPAN. This is in the middle
+ * between saturation and the quantisation step. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
 /* ----------------------------------------------------------------- looking */
 
-/* Replaces the smallest of the N values TOP, which are sorted in falling order,
- * by VALUE. Returns the new smallest. */
+/* Puts VALUE into TOP, which has N values in falling order, and drops the
+ * smallest. Returns the new smallest value. */
 static float insert_into_largest_values(float *top, int n, float value)
 {
     int i = n - 1;
@@ -37,8 +37,8 @@ static float insert_into_largest_values(float *top, int n, float value)
     return top[n - 1];
 }
 
-/* Sets TOP to the N largest values of channel CHANNEL of RGB, which has PIXELS
- * pixels, in falling order. */
+/* Sets TOP to the N largest values of channel CHANNEL of RGB, in falling order.
+ * RGB has PIXELS pixels. */
 static void find_largest_values(const float *rgb, size_t pixels, int channel,
                                 float *top, int n)
 {
@@ -51,15 +51,14 @@ static void find_largest_values(const float *rgb, size_t pixels, int channel,
                                                rgb[3 * i + (size_t)channel]);
 }
 
-/* Returns N / PARTS, the number of the brightest pixels to average, clamped to
- * 1 .. TOP_MAX.
- */
+/* Returns the number of the brightest pixels to average: N / PARTS, clamped to
+ * 1 .. TOP_MAX. */
 static int count_brightest_pixels(size_t n, int parts)
 {
     return (int)fmin(fmax(floor((double)n / parts), 1), TOP_MAX);
 }
 
-/* Returns the mean of the brightest 1/1000 of N pixels in channel CHANNEL. */
+/* Returns the mean of channel CHANNEL over the brightest 1/1000 of N pixels. */
 static double compute_peak_light(const float *rgb, size_t n, int channel)
 {
     float top[TOP_MAX];
@@ -105,7 +104,7 @@ struct proxy {
     float *rgb;
 };
 
-/* Opens a small frame of about PIXELS pixels with all settings of LIKE that
+/* Opens a small frame of about PIXELS pixels. It has all settings of LIKE that
  * affect brightness. BYTES: memory for drawing; 0: no limit. */
 static enum glint_status open_small_frame(const struct glint_frame *like,
                                           int pixels, size_t bytes,
@@ -136,8 +135,8 @@ static void close_small_frame(struct proxy *p)
     free(p->rgb);
 }
 
-/* Draws N LAMPS with powers times 2^BY, and sets LIGHT to the measured light
- * divided by 2^BY. */
+/* Draws N LAMPS with powers times 2^BY, and sets LIGHT to the measured light of
+ * lamps with powers times 1. */
 static enum glint_status
 draw_and_measure_lamps(struct proxy *p, const struct glint_lamp *lamps, int n,
                        double by, struct glint_response_light *light)
@@ -157,9 +156,9 @@ draw_and_measure_lamps(struct proxy *p, const struct glint_lamp *lamps, int n,
     return status;
 }
 
-/* Draws N LAMPS and measures their LIGHT, repeatedly with other scales, until
- * the brightest pixels lie in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2:
- * log2 of the light of the brightest pixels at scale 1; on entry an estimate,
+/* Draws N LAMPS and measures their LIGHT. Repeats this with other scales until
+ * the brightest pixels lie in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2 is
+ * log2 of the light of the brightest pixels at scale 1: on entry an estimate,
  * on return the measured value. */
 static enum glint_status
 draw_at_measurable_scale(struct proxy *p, const struct glint_lamp *lamps, int n,
@@ -189,9 +188,9 @@ static double compute_corner_angle_deg(struct glint_view view, double focal_mm)
     return atan(half / fabs(focal_mm)) * 180 / GLINT_PI;
 }
 
-/* Sets the N angles to measure, degrees, from 0 to CORNER: denser near the
- * axis, where ghosts overlap. Angles above END, the max angle of the model, are
- * left out. */
+/* Sets the N angles to measure, degrees, from 0 to CORNER. They are denser near
+ * the axis, where ghosts overlap. Angles above END, the max angle of the model,
+ * are omitted. */
 static void set_measured_angles(struct glint_response *r, int n, double corner,
                                 double end)
 {
@@ -218,8 +217,8 @@ static void convert_light_to_log2(struct glint_response_light *light)
     }
 }
 
-/* Measures the ratio of the flare's peak if LAMP is a disc to the peak if it is
- * a point, for radii up to an eighth of the picture's diagonal. */
+/* Measures the peak of the flare if LAMP is a disc divided by the peak if it is
+ * a point. The radii of discs are up to an eighth of the picture's diagonal. */
 static enum glint_status measure_extent_softening(struct proxy *p,
                                                   struct glint_response *r,
                                                   struct glint_lamp lamp)
@@ -337,8 +336,8 @@ double glint_response_compute_softening(const struct glint_response *r,
 
 /* ---------------------------------------------------------- what was drawn */
 
-/* Sets the peak of LIGHT to the value that the brightest 1/10000 of the pixels
- * of the last drawing reach. */
+/* Sets the peak of LIGHT from the last drawing: to the light that the brightest
+ * 1/10000 of the pixels reach or exceed. */
 static void set_peak_from_brightest_pixels(const struct proxy *p,
                                            struct glint_response_light *light)
 {
@@ -352,9 +351,8 @@ static void set_peak_from_brightest_pixels(const struct proxy *p,
     }
 }
 
-/* Reports progress of FRAME while its small picture finds the ghosts, which are
- * the same in both.
- */
+/* Reports progress of FRAME while its small picture finds the ghosts. FRAME
+ * will have the same ghosts. */
 static void report_ghost_search_progress(void *frame, double done)
 {
     const struct glint_frame *const f = frame;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The lens response: brightness of the flare as a function of the angle of the
- * lamp, measured in small pictures.
+ * Measures the lens response, which is the brightness of the flare as a
+ * function of the angle of the lamp.
  *
  *     glint_response_measure(&frame, bytes, &response);         once
  *     glint_response_interpolate_light(&response, theta_deg, &light); each lamp
@@ -15,8 +15,7 @@
  *
  * Unit: light of the picture, 1 = white, for a lamp whose power (white times
  * pixels) equals that of the whole picture in white. So the unit does not
- * depend on the size of the picture.
- */
+ * depend on the size of the picture. */
 #ifndef GLINT_ENGINE_RESPONSE_H
 #define GLINT_ENGINE_RESPONSE_H
 
@@ -40,9 +39,9 @@ struct glint_response {
     double theta_deg[GLINT_RESPONSE_ANGLES];
     /* log2 of the light at each angle; -100: no light */
     struct glint_response_light log2_of[GLINT_RESPONSE_ANGLES];
-    /* For lamps of visible extent: tangents of RMS radii, rising from 0
-     * (extent), and log2 of the peak of the flare divided by the peak of a
-     * point light's flare (softened). */
+    /* For lamps of visible extent. extent: tangents of RMS radii, rising from
+     * 0. softened: log2 of (peak of the flare of such a lamp / peak of a point
+     * light's flare). */
     double extent[GLINT_RESPONSE_EXTENTS],
         softened_log2[GLINT_RESPONSE_EXTENTS];
     double ms; /* duration of the measurement, ms */
@@ -50,10 +49,10 @@ struct glint_response {
 
 /* Draws the flare of N lamps with the lens of FRAME in a small picture of about
  * PIXELS pixels, and sets LIGHT to its brightness. The powers of LAMPS are
- * those for the picture of FRAME. The peak is the value that 1/10000 of the
+ * those for the picture of FRAME. The peak is the light that 1/10000 of the
  * pixels reach; smaller specks are ignored. Sets SEEN to the visibility of the
- * flare on GROUND, unless either is NULL. Exact rays are cached for the next
- * picture of FRAME. Returns GLINT_E_MEMORY on failure. */
+ * flare on the picture GROUND, unless either is NULL. Exact rays are cached for
+ * the next picture of FRAME. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_response_draw_and_measure(
     struct glint_frame *frame, const struct glint_lamp *lamps, int n,
     int pixels, const struct glint_ground *ground,
@@ -75,12 +74,14 @@ glint_response_measure_cached(const struct glint_frame *like, size_t bytes,
                               struct glint_response *response);
 
 /* Returns the peak of the flare of LAMP divided by the peak of the flare of a
- * point light: at most 1, as the extent of a lamp blurs its ghosts. */
+ * point light. The result is at most 1, as the extent of a lamp blurs its
+ * ghosts. */
 double glint_response_compute_softening(const struct glint_response *response,
                                         const struct glint_lamp *lamp);
 
 /* Sets LIGHT to the brightness of the flare of a point light THETA_DEG degrees
- * off the axis. Outside the view it is that at the corner. */
+ * off the axis. For angles outside the view it is the brightness at the
+ * corner. */
 void glint_response_interpolate_light(const struct glint_response *response,
                                       double theta_deg,
                                       struct glint_response_light *light);

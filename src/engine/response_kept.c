@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cache of lens responses between runs.
+ * Caches lens responses in files, so that later runs need not measure them
+ * again.
  *
  * The key of an entry is a hash of the model, of all settings that affect
  * brightness, and of the library's version. An entry has about 800 bytes.
  * Responses whose entries are damaged or of another format are measured and
- * stored again.
- */
+ * stored again. */
 #include <math.h>
 #include <string.h>
 
 #include "engine/response.h"
 #include "glint/glint.h"
 
-/* Part of the cache key. Must be increased when glint_response_measure()
+/* Part of the cache key. It must be increased when glint_response_measure()
  * returns other values for the same lens, because frames are drawn or measured
- * differently.
- */
+ * differently. */
 enum { REVISION = 2 };
 
 enum { VALUES = 7 * GLINT_RESPONSE_ANGLES + 2 * GLINT_RESPONSE_EXTENTS };
@@ -51,8 +50,8 @@ static void add_values_to_hash(uint64_t *key, const double *value, size_t n)
     }
 }
 
-/* Adds stop and wavelengths of a setup to the hash KEY; all other members
- * follow from the model. */
+/* Adds the stop and the wavelengths of setup S to the hash KEY. All other
+ * members of the setup follow from the model, which the key includes. */
 static void add_setup_to_hash(uint64_t *key, const struct glint_setup *s)
 {
     const size_t n = (size_t)s->n_wavelengths;
@@ -81,8 +80,8 @@ static void add_setup_to_hash(uint64_t *key, const struct glint_setup *s)
     }
 }
 
-/* Adds to the hash KEY those quality parameters that affect brightness and that
- * glint_response_measure() does not set itself. */
+/* Adds to the hash KEY the quality parameters that affect brightness, except
+ * those that glint_response_measure() sets itself. */
 static void add_quality_parameters_to_hash(uint64_t *key,
                                            const struct glint_frame *like)
 {
@@ -96,8 +95,8 @@ static void add_quality_parameters_to_hash(uint64_t *key,
 }
 
 /* Returns the key of a response: a hash of model, library version, setup and
- * settings. It includes the aspect ratio of the picture, not its size, and
- * BYTES, as too little memory makes grids coarser or leaves bundles out. */
+ * settings. It includes the aspect ratio of the picture, but not its size. It
+ * includes BYTES, as too little memory makes grids coarser or omits bundles. */
 static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;
@@ -119,8 +118,8 @@ static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
 
 /* -------------------------------------------------------------------- entry */
 
-/* Sets AT to pointers to the numbers of R in the order in which a cache entry
- * stores them. */
+/* Sets AT to pointers to the members of R, in the order in which a cache entry
+ * stores their values. */
 static void list_response_values(struct glint_response *r, double *at[VALUES])
 {
     int n = 0;

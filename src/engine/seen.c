@@ -21,9 +21,10 @@ static double decode_srgb(int code)
     return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* For each 8-bit code: 1 / the linear light whose addition is just visible
- * (visible), and 1 / the linear light whose addition turns the code white
- * (white). 0 if that is impossible, or if the code is not considered. */
+/* For each 8-bit code of the picture, factors that convert added linear light.
+ * visible: 1 / the light whose addition is just visible. white: 1 / the light
+ * whose addition turns the code white. Both are 0 if that is impossible, or if
+ * the code is ignored. */
 struct slopes {
     double visible[256], white[256];
 };
@@ -38,7 +39,8 @@ static void tabulate_inverse_light_steps(struct slopes *slope)
         slope->white[code] = 1 / (1 - decode_srgb(code));
 }
 
-/* Returns added light / min visible light of a pixel, max over the channels. */
+/* Returns the light that the flare adds to a pixel, LIGHT, divided by the min
+ * visible light; max over the channels. */
 static double compute_pixel_visibility(const float light[3],
                                        const uint8_t code[3],
                                        const struct slopes *slope)
@@ -50,9 +52,9 @@ static double compute_pixel_visibility(const float light[3],
     return most;
 }
 
-/* Returns added light / light that turns the channel white of a pixel, min over
- * the channels. Returns 0 if a channel is below GLINT_SEEN_BRIGHT; channels
- * from GLINT_SEEN_WHITE on are ignored. */
+/* Returns the light that the flare adds to a pixel, LIGHT, divided by the light
+ * that turns the channel white; min over the channels. Returns 0 if a channel
+ * is below GLINT_SEEN_BRIGHT. Channels from GLINT_SEEN_WHITE on are ignored. */
 static double compute_pixel_white_ratio(const float light[3],
                                         const uint8_t code[3],
                                         const struct slopes *slope)
@@ -73,8 +75,8 @@ static void add_value_to_histogram(int count[BINS], double x)
         count[(int)fmin(fmax((log2(x) + OCTAVES) * STEPS, 0), BINS - 1)]++;
 }
 
-/* Returns the max value that at least N pixels of the histogram have or exceed;
- * 0 if the histogram has fewer than N pixels. */
+/* Returns the max value that at least N pixels of the histogram reach or
+ * exceed. Returns 0 if the histogram has fewer than N pixels. */
 static double find_value_reached_by_pixels(const int count[BINS], int n)
 {
     for (int bin = BINS - 1, sum = 0; bin >= 0; bin--) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Visibility of a flare on the picture onto which it is drawn.
+ * Measures how visible a flare is on the picture onto which it is drawn.
  *
  *    in   the picture, as codes; its flare at reduced size, in linear light
  *    out  the flare's light divided by the min visible light, and divided by
@@ -12,8 +12,7 @@
  * pixels cannot get brighter. A flare with few visible pixels counts as
  * invisible; a flare that is visible in a quarter of the picture counts as a
  * veil. A ghost that turns a bright sky white loses its colour and shape: it is
- * a flat disc.
- */
+ * a flat disc. */
 #ifndef GLINT_ENGINE_SEEN_H
 #define GLINT_ENGINE_SEEN_H
 
@@ -23,17 +22,17 @@ enum {
     GLINT_GROUND_COLUMNS = 320,
     GLINT_GROUND_ROWS = 180,
     GLINT_SEEN_CODES = 32,
-    /* Range of codes that count as bright ground. Darker ground is not
-     * considered for white discs; on brighter ground a white disc has no
-     * visible edge. */
+    /* Range of codes that count as bright ground. On darker ground a white disc
+     * is not searched for; on brighter ground it has no visible edge. */
     GLINT_SEEN_BRIGHT = 160,
     GLINT_SEEN_WHITE = 248,
-    GLINT_SEEN_FEW = 50, /* a flare that is visible in fewer than 1/50 of the
-                            pixels counts as invisible, in 1/4 or more as a veil
-                            */
+    GLINT_SEEN_FEW = 50, /* A flare that is visible in fewer than 1/50 of the
+                            pixels counts as invisible. A flare that is visible
+                            in 1/4 or more of them counts as a veil. */
     GLINT_SEEN_MANY = 4,
-    GLINT_SEEN_DISC = 1000 /* number of pixels per pixel of a small ghost: its
-                              area is 1/1000 of the picture */
+    GLINT_SEEN_DISC = 1000 /* number of pixels of the picture per pixel of a
+                              small ghost: a small ghost covers 1/1000 of the
+                              picture */
 };
 
 /* The picture under the flare, sampled to a small size: full-range R'G'B'
@@ -43,11 +42,11 @@ struct glint_ground {
 };
 
 /* few, many: added light divided by the min visible light, as reached by one
- * pixel in GLINT_SEEN_FEW, or in GLINT_SEEN_MANY, with a resolution of an
- * eighth of a stop; 0 if fewer pixels have light. So a flare scaled by 1 / few
- * is just visible in few pixels. white: added light divided by the light that
- * turns all channels white, as reached by one pixel in GLINT_SEEN_DISC on
- * bright ground. */
+ * pixel in GLINT_SEEN_FEW, or by one in GLINT_SEEN_MANY, with a resolution of
+ * an eighth of a stop. Both are 0 if fewer pixels have light. So a flare scaled
+ * by 1 / few is just visible in few pixels. white: added light divided by the
+ * light that turns all channels white, as reached by one pixel in
+ * GLINT_SEEN_DISC on bright ground. */
 struct glint_seen {
     double few, many, white;
 };

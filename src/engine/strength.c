@@ -5,45 +5,46 @@
 
 #include "engine/setup/spectrum.h"
 
-/* Exponent of the norm by which the peaks of flares are combined: with 4, the
- * combined peak of sixteen equal flares, which rarely overlap, is twice that of
- * one. */
+/* Exponent of the norm by which the peaks of several flares are combined. With
+ * 4, the combined peak of sixteen equal flares is twice that of one. Flares
+ * rarely overlap. */
 static const double norm = 4;
 
-/* mean light of the flare that counts as much as a peak of white, 1 = white */
+/* mean light of a flare that counts as much as a peak of white, 1 = white */
 static const double mean_most = 0.32;
 
-/* max mean light of the flare at strength 1, 1 = white; at strength 0.5 it is
- * 1.5 % of white. Ghosts that cover the picture fog it from about twice that
- * on. */
+/* Max mean light of the flare at strength 1, 1 = white. At strength 0.5 it is
+ * 1.5 % of white. From about twice that on, ghosts that cover the picture look
+ * like fog. */
 static const double fog_most = 0.06;
 
 /* log2 of the light of a flare of medium brightness at --exposure 0, 1 = white
  */
 static const double common_log2 = -5;
-/* stops by which the exposed flare gets brighter per stop of lamp power */
+/* increase of the exposed flare's brightness, stops, per stop of lamp power */
 static const double compression = 0.15;
 
-/* Limits of light at strength 0.5, 1 = white: max peak and max mean to which an
- * invisible flare is raised, and min peak to which a veiling flare is lowered.
- */
+/* Limits of the exposure's correction at strength 0.5, 1 = white. seen_peak,
+ * seen_mean: max peak and max mean to which an invisible flare is raised.
+ * veil_peak: min peak to which a veiling flare is lowered. */
 static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
 
-/* target for a flare that veils a quarter of the picture: its light there / min
- * visible light */
+/* target for a flare that veils a quarter of the picture: light of the flare
+ * there / min visible light */
 static const double veil_light = 0.5;
 
-/* target light of the brightest ghosts on bright ground / light that turns the
- * ground white */
+/* target for ghosts on bright ground: light of the brightest ghosts / light
+ * that turns the ground white */
 static const double white_part = 0.4;
 
-/* Limits of the change of the factor over time: stops per second (fall, rise),
- * stops per frame, and the time constant in seconds. */
+/* Limits of the change of the exposure over time: stops per second when it
+ * falls and when it rises, stops per frame, and the time constant in
+ * seconds. */
 static const double fall_per_s = 3, rise_per_s = 2, most_per_frame = 0.125;
 static const double settle_s = 0.3;
 
-/* Max fraction by which the flare of a new lamp may be brighter than if the
- * lamp were exposed alone. */
+/* max fraction by which the flare of a new lamp exceeds the flare that the lamp
+ * would have if it were exposed alone */
 static const double overshoot = 0.5;
 
 void glint_strength_set_defaults(struct glint_strength *strength)
@@ -53,8 +54,8 @@ void glint_strength_set_defaults(struct glint_strength *strength)
 
 /* --------------------------------------------------------------- one frame */
 
-/* Sets LIGHT to the light of the flare of lamp I at full fade level and scale
- * 1. */
+/* Sets LIGHT to the light of the flare of lamp I at scale 1. The lamp's fade
+ * level is assumed to be 1. */
 static void compute_lamp_flare_light(const struct glint_response *response,
                                      const struct glint_strength_lamps *lamps,
                                      int i, struct glint_response_light *light)
@@ -105,16 +106,16 @@ static double combine_peaks_by_norm(double a, double b)
     return pow(pow(a, norm) + pow(b, norm), 1 / norm);
 }
 
-/* Returns log2 of the factor on light by which the requested strength differs
- * from strength 1. */
+/* Returns log2 of the factor on light at the requested strength / the factor at
+ * strength 1. */
 static double compute_strength_log2(const struct glint_strength *s)
 {
     return 2 * log2(s->asked);
 }
 
 /* Returns log2 of the factor that exposes a flare of brightness LIGHT at
- * strength 1, limited so that the flare does not fog the picture; the formula
- * is in strength.h. */
+ * strength 1. It is limited so that the flare does not look like fog.
+ * strength.h has the formula. */
 static double compute_exposure_log2(const struct glint_response_light *light)
 {
     const double peak = fmax(glint_largest_channel(light->peak), 1e-60);
@@ -138,17 +139,18 @@ static double limit_exposure_change(double towards, double elapsed_s)
     return fmin(fmax(part * towards, -most), most);
 }
 
-/* Returns the factor that limits a lamp whose exposure is TIMES the one that it
- * would get alone: 1 for TIMES up to 1; above, TIMES times the factor rises
- * ever more slowly to 1 + overshoot. */
+/* Returns the factor that limits the light of a lamp. TIMES is the lamp's
+ * exposure divided by the exposure that it would get alone. For TIMES up to 1
+ * the factor is 1. Above, the product of TIMES and the factor rises ever more
+ * slowly to 1 + overshoot. */
 static double compute_exposure_limit(double times)
 {
     return times <= 1 ? 1
                       : (1 + overshoot * tanh((times - 1) / overshoot)) / times;
 }
 
-/* Lowers LIGHT, the light of a lamp's ghosts, if it is brighter than if the
- * lamp were exposed alone. Returns the factor. */
+/* Lowers LIGHT, the light of a lamp's ghosts, if the ghosts are brighter than
+ * if the lamp were exposed alone. Returns the factor by which it is lowered. */
 static double limit_lamp_light(const struct glint_strength *s,
                                struct glint_response_light *light)
 {
@@ -173,8 +175,8 @@ static void follow_exposure_target(struct glint_strength *s, double target,
     s->follows = true;
 }
 
-/* Returns log2 of the factor that exposes all lamps together at strength 1, as
- * if all were at full fade level. */
+/* Returns log2 of the factor that exposes all lamps together at strength 1. The
+ * fade levels of all lamps are assumed to be 1. */
 static double
 compute_full_level_exposure_log2(const struct glint_response *response,
                                  const struct glint_strength_lamps *lamps)
@@ -243,10 +245,11 @@ void glint_strength_expose_frame(struct glint_strength *strength,
     scale_flare_light(s);
 }
 
-/* Returns by how many stops the exposure of the flare DRAWN is raised until it
- * is visible, or lowered until it neither veils the picture nor turns bright
- * ground white, within the limits of its peak and mean. BASE: log2 of the
- * flare's factor at strength 0.5. */
+/* Returns the correction of the exposure of the flare DRAWN, stops. An
+ * invisible flare is raised until it is visible. A flare that veils the picture
+ * or turns bright ground white is lowered until it no longer does. The
+ * correction is limited by the flare's peak and mean. BASE: log2 of the flare's
+ * factor at strength 0.5. */
 static double
 compute_visibility_lift_log2(double base,
                              const struct glint_response_light *drawn,

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * The automatic exposure behind option --strength: chooses the factor on the
- * powers of lamps such that the flare is visible and plausible.
+ * Computes the automatic exposure of option --strength. It is the factor on the
+ * powers of lamps with which the flare is visible and plausible.
  *
  *     glint_strength_expose_frame(&strength, &response, &lit, elapsed_us);
  *
  * From scene to code: a lamp of power P (white times pixels: the light that the
- * picture shows, and the estimated light beyond white) has a flare of
- * P * response(angle) at --exposure 0. The response includes the transmittance
- * and the coatings of the lens, its stop and the sensor's size. Multiplied by
- * gain and 2^EV it is display light, 1 = white, which is added to the light of
- * the picture. --exposure sets EV directly; otherwise it is chosen here.
+ * picture shows, and the estimated light beyond white) has a flare of P *
+ * response(angle) at --exposure 0. The response includes the transmittance and
+ * the coatings of the lens, its stop and the sensor's size. Multiplied by gain
+ * and 2^EV it is display light, 1 = white, which is added to the light of the
+ * picture. --exposure sets EV directly; otherwise it is chosen here.
  *
  * If the flare of lamp i has the light p_i in the brightest thousandth of the
  * pixels and m_i in the mean (largest channels), the flare of all lamps has
@@ -32,13 +32,13 @@
  * picture its own flare is drawn at reduced size first, which gives p and m
  * directly; p is then the value that 1/10000 of the pixels reach. So the few
  * small ghosts of a point, the large ghosts of a candle, and lamps off that
- * line are exposed equally. Then the exposure is corrected by the visibility
- * of the flare on the picture (engine/seen.h). An invisible flare is raised
- * until it is visible in 1/50 of the picture; at strength 0.5 the limits are
- * 0.6 for its peak and 0.04 for its mean. A flare that veils a quarter of the
- * picture is lowered until its light there is half of the min visible light. A
- * flare whose ghosts turn a bright sky white is lowered until they add two
- * fifths of the light that would do so. Neither is lowered below a peak of 0.1.
+ * line are exposed equally. Then the exposure is corrected by the visibility of
+ * the flare on the picture (engine/seen.h). An invisible flare is raised until
+ * it is visible in 1/50 of the picture; at strength 0.5 the limits are 0.6 for
+ * its peak and 0.04 for its mean. A flare that veils a quarter of the picture
+ * is lowered until its light there is half of the min visible light. A flare
+ * whose ghosts turn a bright sky white is lowered until they add two fifths of
+ * the light that would do so. Neither is lowered below a peak of 0.1.
  *
  * In a video, a change of the strength takes effect at once. The rest of the
  * factor changes gradually, in stops: it falls by at most 3 stops per second,
@@ -47,8 +47,7 @@
  * lamp appears. Lamps fade in and out with their tracks; the factor is chosen
  * from their powers without these levels. The ghosts of a lamp that is too
  * bright for the current factor are limited to 1.5 times the exposure that they
- * would get alone, until the factor has adapted; its starburst is not.
- */
+ * would get alone, until the factor has adapted; its starburst is not. */
 #ifndef GLINT_ENGINE_STRENGTH_H
 #define GLINT_ENGINE_STRENGTH_H
 
@@ -58,19 +57,22 @@
 struct glint_strength_lamps {
     /* [n]: lamps; powers include the fade levels, but not the scale */
     const struct glint_engine_lamp *lamp;
-    /* [n]: result of glint_strength_expose_frame(): factor on the ghosts of
-     * each lamp, below 1 for a lamp that would be too bright until the exposure
-     * has adapted. Does not apply to starbursts. */
+    /* [n]: factor on the ghosts of each lamp, set by
+     * glint_strength_expose_frame(). It is below 1 for a lamp that would be too
+     * bright until the exposure has adapted. It does not apply to
+     * starbursts. */
     double *part;
     int n;
     double pixels; /* number of pixels of the picture times the linear light of
-                      its white */
+                      the picture's white */
 };
 
 struct glint_strength {
     /* Options: */
-    double asked;     /* requested strength, 0 .. 100, 0.5 by default */
-    bool is_physical; /* true: the factor is 2^exposure_ev */
+    double asked;     /* strength that the caller requested, 0 .. 100; 0.5 by
+                         default */
+    bool is_physical; /* true: the caller sets the exposure, and the factor is
+                         2^exposure_ev */
     double exposure_ev, gain;
 
     /* Results for the last frame: */
@@ -78,10 +80,10 @@ struct glint_strength {
     /* light of the flare after multiplication by scale */
     struct glint_response_light light;
     bool is_drawn; /* true: LIGHT was measured by drawing the flare of this
-                      picture */
+                      picture; false: it was computed from the response */
 
-    /* Private: log2 of the factor without strength and gain, which changes
-     * gradually over time */
+    /* Private: log2 of the factor, without strength and gain, which change at
+     * once. It changes gradually over time. */
     double factor_log2;
     bool follows;
 };
@@ -90,29 +92,30 @@ struct glint_strength {
 void glint_strength_set_defaults(struct glint_strength *strength);
 
 /* Returns the factor on the brightness of starbursts, in addition to scale.
- * STARBURST: requested brightness / physical brightness. The factor times scale
- * does not depend on the exposure of ghosts. */
+ * STARBURST is the requested brightness / the physical brightness. The product
+ * of this factor and scale does not depend on the exposure of ghosts. */
 double glint_strength_compute_star_factor(const struct glint_strength *strength,
                                           double starburst);
 
 /* Exposes a frame: sets scale and light of STRENGTH, and part of LAMPS.
- * ELAPSED_US: time since the last frame; 0: unrelated to the last frame. */
+ * ELAPSED_US is the time since the last frame; 0: the frame does not continue
+ * the last one. */
 void glint_strength_expose_frame(struct glint_strength *strength,
                                  const struct glint_response *response,
                                  const struct glint_strength_lamps *lamps,
                                  int32_t elapsed_us);
 
 /* Replaces the exposure of a still picture, which was computed from the
- * response, by one from DRAWN, the light of its flare, measured by drawing it
- * at reduced size and scale 1; and from SEEN, the visibility of that flare on
- * the picture, unless SEEN is NULL. Does nothing if the factor was set by hand
+ * response, by an exposure from a drawing of its flare. DRAWN is the light of
+ * the flare, drawn at reduced size and scale 1. SEEN is the visibility of that
+ * flare on the picture, or NULL. Does nothing if the caller has set the factor
  * or there is no light. */
 void glint_strength_correct_exposure(struct glint_strength *strength,
                                      const struct glint_response_light *drawn,
                                      const struct glint_seen *seen);
 
-/* Draws the flare of a still picture, of N LAMPS with the lens of FRAME, at
- * reduced size and scale 1, measures it, and corrects the exposure by
+/* Corrects the exposure of a still picture. Draws the flare of its N LAMPS with
+ * the lens of FRAME, at reduced size and scale 1, measures it, and calls
  * glint_strength_correct_exposure(). WHITE: linear light of the picture's
  * white. GROUND: the picture under the flare, or NULL. On GLINT_E_MEMORY
  * nothing has changed. */

@@ -10,9 +10,9 @@ static double compute_max_channel_power(const struct glint_lamp *lamp)
     return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
-/* Returns the number of points by which LAMP, an ellipse, is sampled before
- * thinning: by its area and its brightness. The semi-axes of a uniform ellipse
- * are twice its RMS semi-axes. */
+/* Returns the number of points that sample LAMP, an ellipse, before the number
+ * is reduced. It depends on the ellipse's area and on the lamp's brightness.
+ * The semi-axes of a uniform ellipse are twice its RMS semi-axes. */
 static double count_lamp_sample_points(const struct glint_lamp *lamp,
                                        const struct glint_area_rule *rule)
 {
@@ -41,7 +41,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         const double points = count_lamp_sample_points(&lamps[i], &rule);
 
         more += points - 1;
-        /* each of these lamps will round its number of points up */
+        /* The number of points of such a lamp is rounded up later. */
         n_wide += points > 1;
     }
     if (n_wide && more > room - n - n_wide)
@@ -53,7 +53,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
 }
 
 /* Sets PLACE to point I of a sunflower pattern in the unit circle. Returns the
- * fraction of the lamp's power that the point has. */
+ * fraction of the lamp's power that this point emits. */
 static double set_sunflower_point(const struct glint_area *a, int i,
                                   double place[2])
 {
@@ -66,10 +66,10 @@ static double set_sunflower_point(const struct glint_area *a, int i,
     return weight / a->points;
 }
 
-/* Computes two corrections for a pattern of N points: the offset of its centre,
- * and the factor that spreads its points, as few points are off-centre and too
- * close together. One point needs no correction; from two to four points the
- * correction is blended in. */
+/* Computes two corrections of a sunflower pattern of N points: the offset of
+ * its centre, and the factor that spreads its points. Patterns of few points
+ * are off-centre and too narrow. One point needs no correction. From two to
+ * four points the correction grows to its full size. */
 static void measure_sample_point_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);
@@ -111,11 +111,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
     return n;
 }
 
-/* Returns the distance between neighbouring sample points as a tangent: the
- * size of the piece of the ellipse that one point represents. For a tube it is
- * at most twice that of a circle of equal area, so that the ghosts of seven
- * points are not as wide as the tube is long. From one to four points it is
- * blended in, as the spread is, so that it changes continuously. */
+/* Returns the distance between neighbouring sample points of AREA, as a
+ * tangent. It is the size of the piece of the ellipse that one point
+ * represents. For a tube it is at most twice that of a circle of equal area, so
+ * that the ghosts of seven points are not as wide as the tube is long. From one
+ * to four points it grows gradually from 0, so that it changes continuously. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

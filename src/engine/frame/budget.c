@@ -5,30 +5,31 @@
 
 #include "glint/light.h"
 
-/* log2 of (time of the first frame / time of later frames); the first frame
- * allocates memory */
+/* log2 of (time of the first frame / time of later frames); the first frame is
+ * slower, as it allocates memory */
 #define FIRST 1
-/* predicted time for which frames are planned / budget */
+/* predicted time of a planned frame / budget, at most */
 #define ROOM 0.98
-/* predicted time / budget, below which the next finer quality is tried */
+/* max (predicted time / budget) at which the next finer quality is tried */
 #define SPARE 0.9
 /* max predicted time of a trial frame / budget */
 #define TRY 1.15
-/* fraction of the error of a prediction, in octaves, that one frame corrects */
+/* fraction of a prediction's error, in octaves, that is corrected after a
+ * frame */
 #define LEARNING 0.5
-/* max error of a prediction that is taken into account, octaves */
+/* limit to which errors of predictions are clamped, octaves */
 #define MOST_WRONG 0.8
-/* min fraction of a correction that is applied to other qualities */
+/* min fraction of a quality level's correction that other levels get */
 #define SPREAD 0.1
-/* fraction by which corrections of other qualities decay per frame */
+/* fraction of the corrections of other quality levels that is lost per frame */
 #define FORGETTING 0.01
 
-/* Max number of plans per frame. A plan predicts the cost poorly for a fineness
- * far from its own, so that another plan may be needed. */
+/* max number of plans per frame; the cost that a plan predicts is inaccurate
+ * for a fineness far from its own, so that a second plan may be needed */
 enum { MAX_TRIES = 3 };
 
-/* max number of trial frames, drawn at a quality that is predicted to be too
- * slow */
+/* max number of trial frames, which are drawn at a quality that is predicted to
+ * be too slow */
 enum { TRIALS = 4 };
 
 void glint_budget_init(struct glint_budget *b, double ms)
@@ -50,9 +51,10 @@ void glint_budget_begin_frame(struct glint_budget *b,
     b->n_frames += b->n_frames < 2;
 }
 
-/* Cuts: reductions of work beyond a lower quality, ordered by visibility; each
- * cut includes the ones before it. LOSS: PSNR against a frame without cuts, dB;
- * estimated, as no sweep has measured dust and veil yet. */
+/* Cuts reduce the work of a frame below that of the lowest quality level. They
+ * are ordered by visibility, and each cut includes the cuts before it. LOSS:
+ * PSNR against a frame without cuts, dB. It is estimated, as no sweep has
+ * measured dust and veil yet. */
 static const struct cut {
     double dim;    /* min dim_codes */
     int dust_log2; /* max dust_log2 */
@@ -70,15 +72,15 @@ static const struct cut {
 
 enum { N_CUTS = sizeof cuts / sizeof *cuts, BUNDLES = 256 };
 
-/* PSNR of the quality levels, mean of five lenses, dB (glint sweep at revision
- * a3db91ca). */
+/* PSNR of the quality levels, dB: the mean over five lenses (glint sweep at
+ * revision a3db91ca) */
 static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
                                                       56, 59, 62, 64,   65};
 
 /* Returns the quality parameters at quality step STEP, reduced by cut CUT.
- * Parameters that do not depend on quality are those of ASKED. The cost model
- * does not cover wave sets, so frames with a budget are drawn with three
- * wavelengths. */
+ * Parameters that do not depend on quality are those of ASKED. Frames with a
+ * budget are drawn with three wavelengths, as the cost model does not cover
+ * sets of wavelengths. */
 static struct glint_dials
 make_quality_parameters_at_step(int step, int cut,
                                 const struct glint_dials *asked)
@@ -133,8 +135,8 @@ static double predict_frame_ms(const struct glint_budget *b,
                 (b->n_frames > 1 ? 0 : FIRST));
 }
 
-/* Returns the best quality step whose predicted time with cut CUT fits the
- * budget, or 0 if none does; by binary search. */
+/* Returns the best quality step that is predicted to fit the budget with cut
+ * CUT. Returns 0 if no step fits. It is a binary search. */
 static int find_best_affordable_quality_step(const struct glint_budget *b,
                                              const struct glint_cost_plan *plan,
                                              int cut)
@@ -159,8 +161,8 @@ static double convert_db_to_mse(double db)
 }
 
 /* Estimates the mean square error of a frame at quality step STEP with cut CUT.
- * If even step 0 does not fit the budget, the result is above 1 and rises with
- * the predicted time. */
+ * If even step 0 exceeds the budget, the result is above 1 and rises with the
+ * predicted time. */
 static double estimate_picture_error(const struct glint_budget *b,
                                      const struct glint_cost_plan *plan,
                                      int step, int cut)
@@ -177,9 +179,7 @@ static double estimate_picture_error(const struct glint_budget *b,
            (over > 1 ? over : 0);
 }
 
-/* Returns whether CUT reduces the work of PLAN by more than the cut before it
- * does.
- * */
+/* Returns whether CUT reduces the work of PLAN more than the previous cut. */
 static bool does_cut_reduce_work(const struct glint_cost_plan *plan, int cut)
 {
     const struct cut *c = &cuts[cut];
@@ -190,9 +190,9 @@ static bool does_cut_reduce_work(const struct glint_cost_plan *plan, int cut)
            (plan->n_veil > 0 && c->no_veil);
 }
 
-/* Chooses the cut and the quality step with the smallest estimated error among
- * those that fit the budget. Sets b->cut and returns the step. If there are
- * many bundles, only a sample of them is evaluated. */
+/* Chooses the cut and the quality step with the smallest estimated error that
+ * fit the budget. Sets b->cut and returns the step. If there are many bundles,
+ * only a sample of them is evaluated. */
 static int choose_quality_step_and_cut(struct glint_budget *b,
                                        const struct glint_cost_plan *plan)
 {
@@ -220,10 +220,10 @@ static int choose_quality_step_and_cut(struct glint_budget *b,
     return step;
 }
 
-/* Returns STEP + 1 if that quality is to be tried in this frame, else STEP. It
- * is tried, at most TRIALS times in total, if STEP leaves much of the budget
- * unused and STEP + 1 is predicted to exceed it by little: that prediction may
- * be too high. */
+/* Returns the quality step of this frame, either STEP or STEP + 1. The higher
+ * step is tried, at most TRIALS times in total, if STEP leaves much of the
+ * budget unused and STEP + 1 is predicted to exceed it by little. The
+ * prediction for STEP + 1 may be too high. */
 static int try_next_quality_step(struct glint_budget *b,
                                  const struct glint_cost_plan *plan, int step)
 {
@@ -236,8 +236,8 @@ static int try_next_quality_step(struct glint_budget *b,
         predict_frame_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* prevents another plan of this frame, whose
-                               prediction would reject the trial */
+    b->n_tries = MAX_TRIES; /* No further plan of this frame is made, as its
+                               prediction would reject the trial. */
     return step + 1;
 }
 
@@ -262,17 +262,17 @@ bool glint_budget_choose_quality_parameters(struct glint_budget *b,
     return true;
 }
 
-/* Corrects later predictions by the fraction LEARNING of the error of the last
- * prediction, in octaves; MS is the measured time of the frame. Neighbouring
- * quality levels are corrected, too. A large error corrects all levels, as the
- * machine may have become slower. Corrections of other levels decay, so that
- * one slow frame does not exclude a quality forever. */
+/* Corrects later predictions by the fraction LEARNING of the last prediction's
+ * error, in octaves. MS is the measured time of the frame. Neighbouring quality
+ * levels are corrected, too. A large error corrects all levels, as the machine
+ * may have become slower. Corrections of other levels decay, so that one slow
+ * frame does not exclude a quality forever. */
 void glint_budget_learn_from_frame(struct glint_budget *b, double ms)
 {
     const double at = convert_quality_step_to_level(b->step);
     const double part = at - floor(at);
     const double both = part * part + (1 - part) * (1 - part);
-    /* clamped, as the frame may have waited for other programs */
+    /* The error is clamped, as the frame may have waited for other programs. */
     const double wrong =
         fmax(-MOST_WRONG, fmin(MOST_WRONG, log2(ms / b->predicted_ms)));
     const double spread = fmin(1, fmax(SPREAD, 2 * fabs(wrong)));

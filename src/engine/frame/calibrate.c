@@ -4,8 +4,8 @@
 
 #include "engine/frame/frame_parts.h"
 
-/* Draws a few frames with one lamp, and lowers *LEAST_MS to the time of the
- * fastest one, ms. */
+/* Draws a few frames with one lamp, and measures the time of the fastest frame.
+ * Sets *LEAST_MS to this time, ms, if it is shorter. */
 static enum glint_status
 measure_test_frame_time(struct glint_frame *frame,
                         const struct glint_image *image,
@@ -22,7 +22,7 @@ measure_test_frame_time(struct glint_frame *frame,
 
     for (int i = 0; i < 4 && status == GLINT_OK; i++) {
         status = glint_frame_draw(frame, &lamp, 1, 1, image, report);
-        if (i > 0) /* the first frame is not counted, as it allocates memory */
+        if (i > 0) /* The first frame is not counted, as it allocates memory. */
             *least_ms = fmin(*least_ms, report->plan_ms + report->bin_ms +
                                             report->draw_ms);
     }

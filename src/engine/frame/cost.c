@@ -6,25 +6,24 @@
 #include "glint/quality.h"
 #include "glint/bake.h"
 
-/* Cost of adding light to four pixels of the picture at half resolution / cost
- * of adding it to one pixel.
- */
+/* cost of adding light to four pixels at half resolution / cost of adding it to
+ * one pixel */
 #define QUAD 2
 
-/* steps per octave that the cost model assumes for light that is not rounded to
- * steps */
+/* number of irradiance steps per octave that the cost model assumes if
+ * irradiance is not rounded */
 #define MOST_STEPS 4096
 
-/* log2 of the max number of subdivisions of a cell per side; number of sample
- * positions per side of the stop at which subdivisions are counted */
+/* MOST_LOG2: log2 of the max number of subdivisions of a cell per side.
+ * SAMPLES: number of positions per side of the stop at which subdivisions are
+ * counted. */
 enum { MOST_LOG2 = 4, SAMPLES = 24 };
 
 /* Weights by make cost-fit: least squares of the relative errors over random
  * frames. callgrind counts the instructions of the second drawing of each
- * frame, so that none is binned twice. tests/figures/cost/plans.md has the
- * errors. Column planned: for the counts that glint_cost_of() predicts; column
- * counted: for the counts of a drawn frame.
- */
+ * frame, so that no frame is binned twice. tests/figures/cost/plans.md
+ * has the errors. Column planned: for the counts that glint_cost_of() predicts;
+ * column counted: for the counts of a drawn frame. */
 /* clang-format off */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
     /* begin weights */
@@ -50,12 +49,12 @@ double glint_cost_convert_to_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* Number of cells per side that grids clamped to the minimum GLINT_LEAST_CELLS
- * would otherwise need, estimated. */
+/* estimated number of cells per side that a grid at the min GLINT_LEAST_CELLS
+ * would have without this minimum */
 enum { LESS_CELLS = 6 };
 
-/* Predicts the number of grid cells per side if the fineness is FINER times
- * that of the plan, with which it is PLANNED. */
+/* Predicts the number of grid cells per side at FINER times the fineness of the
+ * plan. PLANNED is the number at the plan's fineness. */
 static double predict_cells_per_side(int planned, double finer)
 {
     const double free =
@@ -74,16 +73,17 @@ struct bundle {
     double inside; /* fraction of the rays that pass the stop and the
                       barrels */
     double view;   /* fraction of the ghost's bounding box that is on-screen */
-    double log_bright; /* natural logarithm of max light / mean light of the
-                          ghost, on which the number of edges depends */
+    double log_bright; /* natural logarithm of (max light / mean light of the
+                          ghost), which affects the number of edges */
     double rings;      /* number of nested outlines of a soft edge; 1 for a hard
                           edge */
-    double share;      /* expected fraction of the bundle that is drawn, as dim
-                          ghosts share rays */
+    double share;      /* expected number of bundles drawn per planned bundle;
+                          below 1 if dim ghosts share rays */
 };
 
-/* Returns the number of irradiance steps per octave for a ghost OCTAVES below
- * white in a picture in codes; STEPS is the number at white. */
+/* Returns the number of steps per octave to which the irradiance of a ghost is
+ * rounded. The ghost is OCTAVES fainter than white, the picture has 8-bit
+ * codes, and STEPS is the number for white. */
 static double compute_steps_per_octave(int steps, double octaves)
 {
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
@@ -107,9 +107,9 @@ static double count_soft_edge_outlines(const struct glint_cost_plan *p,
     return exp2(fmax(most, 0));
 }
 
-/* Returns the expected number of bundles per planned bundle B if ghosts dimmer
- * than DIM codes share rays; when B was planned, ghosts dimmer than WAS codes
- * did. */
+/* Returns how many bundles are expected to be drawn per planned bundle B if
+ * ghosts dimmer than DIM codes share rays. B was planned when ghosts dimmer
+ * than WAS codes shared rays. */
 static double estimate_drawn_fraction(const struct glint_cost_plan *p,
                                       const struct glint_planned *b,
                                       double light, double was, double dim)
@@ -128,10 +128,10 @@ static double estimate_drawn_fraction(const struct glint_cost_plan *p,
 
 /* ------------------------------------------------------------------- counts */
 
-/* This function and the next estimate the number of edges of a bundle, and the
- * number of pixel rows that these cross, as products of powers, fitted to the
- * bundles of 48 random frames of four lenses (Poisson regression). Sums over a
- * frame have a median error of 15 percent. */
+/* This function estimates the number of edges of a bundle; the next function
+ * estimates the number of pixel rows that these edges cross. Both are products
+ * of powers, fitted to the bundles of 48 random frames of four lenses (Poisson
+ * regression). Sums over a frame have a median error of 15 percent. */
 static double estimate_edge_count(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
@@ -150,7 +150,7 @@ static double estimate_edge_row_count(const struct bundle *b, double log_steps,
 }
 
 /* Predicts how planned bundle B would be drawn with the quality parameters
- * THEN. LARGER: factor on the number of pixels. */
+ * THEN. LARGER is the factor by which the number of pixels changes. */
 static struct bundle predict_bundle_at_quality(const struct glint_cost_plan *p,
                                                const struct glint_planned *b,
                                                const struct glint_dials *then,
@@ -173,8 +173,8 @@ static struct bundle predict_bundle_at_quality(const struct glint_cost_plan *p,
     return to;
 }
 
-/* The cells of a ghost of a stop with dust or masks (edges/ghost_shade.h).
- */
+/* The grid cells of a ghost, if the stop has dust or masks
+ * (edges/ghost_shade.h). */
 struct cells {
     double cells;  /* number of the ghost's cells per side */
     double light;  /* display white */
@@ -183,8 +183,7 @@ struct cells {
     double view; /* fraction of the cells within the stop that are on-screen */
 };
 
-/* Returns the smallest visible difference from LIGHT, as a fraction of LIGHT.
- */
+/* Returns the smallest visible difference from LIGHT divided by LIGHT. */
 static double compute_visible_step(const struct glint_cost_plan *p,
                                    double light)
 {
@@ -199,10 +198,10 @@ static int clamp_int(int x, int low, int high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the mean number of subdivisions of a cell because of dust or masks,
- * over SAMPLES^2 positions in the stop. LEVEL: level of the shade's tables;
- * STEP: smallest visible difference; MOST: max log2 of the subdivisions per
- * side; CUT: fraction of the cells that the stop's outline cuts. */
+/* Returns the mean number of parts into which dust or masks divide a cell, over
+ * SAMPLES^2 positions in the stop. LEVEL: level of the shade's tables; STEP:
+ * smallest visible difference; MOST: max log2 of the parts per side; CUT:
+ * fraction of the cells that the stop's outline cuts. */
 static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
                                                  int level, double step,
                                                  int most, double cut)
@@ -210,7 +209,7 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
     enum {
         CUT_LOG2 = 3,
         ALONE = 4
-    }; /* factor for cells cut by the outline, whose subdivisions share no edges
+    }; /* factor for cells that the outline cuts, as their parts share no edges
         */
     const int side = (1 << (s->log2 - level)) + 1;
     double sum = 0;
@@ -228,7 +227,8 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
         if (x * x + y * y > 1)
             continue;
         n++;
-        /* rounds log2 of the number of visible differences up */
+        /* The number of parts per side is 2 to the power of log2 d, rounded
+         * up. */
         for (; d >= 1 && log2_parts < most; log2_parts++)
             d /= 2;
         if (log2_parts)
@@ -238,10 +238,9 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
     return n ? sum / n : 0;
 }
 
-/* Estimates the total number of subdivisions of the cells G by the shade of
- * PLAN, if only tables of the shade with at most 2^LOG2_USED cells per side are
- * used.
- */
+/* Estimates the total number of parts into which the shade of PLAN divides the
+ * cells G. Only tables of the shade with at most 2^LOG2_USED cells per side are
+ * used. */
 static double
 estimate_cell_subdivision_count(const struct glint_cost_plan *plan,
                                 const struct cells *g, int log2_used)
@@ -292,12 +291,12 @@ static void add_bundle_cost(struct glint_cost *cost,
                         then->dust_log2);
 }
 
-/* The total area that ghosts cover; a ghost counts once for all its
+/* Sums up the area that ghosts cover. A ghost counts once for all its
  * wavelengths. */
 struct covered {
     int ghost, light;
-    double most, all; /* pixels: area of the current ghost, max over its
-                         wavelengths; total area of all ghosts before it */
+    double most, all; /* most: area of the current ghost, pixels, max over its
+                         wavelengths; all: total area of all ghosts before it */
 };
 
 static void add_ghost_covered_area(struct covered *c,

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Predicts the cost of drawing a frame from its plan: estimated counts of
- * operations, times the cost of each operation.
- */
+ * Predicts the cost of drawing a frame from its plan. The cost is the estimated
+ * number of operations of each kind times the cost of one operation. */
 #ifndef GLINT_ENGINE_FRAME_COST_H
 #define GLINT_ENGINE_FRAME_COST_H
 
@@ -16,17 +15,18 @@ struct glint_cost {
     double count[GLINT_COST_KINDS];
 };
 
-/* A frame that has been planned, but whose edges have not been binned. */
+/* A planned frame, as input of the cost model. The edges of the frame must not
+ * have been binned yet. */
 struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;  /* size of the picture */
     double n_looked_at; /* number of rays that the plan probed */
-    int every;     /* evaluate only every EVERY-th bundle, as a sample; 0, 1:
-                      all bundles */
-    bool can_half; /* true: half resolution is possible, as the picture is in
-                      codes */
-    bool can_dim;  /* true: dim ghosts may share rays, as three wavelengths are
-                      drawn */
+    int every;     /* distance between evaluated bundles: every EVERY-th bundle
+                      is evaluated, as a sample; 0, 1: all bundles */
+    bool can_half; /* true: the picture has 8-bit codes, so half resolution is
+                      possible */
+    bool can_dim;  /* true: three wavelengths are drawn, so dim ghosts may share
+                      rays */
     double code;   /* linear light of one code near black; 0: the picture is
                       linear */
     double n_star; /* number of pixels lit by stars */
@@ -38,8 +38,9 @@ struct glint_cost_plan {
 };
 
 /* Predicts the counts of operations of PLAN for the quality parameters THEN.
- * The fineness of THEN must be within a factor of 4 of the planned one; outside
- * this range, grids at their size limits are mispredicted. */
+ * The fineness of THEN must be within a factor of 4 of the planned fineness.
+ * Outside this range, the effect of the size limits of grids is
+ * mispredicted. */
 struct glint_cost glint_cost_of(const struct glint_cost_plan *plan,
                                 const struct glint_dials *then);
 

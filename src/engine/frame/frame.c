@@ -97,8 +97,8 @@ static void set_frame_waves(struct glint_frame *f)
                                                    s->rgb[i], s->unit_flux[i]);
 }
 
-/* Converts PX pixels near the axis to the chord of the corresponding angle on
- * the unit sphere. */
+/* Converts PX, a distance near the axis in pixels, to an angle, and returns the
+ * chord of this angle on the unit sphere. */
 static int32_t convert_px_to_chord_q30(const struct glint_frame *f, double px)
 {
     const double pixels = glint_frame_compute_pixels_per_tangent(f);
@@ -126,10 +126,10 @@ double glint_frame_get_max_angle_deg(const struct glint_frame *frame)
     return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
-/* Appends the points by which LAMP is sampled to the WITHIN lights that the
- * frame has already; returns the new number of lights. Points outside the
- * model's range of angles are dropped here, before merging, as they must not be
- * merged with lights that are drawn. */
+/* Appends the points that sample LAMP to the lights of the frame, of which
+ * there are WITHIN already. Returns the new number of lights. Points outside
+ * the model's range of angles are dropped before lights are merged, as such
+ * points must not be merged with lights that are drawn. */
 static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
                            const struct glint_area_rule *rule, double scale,
                            int within)
@@ -149,7 +149,7 @@ static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     return within;
 }
 
-/* Returns the max number of lights for N lamps; a lamp of visible extent
+/* Returns the max number of lights for N lamps, where a lamp of visible extent
  * becomes several lights. */
 static int compute_max_lights(const struct glint_frame *f, int n)
 {
@@ -160,9 +160,9 @@ static int compute_max_lights(const struct glint_frame *f, int n)
     return n <= most ? max_int(most, f->picture.point_room) : most;
 }
 
-/* Converts N LAMPS to lights of the frame, with powers times SCALE. Merges
- * lights that are too close to each other, and, if there are too many, more of
- * them. */
+/* Converts N LAMPS to lights of the frame; SCALE is a factor on their powers.
+ * Merges lights that are too close to be distinguished. If there are still too
+ * many lights, merges more of them. */
 static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
                                                  const struct glint_lamp *lamps,
                                                  int n, double scale)
@@ -187,8 +187,9 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     f->lights.n = glint_lights_merge(
         f->lights.light, within, convert_px_to_chord_q30(f, f->apart_px),
         max_int(room, f->dials.max_lights), &f->lights.n_apart);
-    if (!f->limits.is_held) /* else a limit has reduced the number of lights,
-                               and the share for all lights still applies */
+    if (!f->limits.is_held) /* Otherwise a limit has reduced the number of
+                               lights, and the share for all lights still
+                               applies. */
         f->limits.share =
             1 + max_int(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
@@ -196,8 +197,8 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns the settings with which the run-time half plans and traces a flare
- * for IMAGE; NULL stands for a linear picture. */
+/* Returns the settings with which the flare is planned and traced for IMAGE. If
+ * IMAGE is NULL, the settings are those of a linear picture. */
 static struct glint_flare_frame
 make_flare_frame(struct glint_frame *f, const struct glint_image *image)
 {
@@ -236,8 +237,8 @@ void glint_frame_apply_config(struct glint_frame *f)
                          f->memory.bytes);
 }
 
-/* Applies the quality parameters that are part of the flare's configuration:
- * steps of irradiance, and tables of dust. */
+/* Applies two quality parameters to the configuration of the flare: the steps
+ * of irradiance, and the tables of dust. */
 static void apply_quality_to_flare_config(struct glint_frame *f)
 {
     const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
@@ -324,9 +325,9 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
     return GLINT_OK;
 }
 
-/* Samples and merges *N LAMPS for exact rays, as for a model. Returns the
- * resulting lamps and sets *N to their number. Returns NULL if memory is short.
- */
+/* Samples and merges the *N LAMPS for exact rays, in the same way as for a
+ * model. Returns the resulting lamps and sets *N to their number. Returns NULL
+ * if memory is short. */
 static const struct glint_lamp *
 merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
 {
@@ -405,9 +406,8 @@ static int count_drawn_bundles(const struct glint_frame *f,
     return f->lens ? r->stats.bundles : f->trace->n_bundles(f);
 }
 
-/* Sets those members of REPORT that describe lights, plans and memory of the
- * drawn frame.
- */
+/* Sets the members of REPORT about the lights, plans and memory of the drawn
+ * frame. */
 static void fill_frame_report(struct glint_frame *frame,
                               struct glint_engine_report *report)
 {
@@ -445,7 +445,8 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
 
     *report = (struct glint_engine_report){
         .lights = n_lamps, .quality = -1, .arena_bytes = frame->memory.bytes};
-    /* nothing to draw: without a veil the picture is not read */
+    /* Nothing is drawn in this case. Without a veil the picture is not read,
+     * either. */
     if (n_lamps == 0 && !glint_frame_has_veil(frame))
         return GLINT_OK;
     if (glint_frame_allocate_ghost_data(frame) != GLINT_OK)
@@ -469,8 +470,8 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
         report->dials = frame->dials;
         report->unveiled = glint_frame_has_veil(frame) &&
                            frame->dials.flags & GLINT_DIAL_NO_VEIL;
-        /* The times of frames that allocated memory or reused edges are not
-         * representative. */
+        /* The budget does not learn from frames that allocated memory or reused
+         * edges, as their times are not representative. */
         if (frame->memory.bytes == bytes && !report->stats.reused)
             glint_budget_learn_from_frame(&frame->budget,
                                           1e3 * (times[4] - times[0]));
@@ -484,9 +485,8 @@ void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
 {
     const struct glint_dials *const asked = &frame->asked;
 
-    /* Nothing to restore: keeps the numbers of points that a program may have
-     * set itself to draw a video.
-     */
+    /* The numbers of points have not been raised, so they are not restored. A
+     * program may have set its own numbers to draw a video. */
     if (!is_still && !frame->picture.is_still)
         return;
     frame->picture.is_still = is_still;

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws the flare of a frame: converts lamps to lights, plans, and calls the
- * run-time half.
+ * Draws the flare of a frame: converts lamps to lights, plans the frame, and
+ * calls the integer renderer (glint/flare.h).
  *
  *     glint_frame_init(&frame, &setup, view, workers);    then set options
  *     glint_frame_draw(&frame, lamps, n, scale, &image, &report);
  *     glint_frame_finish(&frame);
  *
- * The run-time half gets one block of memory, which grows to what the most
- * demanding frame so far needed. */
+ * The integer renderer gets one block of memory. It grows to the size that the
+ * most demanding frame so far has needed. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_H
 #define GLINT_ENGINE_FRAME_FRAME_H
 
@@ -22,30 +22,31 @@
 #include "glint/engine.h"
 #include "glint/flare.h"
 
-/* Lights whose images are nearer than this, pixels, are merged; the error of a
- * model is larger. */
+/* distance between the images of two lights, pixels, below which they are
+ * merged; the error of a model is larger */
 #define GLINT_FRAME_APART_PX 0.125
-/* Max invisible step of brightness between wavelengths, codes. */
+/* max step of brightness from one wavelength to the next that is invisible,
+ * codes */
 #define GLINT_FRAME_STEP_CODES 2.0
 
-/* Default limits of a frame with one light that is drawn by a model: bytes, and
- * millions of instructions by glint_cost_convert_to_minsn(), about ten seconds
- * on one processor. Each further light raises both limits by 1 /
- * GLINT_FRAME_PER_LIGHT. */
+/* Default limits of a frame with one light that is drawn by a model: memory in
+ * bytes, and work in millions of instructions (glint_cost_convert_to_minsn()),
+ * about ten seconds on one processor. Each further light raises both limits by
+ * 1 / GLINT_FRAME_PER_LIGHT. */
 #define GLINT_FRAME_MOST_BYTES ((size_t)384 << 20)
 #define GLINT_FRAME_MOST_MINSN 30000.0
 #define GLINT_FRAME_PER_LIGHT  16
 
 struct glint_frame;
 
-/* Factors by which a flare is scaled before it is drawn in fixed point, as
- * log2. */
+/* Factors by which the light of a flare is scaled before it is drawn in fixed
+ * point, as log2. */
 struct glint_frame_scale {
     int likely; /* log2 of the factor that brings the mean of the brightest
                    ghost to about 32 times display white; single pixels may
                    reach 2048 times white */
-    int most;   /* log2 of the max factor at which no light can be clamped: the
-                   sum of all light stays below 2^24 times white */
+    int most;   /* log2 of the max factor without clamping: the sum of all light
+                   stays below 2^24 times white */
 };
 
 /* Computes the scales from log2 of the brightest ghost's mean light and log2 of
@@ -61,8 +62,9 @@ struct glint_frame_rays {
                               const struct glint_lamp *lamps, int n_lamps,
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5]);
-    /* Predicts SCALE for LAMPS; {0, 0} if there is no light. Returns
-     * GLINT_E_MEMORY if memory is short or LAMPS have too many bundles. */
+    /* Predicts SCALE for LAMPS, or sets it to {0, 0} if there is no light.
+     * Returns GLINT_E_MEMORY if memory is short or LAMPS have too many
+     * bundles. */
     enum glint_status (*scale)(struct glint_frame *frame,
                                const struct glint_lamp *lamps, int n_lamps,
                                struct glint_frame_scale *scale);
@@ -70,25 +72,25 @@ struct glint_frame_rays {
     int (*n_bundles)(const struct glint_frame *frame);
     int (*ghost)(const struct glint_frame *frame, int bundle);
     void (*finish)(struct glint_frame *frame);
-    /* Moves the cached rays of FROM, a frame with the same lens, to FRAME, so
-     * that pictures of the same lamps, of any size, take less time. */
+    /* Moves the cached rays of FROM to FRAME, a frame with the same lens. So
+     * pictures of the same lamps, in any size, take less time. */
     void (*adopt)(struct glint_frame *frame, struct glint_frame *from);
 };
 
 /* Settings with which the next picture is planned. */
 struct glint_frame_picture {
-    bool for_codes;    /* true: linear pictures are planned as if they were in
+    bool for_codes;    /* true: linear pictures are planned as if they had 8-bit
                           codes */
-    bool can_half;     /* true: half resolution is possible, as the last picture
-                          was in codes */
+    bool can_half;     /* true: the last picture had 8-bit codes, so half
+                          resolution is possible */
     bool is_still;     /* true: glint_frame_set_area_sampling() has raised the
                           number of points for a still picture */
     bool uniform;      /* true: all ghosts get grids of the same fineness */
     double code_light; /* linear light of one code near black; 0: the picture is
                           linear */
     int point_room;    /* max number of lights including the sample points of
-                          area lamps; replaces max_lights if larger, for up to
-                          max_lights lamps */
+                          area lamps; replaces a smaller max_lights in frames of
+                          up to max_lights lamps */
 };
 
 /* Limits of the memory and the work of a frame. */
@@ -99,16 +101,16 @@ struct glint_frame_limits {
                             frame */
     int most_primitives; /* number of primitives that fit into the reserved
                             memory with one worker */
-    size_t most_bytes;   /* max size of a block that is not reserved, for one
-                            light, bytes; 0: no limit */
+    size_t most_bytes;   /* max size of a block that is not reserved, in bytes,
+                            for a frame with one light; 0: no limit */
     double most_minsn;   /* max cost of a frame with one light, millions of
                             instructions; 0: no limit */
-    double share;        /* factor from the limits for one light to the limits
-                            for all lights of the frame */
-    double tight; /* memory that the last frame would have needed with the grids
-                     before they were last made coarser, in bytes, or in
-                     primitives if memory is reserved; 0: they were not made
-                     coarser */
+    double share;        /* limits for all lights of the frame / limits for one
+                            light */
+    /* memory that the last frame would have needed with the grids that it had
+     * before they were last made coarser, in bytes, or in primitives if memory
+     * is reserved; 0: grids were not made coarser */
+    double tight;
     size_t tight_bytes; /* bytes that the last frame would have needed with its
                            original grids */
 };
@@ -119,36 +121,37 @@ struct glint_frame_lights {
     struct glint_wave_sets sets;
     struct glint_light *light; /* [capacity] */
     int n, capacity;
-    int n_apart;  /* number of lights after lights too close to be distinguished
+    int n_apart;  /* number of lights after those too close to be distinguished
                      were merged */
     int n_beyond; /* number of lamps skipped because they lie outside the
                      model's range of angles */
     int n_more;   /* number of additional points of area lamps */
     /* [n]: factors on the colours of the lights, or NULL */
     const int32_t (*gain_q14)[3];
-    struct glint_lamp *merged; /* [n]: the lamps that exact rays are traced for,
-                                  if lamps were sampled or merged */
+    struct glint_lamp *merged; /* [n]: the lamps for which exact rays are
+                                  traced, if lamps were sampled or merged */
     /* [n_given]: the lamps before sampling and merging; valid while exact rays
      * are drawn */
     const struct glint_lamp *given;
     int n_given;
-    bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts that were drawn in the
-                   last frame */
+    bool *seen; /* [GLINT_MAX_GHOSTS]: true for ghosts that the last frame has
+                   drawn */
 };
 
 /* The last plan made from a model. */
 struct glint_frame_plan {
     struct glint_flare_frame rays;
     double scale; /* factor on the powers of the lights */
-    /* number of plans of this frame (n_plans), number of plans whose edges were
-     * binned (n_binned), and number of rays that all plans probed (n_looked) */
+    /* n_plans: number of plans of this frame. n_binned: number of plans whose
+     * edges were binned. n_looked: number of rays that all plans have
+     * probed. */
     int n_plans, n_binned;
     long long n_looked;
 };
 
-/* Table of the brightness of ghosts, valid for one stop opening, one number of
- * pixels per mm (size) and three wavelengths. Allocated when dim ghosts first
- * share rays. */
+/* Table of the brightness of ghosts (flare/dim.h). It is valid for one opening
+ * of the stop, one number of pixels per mm (size) and three wavelengths.
+ * Allocated when dim ghosts are first drawn with shared rays. */
 struct glint_frame_dim {
     struct glint_dim table;
     double opening, size;
@@ -158,50 +161,52 @@ struct glint_frame_dim {
 struct glint_frame_memory {
     struct glint_flare *flare;
     void *traced;      /* state of the exact rays, or NULL */
-    void *mem, *block; /* mem: allocated memory, or NULL if the caller gave the
-                          block; block: the aligned block in use */
+    void *mem, *block; /* mem: allocated memory, or NULL if the caller provided
+                          it; block: the aligned part of it that is in use */
     size_t bytes;      /* size of BLOCK, bytes */
 };
 
-/* Progress that is reported, 0 to 1, when exact rays have found the ghosts of a
- * picture; the rest is for drawing them. */
+/* Progress, 0 to 1, that is reported when exact rays have found the ghosts of a
+ * picture. The remaining progress is for drawing. */
 #define GLINT_FRAME_FOUND 0.5
 
 struct glint_frame {
     const struct glint_setup *setup;
-    /* model of the lens; NULL: exact rays are drawn by TRACE */
+    /* model of the lens; NULL: exact rays are traced by the functions TRACE */
     const struct glint_lens *lens;
-    const struct glint_frame_rays *trace; /* not NULL if LENS is NULL */
+    const struct glint_frame_rays *trace; /* functions that draw with exact
+                                             rays; not NULL if LENS is NULL */
     glint_progress_fn *progress;          /* reports the progress of exact rays,
                                              or NULL */
     void *progress_ctx;
     glint_clock_fn *clock; /* returns the time in seconds; NULL: no times are
                               measured */
     struct glint_view view;
-    struct glint_flare_config cfg; /* sizes, tiles, stop and reuse are set by
-                                      the caller, capacities by the frame */
+    struct glint_flare_config cfg; /* configuration of the flare: the caller
+                                      sets sizes, tiles, stop and reuse, the
+                                      frame sets capacities */
     struct glint_dials dials;      /* quality parameters in use; may be changed
                                       between frames */
-    struct glint_dials asked;      /* requested quality parameters, before a
-                                      budget changes them */
-    double apart_px; /* distance of the images of two lights, pixels, below
+    struct glint_dials asked;      /* quality parameters that the caller
+                                      requested, before a budget changes them */
+    double apart_px; /* distance between the images of two lights, pixels, below
                         which they are merged */
     int only_ghost;  /* index of the only ghost drawn; -1: all ghosts */
-    /* tints of ghosts, as in struct glint_flare_frame, owned by the caller;
+    /* [ghost]: tints as in struct glint_flare_frame, owned by the caller;
      * ignored when the exposure is chosen */
     const struct glint_tint *tints;
-    /* the lamps with the engine's data (track, visibility), in the order in
-     * which they are drawn; or NULL */
+    /* the drawn lamps with the engine's data about them (track, visibility), in
+     * the order of drawing; NULL: no such data */
     const struct glint_engine_lamp *known;
-    struct glint_shade shade; /* shade of the stop without its finest levels,
-                                 which the quality does not need */
+    struct glint_shade shade; /* shade of the stop without the finest levels,
+                                 which the current quality does not use */
     struct glint_frame_picture picture;
     struct glint_frame_star star;
     struct glint_frame_veil veil;
-    struct glint_still still; /* static lights, whose rays are reused; for
-                                 models only */
-    struct glint_budget
-        budget; /* chooses quality parameters; for models only */
+    struct glint_still still; /* lights whose rays are reused while they hardly
+                                 move; for models only */
+    struct glint_budget budget; /* chooser of quality parameters for a time
+                                   budget; for models only */
     struct glint_frame_limits limits;
     struct glint_frame_lights lights;
     struct glint_frame_plan plan;
@@ -213,7 +218,7 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* Initialises FRAME for VIEW with the options of frame LIKE, but without its
+/* Initialises FRAME for VIEW. It gets all options of frame LIKE except the
  * budget. */
 void glint_frame_init_like(struct glint_frame *frame,
                            const struct glint_frame *like,
@@ -221,10 +226,10 @@ void glint_frame_init_like(struct glint_frame *frame,
 
 /* Reserves BYTES bytes for all following frames of up to N_LAMPS lamps, which
  * are merged to N_DRAWN lights. Drawing then allocates nothing. If a frame does
- * not fit, its grids become coarser; bundles that still do not fit are left out
- * and counted. MEM: a block of BYTES, aligned to 64, or NULL to allocate one.
- * Returns GLINT_E_MEMORY if memory is short, or if BYTES does not suffice for
- * one light. */
+ * not fit, its grids become coarser. Bundles that still do not fit are not
+ * drawn, and counted. MEM: a block of BYTES, aligned to 64, or NULL to allocate
+ * one. Returns GLINT_E_MEMORY if memory is short, or if BYTES does not suffice
+ * for one light. */
 enum glint_status glint_frame_reserve_memory(struct glint_frame *frame,
                                              void *mem, size_t bytes,
                                              int n_lamps, int n_drawn);
@@ -234,12 +239,12 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *frame,
  * cannot be drawn afterwards. */
 size_t glint_frame_compute_min_bytes(struct glint_frame *frame);
 
-/* Measures the time per predicted instruction on this machine, for the budget,
- * by drawing one lamp a few times. Returns GLINT_E_MEMORY on failure. */
+/* Draws one lamp a few times, and measures the time per predicted instruction
+ * on this machine for the budget. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_calibrate_budget(struct glint_frame *frame);
 
-/* Adds the flare of LAMPS, with powers times SCALE, to IMAGE, and sets REPORT.
- * Returns GLINT_E_MEMORY on failure. */
+/* Adds the flare of LAMPS to IMAGE, and sets REPORT. SCALE is a factor on the
+ * powers of the lamps. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    const struct glint_lamp *lamps, int n_lamps,
                                    double scale,
@@ -258,23 +263,23 @@ bool glint_frame_is_lamp_outside_model(const struct glint_frame *frame,
  * for exact rays. */
 double glint_frame_get_max_angle_deg(const struct glint_frame *frame);
 
-/* Sets how many points sample area lamps in the next frame. If IS_STILL, for a
- * still picture, there are more points per lamp (if MORE_POINTS) and more
- * points in total (if MORE_LIGHTS). If not, the requested numbers of
- * frame->asked are restored. */
+/* Sets the number of points that sample area lamps in the next frame. If
+ * IS_STILL, the frame is a still picture: it gets more points per lamp if
+ * MORE_POINTS, and more points in total if MORE_LIGHTS. Otherwise it gets the
+ * requested numbers of frame->asked. */
 void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
                                    bool more_points, bool more_lights);
 
-/* Initialises the flare again with the current cfg, in the memory that it has.
- */
+/* Initialises the flare again with the current cfg, in the memory block that
+ * the frame already has. */
 void glint_frame_apply_config(struct glint_frame *frame);
 
 /* Draws the flare of LAMPS without a picture: sets RGB, [height][width][3], to
  * the flare's linear light times GAIN. Internally, light is scaled by a power
  * of two, as large as the brightest pixel allows, so that faint light has a
- * fine resolution. If the brightest pixel turns out to be two octaves below the
- * limit, or clamped, the frame is drawn again with another scale, at most four
- * times in total. Returns GLINT_E_MEMORY on failure. */
+ * fine resolution. The frame is drawn again with another scale if the brightest
+ * pixel is two octaves below the limit, or clamped. It is drawn at most four
+ * times. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_draw_flare_alone(
     struct glint_frame *frame, const struct glint_lamp *lamps, int n_lamps,
     double gain, float *rgb, struct glint_engine_report *report);

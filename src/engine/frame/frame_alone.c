@@ -19,10 +19,10 @@ static uint32_t find_max_light_magnitude(const int32_t *linear_q20, size_t n)
     return peak;
 }
 
-/* Returns log2 of the factor by which a picture whose brightest pixel is PEAK
- * should be scaled up and drawn again. Returns 0 (do not draw again) instead of
- * 1, as one octave gains too little; and a negative value if light was clamped,
- * so that the true peak is unknown. */
+/* Returns log2 of the factor by which a picture with the brightest pixel PEAK
+ * should be scaled up and drawn again. Returns 0, for no further drawing,
+ * instead of 1, as one octave gains too little. Returns a negative value if
+ * light was clamped, so that the true peak is unknown. */
 static int choose_picture_scale_log2(uint32_t peak,
                                      struct glint_frame_scale scale)
 {

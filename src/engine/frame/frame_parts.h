@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Functions shared by the files of a frame: memory, lights, the memory block of
- * the run-time half (frame_room.c), and steps of the plan that frame_alone.c
- * also uses.
- */
+ * Functions shared by the files frame*.c: memory of a frame (frame_room.c), its
+ * lights, and the steps of its plan. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_PARTS_H
 #define GLINT_ENGINE_FRAME_FRAME_PARTS_H
 
@@ -25,15 +23,16 @@ static inline double read_frame_clock(const struct glint_frame *f)
     return f->clock ? f->clock() : 0;
 }
 
-/* Returns whether the flare is planned for a picture in codes: IMAGE is in
- * codes, or the flare will be added to codes later. */
+/* Returns whether the flare is planned for 8-bit codes: IMAGE has codes, or the
+ * flare will be added to codes later. */
 static inline bool is_planned_for_codes(const struct glint_frame *f,
                                         const struct glint_image *image)
 {
     return image->format != GLINT_LINEAR_Q20 || f->picture.for_codes;
 }
 
-/* Returns the focal length in pixels: pixels per unit tangent on the axis. */
+/* Returns the focal length in pixels, which is the number of pixels per unit of
+ * an angle's tangent on the axis. */
 double glint_frame_compute_pixels_per_tangent(const struct glint_frame *frame);
 
 /* Returns whether each ghost is drawn with one of the setup's sets of
@@ -51,8 +50,8 @@ enum glint_status glint_frame_allocate_dim_table(struct glint_frame *frame);
  * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_allocate_ghost_data(struct glint_frame *frame);
 
-/* Marks all nodes of the table of dim ghosts as not computed if stop opening,
- * wavelengths or pixel size have changed. */
+/* Marks all nodes of the table of dim ghosts as not computed if the table is
+ * outdated: stop opening, wavelengths or pixel size have changed. */
 void glint_frame_clear_stale_dim_table(struct glint_frame *f);
 
 /* Replaces the memory block by one for the current capacities, and initialises
@@ -67,11 +66,11 @@ bool glint_frame_select_dust_tables(struct glint_frame *frame);
  * memory is reserved. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *frame);
 
-/* If each light of the frame lies within the chord NEAR_Q30 of a light of the
- * last plan, replaces the lights by the planned ones and sets factors on their
- * colours, so that traced rays are reused. Does nothing unless still_px is
- * above 0, frames are reused, and reserved memory has capacity. Returns
- * GLINT_E_MEMORY on failure. */
+/* Reuses traced rays for lights that hardly move. If each light of the frame
+ * lies within the chord NEAR_Q30 of a light of the last plan, replaces the
+ * lights by the planned ones, and sets factors on their colours. Does nothing
+ * unless still_px is above 0, frames are reused, and reserved memory has
+ * capacity. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_use_static_lights(struct glint_frame *frame,
                                                 int32_t near_q30);
 
@@ -79,10 +78,10 @@ enum glint_status glint_frame_use_static_lights(struct glint_frame *frame,
  */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
-/* Returns true if the result of binning, STATS, can be drawn: all edges fitted,
- * or memory cannot grow. Otherwise raises the capacities, or makes grids
- * coarser if the capacities would exceed the memory limit, and returns false:
- * the frame has to be planned again. */
+/* Returns true if the frame can be drawn after binning with the result STATS:
+ * all edges fitted, or memory cannot grow. Otherwise it raises the capacities.
+ * If these would exceed the memory limit, it makes grids coarser instead. It
+ * then returns false, and the frame must be planned again. */
 bool glint_frame_fit_capacity(struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
@@ -91,13 +90,13 @@ bool glint_frame_fit_capacity(struct glint_frame *frame,
 size_t glint_frame_count_used_bytes(const struct glint_frame *frame,
                                     const struct glint_flare_stats *stats);
 
-/* Returns the number of bytes with which all of the frame would have been drawn
- * at the requested quality. */
+/* Returns the number of bytes that are needed to draw the complete frame at the
+ * requested quality. */
 size_t glint_frame_count_needed_bytes(const struct glint_frame *frame,
                                       const struct glint_flare_stats *stats);
 
-/* Plans the flare of LAMPS, without drawing it, and sets *SCALE to the factors
- * by which it may be scaled, or to {0, 0} if there is no light. Returns
+/* Plans the flare of LAMPS without drawing it. Sets *SCALE to the factors by
+ * which its light may be scaled, or to {0, 0} if there is no light. Returns
  * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
                                             const struct glint_lamp *lamps,
@@ -111,24 +110,24 @@ double glint_frame_convert_codes_to_light(const struct glint_frame *frame,
                                           const struct glint_image *image,
                                           double codes);
 
-/* Returns whether GHOST, a ghost of SETUP or a part of one, belongs to the same
- * pair of surfaces as ghost NUMBER. */
+/* Returns whether GHOST comes from the same pair of surfaces as ghost NUMBER.
+ * Both are ghosts of SETUP or parts of such ghosts. */
 bool glint_frame_is_part_of_ghost(const struct glint_setup *setup, int ghost,
                                   int number);
 
-/* Returns the number of the ghost of SETUP of which GHOST is a part; GHOST
- * itself if it is not a part. */
+/* Returns the number of the ghost of SETUP of which GHOST is a part. Returns
+ * GHOST if it is a complete ghost. */
 int glint_frame_find_ghost_number(const struct glint_setup *setup, int ghost);
 
 /* Lowers max_lights until probing all bundles costs at most half of the frame's
- * limit of work. Returns whether it did; lights then have to be merged again.
- */
+ * limit of work. Returns whether it lowered max_lights. If so, lights must be
+ * merged again. */
 bool glint_frame_limit_probing(struct glint_frame *f);
 
-/* Reduces quality parameters if the plan would exceed the rest of the frame's
- * limit of work: first the fineness of grids, then wavelengths, then lights.
- * Returns whether it did; the frame then has to be planned again, at most a
- * dozen times. */
+/* Reduces quality parameters if the plan would exceed the remaining limit of
+ * work: first the fineness of grids, then wavelengths, then lights. Returns
+ * whether it reduced any. If so, the frame must be planned again; this happens
+ * at most a dozen times. */
 bool glint_frame_limit_work(struct glint_frame *f);
 
 #endif

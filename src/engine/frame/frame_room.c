@@ -11,18 +11,18 @@
 
 /* max number of bundles of a frame */
 enum { MAX_BUNDLES = 1 << 20 };
-/* min fineness to which limits of memory and work reduce grids */
+/* min fineness of grids that the limits of memory and work may cause */
 enum { LEAST_FINENESS = 8 };
 /* Factor on the capacity for primitives, because workers fill their ranges
- * unevenly. Memory limits include it even for one worker, so that pictures do
- * not depend on the number of workers; for one worker this overestimates the
- * memory. */
+ * unevenly. Memory limits assume it for one worker, too, so that pictures do
+ * not depend on the number of workers. This overestimates the memory of one
+ * worker. */
 #define UNEVEN 1.5
-/* Grids are made coarser until the frame needs this fraction of the memory
- * limit; below 1, as grids have integer numbers of cells. */
+/* fraction of the memory limit to which coarser grids reduce a frame; below 1,
+ * as grids have integer numbers of cells */
 #define ROOM_SHARE 0.9
-/* If coarser grids still needed more than this fraction of the memory before,
- * grids are not made coarser again. */
+/* If coarser grids still need more than this fraction of the memory of the
+ * previous grids, grids are not made coarser again. */
 #define NO_GAIN 0.98
 
 bool glint_frame_has_wave_sets(const struct glint_frame *f)
@@ -51,7 +51,7 @@ static int clamp_bundle_count(double n)
 }
 
 /* Returns the number of bundles of N_LIGHTS lights in the waves of the first
- * wave set, or in all waves if there are no sets. */
+ * wave set. If there are no sets, all waves count. */
 static int count_bundles_of_first_wave_set(const struct glint_frame *f,
                                            int n_lights)
 {
@@ -67,8 +67,8 @@ static size_t compute_frame_memory_limit(const struct glint_frame *f)
     return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
 
-/* Returns the frame's configuration with the capacities that STATS, the result
- * of binning, needs. */
+/* Returns the frame's configuration with the capacities that are needed
+ * according to STATS, the result of binning. */
 static struct glint_flare_config
 make_config_with_needed_capacity(const struct glint_frame *f,
                                  const struct glint_flare_stats *s)
@@ -82,10 +82,11 @@ make_config_with_needed_capacity(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes that the configuration of
- * make_config_with_needed_capacity() needs with one worker and UNEVEN times the
- * primitives, so that the result does not depend on the number of workers. Sets
- * FIXED to the part of these bytes that coarser grids do not save. */
+/* Returns the bytes of memory that the configuration of
+ * make_config_with_needed_capacity() needs. It assumes one worker and UNEVEN
+ * times the primitives, so that the result does not depend on the number of
+ * workers. FIXED receives the number of these bytes that do not depend on the
+ * fineness of grids. */
 static double estimate_flare_bytes(const struct glint_frame *f,
                                    const struct glint_flare_stats *s,
                                    double *fixed)
@@ -101,9 +102,9 @@ static double estimate_flare_bytes(const struct glint_frame *f,
     return bytes;
 }
 
-/* Sets the capacities of the frame's configuration to PRIMITIVES and twice as
- * many references to them. Returns the bytes that the configuration then needs.
- */
+/* Sets the capacities of the frame's configuration: PRIMITIVES primitives and
+ * twice as many references to them. Returns the bytes that the configuration
+ * then needs. */
 static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
 {
     f->cfg.max_primitives = primitives;
@@ -112,8 +113,7 @@ static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
 }
 
 /* Sets the capacities of the frame's configuration to the max that fits into
- * BYTES, by binary search. Returns false if not even one primitive fits.
- */
+ * BYTES, by binary search. Returns false if no primitive fits. */
 static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
 {
     int most = 0;
@@ -127,15 +127,15 @@ static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
     return most > 0 && set_primitive_capacity(f, most) <= bytes;
 }
 
-/* Returns the number of primitives with which set_primitive_capacity() would
- * give enough capacity for primitives and references of STATS. */
+/* Returns the number of primitives that set_primitive_capacity() needs to
+ * provide enough primitives and references for S. */
 static double count_needed_primitives(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
 
-/* Makes grids coarser if the memory that STATS needs exceeds the limit or the
- * reserved memory. Returns whether it did. The result depends neither on the
+/* Makes grids coarser if the memory that S requires exceeds the limit or the
+ * reserved memory. Returns whether it did so. The result depends neither on the
  * number of workers nor on earlier frames. A block that is not reserved grows
  * to its limit, so that the coarser grids fit. */
 static bool coarsen_grids_to_memory(struct glint_frame *f,
@@ -203,8 +203,8 @@ enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
         bytes = glint_flare_bytes(&f->cfg);
     }
 
-    /* A block of the right size is reused, as in a video whose frames all reach
-     * the limit. */
+    /* A block of the right size is reused. This happens in videos where every
+     * frame reaches the limit. */
     if (!f->memory.block || f->memory.bytes != bytes) {
         free(f->memory.mem);
         f->memory.bytes = 0;
@@ -295,8 +295,8 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
 
     f->dials.max_lights =
         min_int(f->dials.max_lights, min_int(n_drawn, n_lamps));
-    /* twice the bundles of the first wave set suffice, as not all ghosts are
-     * visible, and few need a larger set */
+    /* Twice the bundles of the first wave set suffice, as not all ghosts are
+     * visible, and few ghosts need a larger set. */
     f->cfg.max_bundles = clamp_bundle_count(
         (glint_frame_has_wave_sets(f) ? 2. : 1) *
         count_bundles_of_first_wave_set(f, f->dials.max_lights));
@@ -309,8 +309,8 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
     f->cfg.workers = workers;
     if (!fit_capacity_to_bytes(f, bytes))
         return GLINT_E_MEMORY;
-    /* Everything is allocated now, as quality parameters may change later, when
-     * nothing may be allocated. */
+    /* Everything is allocated here, as quality parameters may change later,
+     * when allocation is not allowed. */
     if (glint_frame_allocate_ghost_data(f) != GLINT_OK ||
         (f->lens && glint_frame_allocate_dim_table(f) != GLINT_OK) ||
         glint_frame_allocate_lights(f, n_lamps) != GLINT_OK ||
@@ -362,7 +362,7 @@ bool glint_frame_limit_probing(struct glint_frame *f)
 {
     enum {
         RAYS = 200
-    }; /* number of rays of a small and a large probe together */
+    }; /* number of rays of a small and of a large probe together */
     const int waves = glint_frame_has_wave_sets(f) ? f->setup->set_size[0]
                                                    : f->setup->n_wavelengths;
     const double light =
@@ -380,8 +380,8 @@ bool glint_frame_limit_probing(struct glint_frame *f)
     return f->limits.is_held = true;
 }
 
-/* Returns whether dust causes more than half of COST and can be drawn coarser.
- */
+/* Returns whether dust causes more than half of COST, and coarser tables of
+ * dust are available. */
 static bool is_cost_mostly_dust(const struct glint_frame *f,
                                 const struct glint_cost_plan *plan,
                                 const struct glint_cost *cost)
@@ -392,9 +392,9 @@ static bool is_cost_mostly_dust(const struct glint_frame *f,
                glint_cost_convert_to_minsn(cost);
 }
 
-/* Makes dust tables and grids coarser step by step until PLAN costs at most
- * MINSN, or they are the coarsest. Returns the resulting cost, millions of
- * instructions. */
+/* Makes dust tables and grids coarser, step by step, until PLAN costs at most
+ * MINSN or they are as coarse as possible. Returns the resulting cost, millions
+ * of instructions. */
 static double coarsen_grids_to_minsn(struct glint_frame *f,
                                      const struct glint_cost_plan *plan,
                                      double minsn)
@@ -418,8 +418,8 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
     return glint_cost_convert_to_minsn(&cost);
 }
 
-/* Limits each ghost to three wavelengths. MINSN is the cost of the plan;
- * returns the estimated cost with three wavelengths, both millions of
+/* Limits each ghost to three wavelengths. MINSN is the cost of the plan before.
+ * Returns the estimated cost after. The unit of both is millions of
  * instructions. */
 static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
 {
@@ -434,8 +434,8 @@ static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
     return minsn * fmin(1, WAVES * jobs / fmax(1, n));
 }
 
-/* Also works before the plan is drawn, so that its cost can be predicted.
- */
+/* The result is also valid before the plan is drawn, so that its cost can be
+ * predicted. */
 struct glint_cost_plan glint_frame_make_cost_plan(const struct glint_frame *f)
 {
     return (struct glint_cost_plan){

@@ -10,41 +10,45 @@
 #include "engine/frame/frame_parts.h"
 
 /* Factor on cull_codes for starbursts, which fade out smoothly, unlike the
- * edges of ghosts. With half or an eighth of it pictures come no nearer to
- * those with all light; four times as much costs 0.2 dB and saves 2 of 9
- * million instructions (a lamp of 12 stops, 1920x1080). */
+ * edges of ghosts. Smaller factors, 1 and 1/4, do not bring pictures nearer to
+ * those with all light. A factor of 8 costs 0.2 dB and saves 2 of 9 million
+ * instructions (a lamp of 12 stops, 1920x1080). */
 #define STAR_CULL 2
 
-/* Max distance of a starburst's lamp from the picture's top left corner,
- * pixels, along x and y; lamps farther away are skipped. */
+/* max distance, along x and along y, of a lamp from the picture's top left
+ * corner, pixels; starbursts of lamps farther away are not drawn */
 static const double most_px = 1 << 16;
 
 /* Radius of the image of a point light in a sharp picture, pixels. */
 static const double least_px = 1.5;
 
 /* Limits of the estimated power of a lamp that is clipped in the picture, from
- * starbursts in real photographs. Far from a lamp, the light of its starburst
- * summed over a circle around it, times the square of the radius, is 0.22 times
- * power, wavelength and f-number, whatever the blades. For 10 lamps in two
- * photographs by night, at f/22, the power computed from this is 7 to 166 times
- * the power estimated from clipped pixels, and 0.37 to 3.4 times (median 0.5)
- * the power with which the mean of the starburst is white at the rim of the
- * lamp's image (tests/figures/stars.md). The smaller of both limits applies. */
+ * starbursts in real photographs. The smaller of both limits applies.
+ * clipped_times is relative to the power estimated from clipped pixels,
+ * white_share to the power with which the mean of the starburst is white at the
+ * rim of the lamp's image. Far from a lamp, the light of its starburst summed
+ * over a circle around it, times the square of the radius, is 0.22 times power,
+ * wavelength and f-number, whatever the blades. For 10 lamps in two photographs
+ * by night, at f/22, the power computed from this is 7 to 166 times the power
+ * estimated from clipped pixels, and 0.37 to 3.4 times (median 0.5) the power
+ * at the rim (tests/figures/stars.md). */
 static const double clipped_times = 32, white_share = 0.5;
 
-/* Power of a lamp divided by the area of its white spot, 1 = white: up to HAZY
- * the rim of the spot is lit haze, from GLARING on it is glare of a small lamp.
- * Suns in clear skies have 4 to 50, glints and lit haze 0.6 to 1.2. */
+/* Power of a lamp divided by the area of its white spot, 1 = white. Up to HAZY
+ * the rim of the spot is lit haze. From GLARING on it is the glare of a small
+ * lamp. Suns in clear skies have 4 to 50, glints and lit haze 0.6 to 1.2. */
 static const double hazy = 1, glaring = 5;
 
-/* Max fraction of the time budget for starbursts. If they would take more,
- * their faintest light is left out, up to 2^BUDGET_STEPS times what cull_codes
- * requests; if they still take more, starbursts are not drawn. */
+/* Max fraction of the time budget for starbursts. If they would take more time,
+ * their faintest light is left out. The threshold is raised up to
+ * 2^BUDGET_STEPS times the threshold of cull_codes. If that is not enough,
+ * starbursts are not drawn. */
 static const double budget_share = 0.25;
 enum { BUDGET_STEPS = 8 };
 
-/* Wavelength times f-number, divided by the picture's diagonal, for the camera
- * that took the picture, assumed to be at f/22 with a sensor of 36 x 24 mm. */
+/* Wavelength times f-number of the camera that took the picture, divided by the
+ * picture's diagonal. The camera is assumed to be at f/22, with a sensor of 36
+ * x 24 mm. */
 static const double photo_airy = 0.55e-3 * 22 / 43.27;
 
 static struct glint_star_optics make_star_optics(const struct glint_frame *f)
@@ -68,8 +72,8 @@ static bool are_star_optics_equal(const struct glint_star_optics *a,
            a->f_number == b->f_number && a->pixel_um == b->pixel_um;
 }
 
-/* Computes the smear (diffraction by dirt in the stop) again if the dirt has
- * changed. Sets IS_NEW to whether it has. */
+/* Computes the smear again if the dirt in the stop has changed. The smear is
+ * the diffraction by this dirt. Sets IS_NEW to whether it has changed. */
 static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
 {
     struct glint_frame_star *s = &f->star;
@@ -155,8 +159,8 @@ size_t glint_frame_star_count_bytes(const struct glint_frame *f)
            f->veil.bytes + (f->veil.table ? f->veil.table->bytes : 0);
 }
 
-/* Returns lamp I with its full power for the starburst; LAMPS have the powers
- * of their ghosts, which the exposure may have reduced. */
+/* Returns lamp I with its full power for the starburst. LAMPS have the powers
+ * from which ghosts are drawn, which the exposure may have reduced. */
 static const struct glint_lamp *get_star_lamp(const struct glint_frame *f,
                                               const struct glint_lamp *lamps,
                                               int i)
@@ -164,12 +168,12 @@ static const struct glint_lamp *get_star_lamp(const struct glint_frame *f,
     return f->known ? &f->known[i].lamp : &lamps[i];
 }
 
-/* Appearance of a lamp in the picture. */
+/* The appearance of a lamp in the picture. */
 struct seen {
-    double radius_px; /* radius of a disc of the same RMS extent, pixels; 0 if
-                         unknown */
-    double hidden_px; /* max radius of a lamp that the rim of the spot may hide,
-                         pixels: the min semi-axis of lamps in still pictures
+    double radius_px; /* radius of a uniform disc of the same RMS extent,
+                         pixels; 0 if unknown */
+    double hidden_px; /* max radius, pixels, of a lamp whose image is such a
+                         spot: the min semi-axis of lamps in still pictures
                          (engine/detector.c) */
     double level;
     bool is_bare; /* true: the lamp is not visible in the picture */
@@ -185,8 +189,10 @@ static struct seen find_lamp_appearance(const struct glint_frame *f, int i)
                          f->star.is_bare || (lamp && lamp->seen_px < 0)};
 }
 
-/* Returns POWER, in white times pixels of the brightest channel; if the picture
- * clips the lamp, returns a higher estimate of its true power. */
+/* Returns an estimate of the true power of a lamp in its brightest channel,
+ * white times pixels. If the picture clips the lamp, it is higher than POWER,
+ * the power found in the picture; otherwise it is POWER. SEEN is the lamp's
+ * appearance. */
 static double estimate_unclipped_power(const struct glint_frame *f,
                                        const struct seen *seen, double power)
 {
@@ -197,17 +203,16 @@ static double estimate_unclipped_power(const struct glint_frame *f,
                                : power;
 }
 
-/* Returns the radius in pixels of the disc of a lamp, whose white spot in the
- * picture is SEEN. FOUND: light found, POWER: estimated true power, OWN_PX:
- * radius that the finder assigns to the lamp. If FOUND is much brighter than
- * the white spot, the soft rim of the spot is glare of a small lamp, and the
- * radius is OWN_PX; if not, it is lit haze, and the radius is nearly that of
- * the spot; in between both are blended. Even a point light has a white spot,
- * whose radius is least_px plus that at which the mean of its starburst over a
- * circle is white; the square of this radius is subtracted from the square of
- * the spot's radius. The result is at least hidden_px, so that lamps of videos
- * are as wide as those of still pictures.
- */
+/* Returns the radius, pixels, of the disc of a lamp. SEEN: its white spot in
+ * the picture; FOUND: light found; POWER: estimated true power; OWN_PX: radius
+ * that the finder assigns to the lamp. If FOUND is much brighter than the white
+ * spot, the soft rim of the spot is glare of a small lamp, and the radius is
+ * OWN_PX. If not, the rim is lit haze, and the radius is nearly that of the
+ * spot. Between these cases both radii are blended. Even a point light has a
+ * white spot. Its radius is least_px plus the radius at which the mean of its
+ * starburst over a circle is white. The square of this sum is subtracted from
+ * the square of the spot's radius. The result is at least hidden_px, so that
+ * lamps of videos are as wide as those of still pictures. */
 static double compute_lamp_disc_radius(const struct glint_frame *f,
                                        const struct seen *seen, double found,
                                        double power, double own_px)
@@ -226,8 +231,8 @@ static double compute_lamp_disc_radius(const struct glint_frame *f,
     return fmax(least, rest_px + glare * (least - rest_px));
 }
 
-/* Converts LAMP, with its power times SCALE, to LIGHT. Returns false if LAMP is
- * too far from the picture or has no light. */
+/* Converts LAMP to LIGHT; SCALE is a factor on its power. Returns false if LAMP
+ * is too far from the picture or has no light. */
 static bool convert_lamp_to_star_light(const struct glint_frame *f,
                                        const struct glint_lamp *lamp,
                                        double scale, const struct seen *seen,
@@ -271,9 +276,9 @@ static int is_star_power_higher(const void *a, const void *b)
     return p->y_q8 < q->y_q8 ? -1 : p->y_q8 > q->y_q8;
 }
 
-/* Sets the starbursts of N_LIGHTS lights. Light below FAINTEST is left out, or,
- * if the cost exceeds budget_share of the budget, below the smallest higher
- * limit with which it does not. */
+/* Sets the starbursts of N_LIGHTS lights. Light below FAINTEST is left out. If
+ * the cost exceeds budget_share of the budget, FAINTEST is raised by the
+ * smallest step that avoids it. */
 static void set_star_lights_within_budget(struct glint_frame *f, int n_lights,
                                           double faintest)
 {
@@ -309,7 +314,7 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
     if (!(s->share > 0) || n == 0)
         return GLINT_OK;
     status = glint_frame_star_allocate(f, n);
-    /* no starburst if dirt in the stop blocks all light */
+    /* There is no starburst if dirt in the stop blocks all light. */
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
@@ -372,7 +377,7 @@ enum glint_status glint_frame_star_draw_alone(struct glint_frame *frame,
     const size_t samples = 3 * (size_t)width * (size_t)height;
     struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
-    /* no pixel can get more than the light of one lamp in total */
+    /* No pixel can get more than the total light of one lamp. */
     const double most =
         find_max_star_power(frame, lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Unit conversions of a frame: pixels per unit tangent, light per code, and the
- * powers of two by which light may be scaled.
- */
+ * Converts units of a frame: angles to pixels, and codes to light. Computes the
+ * powers of two by which light may be scaled. */
 #include <math.h>
 
 #include "engine/frame/frame_parts.h"

@@ -8,9 +8,9 @@
 #include "engine/frame/block.h"
 #include "engine/frame/frame_parts.h"
 
-/* The kernel of veiling glare, as a sum of Gaussians. Half of the glare is
- * uniform over the picture, like light scattered by barrel and camera body.
- * Sigmas are fractions of the picture's diagonal; 0: uniform. */
+/* The kernel of veiling glare, a sum of Gaussians. Half of the glare is uniform
+ * over the picture, like light that barrel and camera body scatter. Sigmas are
+ * fractions of the picture's diagonal; a sigma of 0 means uniform. */
 static const struct {
     double sigma, share;
 } glare[] = {{0.08, 0.25}, {0.25, 0.25}, {0, 0.5}};
@@ -23,8 +23,8 @@ static const struct {
  * */
 static const double haze_deg[] = {1.25, 2.5, 5, 10};
 
-/* Min sigma of a Gaussian, cells; a narrower one would make the cells visible.
- */
+/* min sigma of a Gaussian, in cells of the coarse picture that is blurred; with
+ * a smaller sigma the cells would be visible */
 static const double least_sigma = 1;
 
 enum {
@@ -46,8 +46,8 @@ static bool are_front_optics_equal(const struct glint_front_optics *a,
            a->roundness == b->roundness;
 }
 
-/* Computes the table of dirt on the front element again if the dirt or the
- * frame's optics have changed. */
+/* Computes the table of dirt on the front element if the dirt or the frame's
+ * optics have changed. */
 static enum glint_status update_front_table(struct glint_frame *f)
 {
     struct glint_frame_veil *v = &f->veil;
@@ -116,8 +116,8 @@ enum glint_status glint_frame_veil_read_picture(struct glint_frame *f,
 
 /* ------------------------------------------------------------------ kernels */
 
-/* Sets TABLE to a Gaussian kernel of SIGMA cells (0: uniform) over N cells and
- * their mirror images; see struct glint_veil_spread. */
+/* Sets TABLE to a Gaussian kernel of SIGMA cells over N cells and their mirror
+ * images (struct glint_veil_spread). If SIGMA is 0, the kernel is uniform. */
 static void compute_gaussian_table(int32_t *table_q30, int n, double sigma)
 {
     double at[GLINT_VEIL_CELLS + 1], sum = 0;
@@ -136,11 +136,11 @@ static void compute_gaussian_table(int32_t *table_q30, int n, double sigma)
         table_q30[d] = (int32_t)lrint(at[d] / sum * 0x1p30);
         rest -= (d == n ? 1 : 2) * table_q30[d];
     }
-    table_q30[0] = rest; /* makes the weights sum to exactly 1 */
+    table_q30[0] = rest; /* This makes the sum of the weights exactly 1. */
 }
 
-/* Returns a Gaussian kernel of SIGMA pixels (0: uniform) that scatters the
- * fraction SHARE of all light. */
+/* Returns a Gaussian kernel of SIGMA pixels that scatters the fraction SHARE of
+ * all light. If SIGMA is 0, the kernel is uniform. */
 static struct glint_veil_spread
 make_gaussian_spread(const struct glint_frame *f, double sigma, double share)
 {
@@ -168,15 +168,16 @@ static double get_front_scattered_fraction(const struct glint_frame_veil *v)
     return v->front && v->table ? v->table->mean : 0;
 }
 
-/* Returns all light / light that is not scattered by glare, haze and dirt. */
+/* Returns all light divided by the light that glare, haze and dirt do not
+ * scatter. */
 static double compute_total_over_direct_light(const struct glint_frame_veil *v)
 {
     return 1 / (1 - fmin(v->glare + v->haze + get_front_scattered_fraction(v),
                          GLINT_MOST_VEIL));
 }
 
-/* Sets SPREADS to the kernels of haze that scatter the fraction SHARE in total.
- * Returns their number. */
+/* Sets SPREADS to the kernels of haze, which together scatter the fraction
+ * SHARE of all light. Returns the number of kernels. */
 static int set_haze_spreads(const struct glint_frame *f, double share,
                             struct glint_veil_spread spreads[N_HAZE])
 {
@@ -189,8 +190,8 @@ static int set_haze_spreads(const struct glint_frame *f, double share,
     return N_HAZE;
 }
 
-/* Sets SPREADS to the kernels of the frame's glare and haze. Returns their
- * number. */
+/* Sets SPREADS to the kernels of glare and haze of the frame. Returns the
+ * number of kernels. */
 static int set_veil_spreads(const struct glint_frame *f,
                             struct glint_veil_spread spreads[N_GLARE + N_HAZE])
 {
@@ -207,8 +208,8 @@ static int set_veil_spreads(const struct glint_frame *f,
     return n;
 }
 
-/* Computes the light that dirt on the front element scatters, for the max cover
- * of its table; no-op without dirt. */
+/* Computes the light that dirt on the front element scatters where its cover is
+ * at the max of the table. Does nothing without dirt. */
 static void spread_front_dirt_light(const struct glint_frame *f)
 {
     const struct glint_frame_veil *v = &f->veil;
@@ -222,8 +223,8 @@ static void spread_front_dirt_light(const struct glint_frame *f)
                 spreads));
 }
 
-/* For off-screen lamps, a Gaussian with this sigma, a fraction of the picture's
- * diagonal, replaces the uniform part of the glare. */
+/* sigma, as a fraction of the picture's diagonal, of the Gaussian that replaces
+ * the uniform part of the glare for off-screen lamps */
 static const double even_sigma = 0.5;
 
 /* Returns the value of a Gaussian at distance FAR divided by its value at the
@@ -233,8 +234,9 @@ static double compute_gaussian_falloff(double far, double sigma)
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
-/* Returns the veil of a lamp FAR pixels off-screen / its veil if it were at the
- * border of the picture. Each kernel falls by its own Gaussian. */
+/* Returns the veil of a lamp that is FAR pixels off-screen divided by the veil
+ * that it would have at the border of the picture. Each kernel falls off by its
+ * own Gaussian. */
 static double compute_offscreen_fraction(const struct glint_frame *f,
                                          double far)
 {
@@ -256,12 +258,12 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
     return sum / fmax(v->glare + haze, 1e-9);
 }
 
-/* Cost that dirt on the front element adds to a pixel / cost of the pixel
- * without it. */
+/* cost that dirt on the front element adds to a pixel / cost of a pixel without
+ * dirt */
 static const double front_pixels = 0.4;
 
-/* The unit of cost is drawing one pixel; convolving the light of one cell with
- * another costs 1 / SPREADING. */
+/* The cost is counted in drawn pixels. Convolving the light of one cell with
+ * another costs 1 / SPREADING of a pixel. */
 double glint_frame_veil_estimate_cost_px(const struct glint_frame *f)
 {
     const double spreading = 14;

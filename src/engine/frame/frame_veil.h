@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The veil of a frame: the fraction of all light that the lens and dirt on it
- * scatter over the picture. */
+ * Draws the veil of a frame, which is the light that the lens and the dirt on
+ * it scatter over the picture. */
 #ifndef GLINT_ENGINE_FRAME_FRAME_VEIL_H
 #define GLINT_ENGINE_FRAME_FRAME_VEIL_H
 
@@ -15,16 +15,16 @@
 struct glint_frame;
 
 struct glint_frame_veil {
-    /* Fractions of all light that are scattered. glare: veiling glare of the
-     * lens (ISO 9358), over the whole picture; haze: light that a uniformly
-     * dirty front element scatters by 1 to 10 degrees. 0: none. */
+    /* Scattered light as a fraction of all light; 0: none. glare: veiling glare
+     * of the lens (ISO 9358), over the whole picture. haze: light that a
+     * uniformly dirty front element scatters by 1 to 10 degrees. */
     double glare, haze;
-    /* Dust, scratches or a mask on the front element, or NULL, owned by the
-     * caller: scatters light like haze, but only in the out-of-focus discs of
-     * the dirt. */
+    /* Dust, scratches or a mask on the front element, owned by the caller;
+     * NULL: none. They scatter light as haze does, but only within the
+     * out-of-focus discs of the dirt. */
     const struct glint_front_dirt *front;
-    /* factor on the veil if the flare is drawn without a picture; 0: the same
-     * factor as on the flare */
+    /* factor on the veil of a flare that is drawn without a picture; 0: the
+     * factor on the flare */
     double alone_gain;
 
     /* Private. */
@@ -32,12 +32,13 @@ struct glint_frame_veil {
     void *mem;
     size_t bytes;   /* size of MEM, bytes */
     bool has_front; /* true: VEIL has memory for dirt on the front element */
-    /* table of dirt on the front element; dirt and optics for which it was
-     * computed */
+    /* table: table of dirt on the front element; table_of, table_for: the dirt
+     * and the optics for which it was computed */
     struct glint_front_table *table;
     const struct glint_front_dirt *table_of;
     struct glint_front_optics table_for;
-    bool has_look; /* true: the light of this frame's picture has been read */
+    bool has_look; /* true: the light of the picture has been read for this
+                      frame */
     bool is_set;   /* true: the veil has been computed for this frame */
 };
 
@@ -50,24 +51,24 @@ bool glint_frame_has_veil(const struct glint_frame *frame);
 enum glint_status glint_frame_veil_allocate(struct glint_frame *frame);
 
 /* Reads the light of IMAGE, whose white has the linear light WHITE, for the
- * next frame. Required only if that frame is drawn onto another picture;
- * otherwise drawing reads the picture. Does nothing without a veil. Returns
- * GLINT_E_MEMORY on failure. */
+ * next frame. This is only necessary if that frame is drawn onto another
+ * picture. Otherwise drawing reads its own picture. Does nothing without a
+ * veil. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_read_picture(struct glint_frame *frame,
                                                 const struct glint_image *image,
                                                 double white);
 
-/* Computes the veil from the light of LAMPS and of IMAGE, or of the picture
- * that was read before. Does nothing without a veil. Returns GLINT_E_MEMORY on
- * failure. */
+/* Computes the veil from the light of LAMPS and of IMAGE. If a picture has been
+ * read before, its light replaces that of IMAGE. Does nothing without a veil.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_set_light(struct glint_frame *frame,
                                              const struct glint_lamp *lamps,
                                              int n,
                                              const struct glint_image *image);
 
-/* Adds the veil of this frame, times TIMES, to RGB, [height][width][3], linear
- * light. LINEAR_Q20, of the same size, is scratch memory and is overwritten.
- * Does nothing without a veil. */
+/* Adds the veil of this frame times the factor TIMES to RGB,
+ * [height][width][3], linear light. LINEAR_Q20, of the same size, is scratch
+ * memory and is overwritten. Does nothing without a veil. */
 void glint_frame_veil_add_to_rgb(struct glint_frame *frame, double times,
                                  int32_t *linear_q20, float *rgb);
 
@@ -80,8 +81,8 @@ enum glint_status glint_frame_veil_draw_alone(struct glint_frame *frame,
 
 void glint_frame_veil_finish(struct glint_frame_veil *veil);
 
-/* Returns the cost of drawing the veil of FRAME, as the number of pixels that
- * cost as much. */
+/* Returns the cost of drawing the veil of FRAME, in units of the cost of
+ * drawing a pixel. */
 double glint_frame_veil_estimate_cost_px(const struct glint_frame *frame);
 
 #endif

@@ -14,7 +14,8 @@ enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
 /* ---------------------------------------------------------------- the front */
 
 /* Returns the fraction of the front element that the mask covers at (X, Y), in
- * front radii: the value of the nearest pixel; 0 without a mask. */
+ * front radii. It is the value of the mask's nearest pixel, or 0 without a
+ * mask. */
 static double read_mask_covered_fraction(const struct glint_front *f, double x,
                                          double y)
 {
@@ -24,8 +25,8 @@ static double read_mask_covered_fraction(const struct glint_front *f, double x,
     return f->mask ? 1 - f->mask[(ptrdiff_t)j * f->mask_width + i] / 255. : 0;
 }
 
-/* Sets the running sums, along the rows of DIRT, of the fraction of each cell
- * that is covered. Outside the rim the cover is 0. */
+/* Computes the covered fraction of each cell of DIRT, and sets the running sums
+ * of these fractions along rows. Outside the rim the cover is 0. */
 static void sum_cover_along_rows(struct glint_front_dirt *dirt,
                                  const struct glint_front *f,
                                  const struct glint_dust *dust)
@@ -96,16 +97,17 @@ void glint_front_free(struct glint_front_dirt *dirt)
 
 /* ---------------------------------------------------------------- the stop */
 
-/* The opening of the stop as strips parallel to x, of equal height. */
+/* The opening of the stop, divided into strips of equal height parallel to
+ * x. */
 struct chords {
     int n;
     double y[MOST_CHORDS], from[MOST_CHORDS], to[MOST_CHORDS]; /* stop radii */
     double all; /* sum of the lengths of all chords, stop radii */
 };
 
-/* Divides the stop of SETUP, whose image on the front element has the radius
- * RADIUS in front radii, into chords: one per row of cells of the front
- * element, up to the max number. */
+/* Divides the stop of SETUP into strips, which are stored as chords. RADIUS is
+ * the radius of the stop's image on the front element, in front radii. There is
+ * one chord per row of cells of the front element, up to the max number. */
 static void divide_stop_into_chords(struct chords *c,
                                     const struct glint_setup *setup,
                                     double radius)
@@ -133,7 +135,7 @@ static void divide_stop_into_chords(struct chords *c,
 }
 
 /* Returns the integral of the covered fraction along a row of cells, from the
- * row's left end to X, in cells. */
+ * left end of ROW to X. X and the result are in cells. */
 static double integrate_cover_along_row(const float *row, double x)
 {
     const double at = fmin(fmax(x, 0), SIDE);
@@ -142,8 +144,9 @@ static double integrate_cover_along_row(const float *row, double x)
     return (double)row[i] + (at - i) * (double)(row[i + 1] - row[i]);
 }
 
-/* Returns the integral of the covered fraction of row J along chord K of a stop
- * centred at MIDDLE, in cells. SCALE: cells per stop radius. */
+/* Returns the integral of the covered fraction of row J along chord K, in
+ * cells. The centre of the stop is at MIDDLE, in cells; SCALE is the number of
+ * cells per stop radius. */
 static double integrate_cover_along_chord(const struct glint_front_dirt *d,
                                           const struct chords *c, int k,
                                           double scale, double middle, int j)
@@ -157,9 +160,9 @@ static double integrate_cover_along_chord(const struct glint_front_dirt *d,
                                                middle + scale * c->from[k]);
 }
 
-/* Returns the mean cover over the beam of a pixel, which crosses the front
- * element in the shape of the stop: radius RADIUS, centre (X, Y), in front
- * radii. */
+/* Returns the mean covered fraction over the beam of a pixel. The beam crosses
+ * the front element in the shape of the stop, with the radius RADIUS and the
+ * centre (X, Y), in front radii. */
 static double compute_mean_stop_cover(const struct glint_front_dirt *d,
                                       const struct chords *c, double radius,
                                       double x, double y)
@@ -183,7 +186,7 @@ static double compute_mean_stop_cover(const struct glint_front_dirt *d,
 
 /* --------------------------------------------------------------- the table */
 
-/* A stop smaller than a cell is treated as if it were a cell wide. */
+/* A stop smaller than a cell is treated as one cell wide. */
 static void set_front_optics(struct glint_front_optics *o,
                              const struct glint_setup *setup,
                              const struct glint_lens *lens,
@@ -203,16 +206,17 @@ static void set_front_optics(struct glint_front_optics *o,
         .roundness = setup->iris.roundness};
 }
 
-/* Returns the coordinate, in front radii, at which the chief ray of pixel AT
- * (of N pixels along the axis) crosses the front element. */
+/* Returns the coordinate, in front radii, at which the chief ray of a pixel
+ * crosses the front element. AT is the pixel's coordinate; there are N pixels
+ * along the axis. */
 static double map_pixel_to_front(const struct glint_front_optics *o, double at,
                                  int n)
 {
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
-/* Returns the distance between the nodes at which the cover is computed, in
- * nodes of the table: a power of two. 16 computed nodes per radius of an
+/* Returns the distance between nodes at which the cover is computed, in nodes
+ * of the table. It is a power of two. 16 computed nodes per radius of an
  * out-of-focus disc suffice. */
 static int choose_cover_node_distance(const struct glint_front_optics *o)
 {
@@ -242,7 +246,8 @@ static void compute_cover_at_nodes(double *covered, int n_x, int n_y,
                 dirt, &chords, o->radius,
                 map_pixel_to_front(o, GLINT_VEIL_FRONT_PX * i, o->width),
                 -map_pixel_to_front(o, GLINT_VEIL_FRONT_PX * j, o->height));
-    /* beyond the last computed node its value is repeated */
+    /* The value of the last computed node also applies to the nodes after
+     * it. */
     for (int j = 0; j < n_y; j += step)
         for (int i = 0; i < n_x; i++) {
             const int from = i - i % step;

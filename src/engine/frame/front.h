@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Dust, scratches and smudges on the front element of the lens: the table of
- * light that they scatter, in doubles.
+ * Computes the table of light that dust, scratches and smudges on the front
+ * element of the lens scatter, in doubles.
  *
  * A grain of dust diffracts as much light around its shadow as it blocks,
  * whatever its material [vandeHulst57, 8.2: an efficiency of 2, half of it
@@ -36,16 +36,16 @@
 
 /* Table of the cover for one lens, stop and picture size. */
 struct glint_front_table {
-    struct glint_veil_front front; /* its nodes follow this struct in the same
-                                      memory block */
+    struct glint_veil_front front; /* header of the table; the nodes follow this
+                                      struct in the same memory block */
     size_t bytes;
-    /* covered fraction of a pixel's beam: mean and max over the picture */
+    /* covered fraction of the beam of a pixel: mean and max over the picture */
     double mean, most;
 };
 
-/* The settings on which a table depends. */
+/* The settings of the optics on which a table depends. */
 struct glint_front_optics {
-    double tangent;    /* tangent of the angle of a pixel on the axis */
+    double tangent;    /* tangent of the angle that a pixel on the axis spans */
     double z, radius;  /* distance of the entrance pupil from the front vertex,
                           and its radius, in radii of the front element */
     int width, height; /* pixels */
@@ -77,7 +77,7 @@ enum {
 struct glint_front_dirt {
     const struct glint_front_method *method;
     /* [SIDE][SIDE + 1]: sum of the covered fractions of all cells to the left
-     * in the row; row 0 has the lowest y */
+     * in the same row; row 0 has the lowest y */
     float *along;
 };
 

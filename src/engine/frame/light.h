@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Converts lamps (degrees, doubles) and wavelengths (nm) to lights and waves of
- * the run-time half (integers), and back. */
+ * Converts lamps (doubles, angles in degrees) and wavelengths (nm) to the
+ * integer lights and waves from which flares are drawn, and back. */
 #ifndef GLINT_ENGINE_FRAME_LIGHT_H
 #define GLINT_ENGINE_FRAME_LIGHT_H
 
@@ -11,16 +11,15 @@
 struct glint_wave glint_wave_from_nm(double nm, const double rgb[3],
                                      double unit_flux);
 
-/* Returns LAMP as a point light with power times SCALE. */
+/* Returns LAMP as a point light. SCALE is a factor on its power. */
 struct glint_light glint_light_from_lamp(const struct glint_lamp *lamp,
                                          double scale);
 
 /* Returns LIGHT as a lamp without extent. */
 struct glint_lamp glint_lamp_from_light(const struct glint_light *light);
 
-/* Returns whether the angle of LIGHT exceeds the max angle of the model LENS; 0
- * if LENS is NULL.
- */
+/* Returns whether the angle of LIGHT exceeds the max angle of the model LENS.
+ * Returns 0 if LENS is NULL. */
 int glint_light_is_outside_model(const struct glint_lens *lens,
                                  const struct glint_light *light);
 

@@ -6,7 +6,8 @@
 
 #include "glint/light.h"
 
-/* Max number of lights; 128 lights cost less than three times as much as 64. */
+/* max number of lights at all quality levels; 128 lights cost less than three
+ * times as much as 64 */
 enum { MAX_LIGHTS = 128 };
 
 /* Quality levels, the coarsest first: points on the Pareto front of time and
@@ -51,8 +52,8 @@ double glint_quality_named(int name)
     return (double)name / (GLINT_QUALITY_NAMES - 1);
 }
 
-/* Interpolates between A and B, geometrically if both are above 0; PART is 0 at
- * A, 1 at B. */
+/* Interpolates between A and B: returns A for PART = 0 and B for PART = 1. The
+ * interpolation is geometric if both are above 0, else linear. */
 static double interpolate_geometrically(double a, double b, double part)
 {
     return a > 0 && b > 0 ? a * pow(b / a, part) : a + part * (b - a);
@@ -73,8 +74,8 @@ double glint_quality_place(double quality)
 
 /* Returns the settings at QUALITY, 0 .. 1, interpolated between two levels of
  * the table. Settings that cannot be interpolated are those of the nearer
- * level, except the tolerance of the model, which is that of the finer level,
- * as it costs no time. */
+ * level. The tolerance of the model is that of the finer level, as it does not
+ * affect the time of a frame. */
 static struct level interpolate_quality_level(double quality)
 {
     const double at = glint_quality_place(quality);
@@ -108,7 +109,7 @@ struct glint_quality glint_quality_at(double quality)
     const struct level l = interpolate_quality_level(quality);
 
     return (struct glint_quality){
-        /* The fineness of grids has steps of four cells. */
+        /* Fineness is a multiple of four cells. */
         .dials = {.fineness = 4 * (int)lrint(l.grid / 4),
                   .irradiance_steps = glint_quality_steps(l.quantum),
                   .snap_codes_q8 = (int)lrint(l.snap * 256),
@@ -129,8 +130,8 @@ struct glint_dials glint_dials_at(int quality_q15)
     return glint_quality_at(quality_q15 * 0x1p-15).dials;
 }
 
-/* Assumes an error of outlines of 0.1 pixels at fineness 64, inversely
- * proportional to the square of the fineness. */
+/* The error of outlines is assumed to be 0.1 pixels at fineness 64, and
+ * inversely proportional to the square of the fineness. */
 double glint_quality_for_error(double px)
 {
     const double grid = 64 * sqrt(0.1 / px);

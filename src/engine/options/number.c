@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Max number of digits; longer numbers are rejected. */
+/* max number of digits of a number; longer numbers are rejected */
 enum { MOST_DIGITS = 100 };
 
 static const char *find_digits_end(const char *at)
@@ -16,8 +16,9 @@ static const char *find_digits_end(const char *at)
     return at;
 }
 
-/* Parses the exponent at AT, such as "e-3": sets EXPONENT and returns its end.
- * If there is none, sets 0 and returns AT. */
+/* Parses the exponent at AT, such as "e-3". Sets EXPONENT to its value, and
+ * returns a pointer to the end of the text that was parsed. If there is no
+ * exponent, sets EXPONENT to 0 and returns AT. */
 static const char *parse_exponent(const char *at, long *exponent)
 {
     const bool is_signed = *at && (at[1] == '-' || at[1] == '+');
@@ -34,9 +35,9 @@ static const char *parse_exponent(const char *at, long *exponent)
     return end;
 }
 
-/* Passes digits and exponent to strtod() without a decimal point, such as
- * "125e-1" for 12.5, so that the result does not depend on the locale and is
- * correctly rounded. */
+/* strtod() gets digits and an exponent without a decimal point, such as
+ * "125e-1" for 12.5. So the result is correctly rounded and does not depend on
+ * the locale. */
 double glint_option_number(const char *text, const char **end)
 {
     const char *const first = text + strspn(text, " \t");

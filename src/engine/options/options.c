@@ -44,8 +44,8 @@ static const struct glint_option table[] = {
 #include "glint/options.inc"
 };
 
-/* For each option: the range of bytes in struct glint_options that its value
- * occupies, from begin to end - 1. */
+/* The position of each option's value in struct glint_options: the bytes begin
+ * .. end - 1. */
 static const struct place {
     size_t begin, end;
 } place[] = {
@@ -100,8 +100,8 @@ static void store_option_text(struct glint_options *options, int i,
     *(const char **)((char *)options + place[i].begin) = text;
 }
 
-/* Returns whether OPTIONS contain option I; programs compiled for an older
- * library have a smaller struct. */
+/* Returns whether OPTIONS contain option I. A program compiled for an older
+ * version of the library has a smaller struct with fewer options. */
 static bool has_option_row(const struct glint_options *options, int i)
 {
     return place[i].end <= options->size;
@@ -141,8 +141,8 @@ glint_options_complete_with_defaults(const struct glint_options *options)
     return whole;
 }
 
-/* Sets WORD and N to word INDEX of OPTION and its length; words are separated
- * by "|". Returns the number of words. */
+/* Finds word INDEX among the words of OPTION, which are separated by "|". Sets
+ * WORD to the word and N to its length. Returns the number of words. */
 static int find_option_word(const struct glint_option *option, int index,
                             size_t *n, const char **word)
 {
@@ -173,8 +173,8 @@ static int find_word_index(const struct glint_option *option, const char *text)
     return -1;
 }
 
-/* Writes the values that a numeric OPTION accepts to TEXT: "UNIT, LOW to HIGH,
- * or WORD". */
+/* Writes a description of the values that a numeric OPTION accepts to TEXT:
+ * "UNIT, LOW to HIGH, or WORD". */
 static void describe_number_range(const struct glint_option *option, char *text,
                                   size_t bytes)
 {
@@ -241,8 +241,8 @@ static enum glint_status reject_option_name(const char *name,
     return GLINT_E_ARGUMENT;
 }
 
-/* Records that option I was set by the caller. Of two options that exclude each
- * other, the one set last is used. */
+/* Records that the caller has set option I. Of two options that exclude each
+ * other, the one that was set last is used. */
 static void mark_option_given(struct glint_options *options, int i)
 {
     options->given[i] = true;
@@ -258,8 +258,8 @@ static void mark_option_given(struct glint_options *options, int i)
     }
 }
 
-/* Checks what ranges do not express: returns whether option I accepts VALUE,
- * which is in its range, given the other OPTIONS. */
+/* Returns whether option I accepts VALUE, given the values of the other options
+ * in OPTIONS. VALUE is in the range of option I. */
 static bool is_option_value_accepted(const struct glint_options *options, int i,
                                      double value)
 {
@@ -386,7 +386,7 @@ enum glint_status glint_options_set_text(struct glint_options *options,
     default:
         if (!text)
             return reject_option_value(option, error);
-        /* infinity is represented by 0 and has no number */
+        /* Infinity is stored as 0 and cannot be given as a number. */
         if (i == GLINT_OPTION_OF_focus && strcmp(text, "inf") == 0) {
             options->focus = 0;
             options->given[i] = true;

@@ -7,9 +7,9 @@
 
 #include "glint/area.h"
 
-/* Parses NAME followed by a number LOW .. HIGH at *AT, and moves *AT past the
- * comma that follows, or to the end of the text. Returns false, and leaves *AT
- * unchanged, if the text does not begin with both. */
+/* Parses NAME followed by a number LOW .. HIGH at *AT. Moves *AT past the comma
+ * that follows, or to the end of the text. If the text does not begin with NAME
+ * and such a number, returns false and does not change *AT. */
 static bool parse_named_part(const char **at, const char *name, double low,
                              double high, double *value)
 {
@@ -101,7 +101,8 @@ bool glint_option_sensor(const char *text, double mm[2])
            mm[0] <= 1000 && mm[1] >= 0.1 && mm[1] <= 1000;
 }
 
-/* Default of how far a lamp extends below the brightness threshold, stops. */
+/* default distance of a lamp's lower brightness threshold below its upper
+ * threshold, stops */
 #define EXTENDS_EV 0.05
 
 bool glint_option_threshold(const char *text, double ev[2])

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Sine and cosine of angles in degrees, exact at multiples of 90, so that the
- * flare of a light on the x or y axis is symmetric to the bit. */
+ * Computes sine and cosine of angles in degrees. They are exact at multiples of
+ * 90, so that the flare of a light on the x or y axis is symmetric to the
+ * bit. */
 #ifndef GLINT_ENGINE_SETUP_DEGREES_H
 #define GLINT_ENGINE_SETUP_DEGREES_H
 

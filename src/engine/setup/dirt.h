@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Soft edge, dust and masks of a stop: transmission in doubles, for exact
- * pictures, and as a table (shade), for the run-time half. */
+ * Computes the light that a stop with a soft edge, dust or masks transmits: in
+ * doubles for exact pictures, and as a table (shade) for the integer
+ * renderer. */
 #ifndef GLINT_ENGINE_SETUP_DIRT_H
 #define GLINT_ENGINE_SETUP_DIRT_H
 
@@ -18,11 +19,12 @@ struct glint_dirt {
     struct glint_iris_sides sides;
     struct glint_dust dust;
     struct glint_iris iris;
-    double cos_turn, sin_turn; /* cosine and sine of the blades' rotation, by
-                                  which mask and dust are rotated, too */
-    uint64_t mark; /* digest of the shade's table, to detect changes */
-    /* mean transmission over the stop, a divisor; 1 if the stop transmits
-     * nothing */
+    double cos_turn, sin_turn; /* cosine and sine of the rotation of the blades,
+                                  mask and dust */
+    uint64_t mark; /* digest of the shade's table; a changed digest means
+                      changed dirt */
+    /* mean transmission over the stop; 1 if the stop transmits nothing, so that
+     * it can be a divisor */
     double mean;
     /* Returns the fraction of light that is transmitted at (X, Y), stop radii,
      * inside the outline. */

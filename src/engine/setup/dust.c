@@ -6,15 +6,16 @@
 
 #include "glint/view.h"
 
-/* Min and max radius of round specks, stop radii; large specks are rarer. */
+/* min and max radius of round specks of dust, stop radii; large specks are
+ * rarer */
 static const double least_radius = 0.01, most_radius = 0.05;
 
 struct draw {
     uint64_t state;
 };
 
-/* Returns a random number, 0 <= x < 1: the upper bits of a linear congruential
- * generator, so the same on every machine. */
+/* Returns a random number, 0 <= x < 1. It is made of the upper bits of a linear
+ * congruential generator, so it is the same on every machine. */
 static double generate_random(struct draw *d)
 {
     d->state = d->state * UINT64_C(6364136223846793005) +
@@ -79,7 +80,7 @@ static void set_speck_bounding_square(struct glint_speck *s)
 void glint_dust_generate_specks(struct glint_dust *dust, double amount,
                                 int seed)
 {
-    /* A disc covers a fraction of the stop's circle that is the square of its
+    /* A disc covers a fraction of the stop that is the square of the disc's
      * radius. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
     const int n_smudges = (int)ceil(fmin(4, 20 * amount));
@@ -92,8 +93,8 @@ void glint_dust_generate_specks(struct glint_dust *dust, double amount,
     for (int i = 0; i < n_lines; i++)
         add_scratch(dust, &d);
     for (int i = 0; i < n_smudges; i++) {
-        /* One random number per statement, as the order in which arguments are
-         * evaluated is undefined. */
+        /* Each statement draws one random number, as the order in which
+         * arguments are evaluated is undefined. */
         const double opacity =
             fmin(amount * generate_random_between(&d, 0.5, 2), 0.5);
         const double radius = generate_random_between(&d, 0.15, 0.4);
@@ -117,7 +118,8 @@ static double square_number(double x)
     return x * x;
 }
 
-/* Returns the squared distance of (X, Y) from the line segment of speck S. */
+/* Returns the squared distance of (X, Y) from the line segment that is the axis
+ * of speck S. */
 static double compute_squared_line_distance(const struct glint_speck *s,
                                             double x, double y)
 {

@@ -7,12 +7,13 @@
 #include "engine/setup/setup.h"
 #include "glint/transfer.h"
 
-/* The chief ray of a ghost, through the centre of the stop. */
+/* The chief ray of a ghost: the ray through the centre of the stop. */
 struct chief {
-    double x_mm;         /* where the ray enters: coordinate along the light's
-                            azimuth on the plane of the front vertex, mm */
-    double radii_per_mm; /* change of the position in the stop per mm on that
-                            plane, stop radii */
+    double x_mm;         /* point at which the ray enters: coordinate along the
+                            light's azimuth on the plane of the front vertex, mm
+                            */
+    double radii_per_mm; /* change of the ray's position in the stop per mm of
+                            x_mm, stop radii */
 };
 
 /* Finds the chief ray of GHOST for light at the angle whose sine is SINE.
@@ -21,8 +22,8 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
                            double sine, struct chief *chief)
 {
     enum { STOP = GLINT_OUT_STOP_X };
-    const int32_t u_q30 = 1 << 28; /* a quarter of the pupil box on either side
-                                      of the middle */
+    /* a quarter of the pupil box; two rays at -u and u are compared */
+    const int32_t u_q30 = 1 << 28;
     struct glint_transfer t;
     struct glint_outputs out;
     double stop[2], mm;
@@ -45,11 +46,11 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
     return true;
 }
 
-/* Returns the distance of the entrance pupil from the front vertex, mm, from
- * the polynomials of a ghost. A ghost that is reflected only behind the stop
- * reaches the stop as direct light does, so on the axis a stop radius
- * corresponds to a radius of the entrance pupil. Such ghosts are the last of a
- * model. */
+/* Returns the distance of the entrance pupil from the front vertex, mm. It is
+ * computed from the polynomials of a ghost that is reflected only behind the
+ * stop. The rays of such a ghost reach the stop as direct light does. So on the
+ * axis a stop radius corresponds to a radius of the entrance pupil. Such ghosts
+ * are the last of a model. */
 static double compute_pupil_z_from_model(const struct glint_setup *setup,
                                          const struct glint_lens *lens)
 {
@@ -64,8 +65,8 @@ static double compute_pupil_z_from_model(const struct glint_setup *setup,
             fabs(fabs(on.radii_per_mm) * radius - 1) < 0.05 &&
             find_chief_ray(lens, k, sine, &off))
             return (on.x_mm - off.x_mm) / tangent;
-    /* if there is no such ghost: the distance at which the picture's corner is
-     * just visible past the rim of the front element */
+    /* Without such a ghost, the distance is assumed at which the picture's
+     * corner is just visible past the rim of the front element. */
     return fmax(front - radius, 0.1 * radius) * fabs(setup->optics.focal_mm) /
            fmax(field, 1e-6);
 }

@@ -14,8 +14,7 @@ struct glint_entrance {
 };
 
 /* Returns the position of the entrance pupil of SETUP. LENS is the model from
- * whose polynomials it is computed, or NULL if the setup was made from a lens
- * table. */
+ * which it is computed, or NULL if SETUP was made from a lens table. */
 struct glint_entrance glint_entrance_find_pupil(const struct glint_setup *setup,
                                                 const struct glint_lens *lens);
 

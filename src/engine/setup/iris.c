@@ -6,8 +6,9 @@
 #include "engine/setup/degrees.h"
 #include "engine/setup/setup.h"
 
-/* Max curvature of arcs. Above it they barely differ from a circle, and the
- * offsets of their centres would be too small for 30 fraction bits. */
+/* max curvature of arcs, 1 / stop radius; above it, arcs barely differ from a
+ * circle, and the offsets of their centres would be too small for 30 fraction
+ * bits */
 static const double most_round = 0.9999;
 
 void glint_iris_compute_sides(struct glint_iris_sides *sides,
@@ -21,7 +22,7 @@ void glint_iris_compute_sides(struct glint_iris_sides *sides,
         return;
     sides->apothem = cos(GLINT_PI / n);
     sides->round = round;
-    /* The offset d of an arc's centre solves d^2 + 2 d apothem + 1 = 1 /
+    /* The offset d of the centre of an arc solves d^2 + 2 d apothem + 1 = 1 /
      * round^2. */
     sides->off =
         sqrt(1 - round * round * (1 - sides->apothem * sides->apothem)) -
@@ -54,9 +55,9 @@ double glint_iris_compute_edge_distance(const struct glint_iris_sides *sides,
     return depth;
 }
 
-/* Returns the area of a stop with N sides of curvature ROUND, stop radii^2: the
- * area of the polygon plus that of the segments between its sides and the arcs.
- */
+/* Returns the area of a stop with N sides of curvature ROUND, stop radii^2. It
+ * is the area of the polygon plus the area of the segments between its sides
+ * and the arcs. */
 static double compute_opening_area(int n, double round)
 {
     const double half_side = sin(GLINT_PI / n);

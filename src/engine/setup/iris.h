@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The outline of a stop, in doubles: straight sides, arcs or a circle. Lengths
- * are in stop radii; x is to the right, y up. */
+ * Computes the outline of a stop, in doubles. Its sides are straight or arcs,
+ * or it is a circle. Lengths are in stop radii; x is to the right, y up. */
 #ifndef GLINT_ENGINE_SETUP_IRIS_H
 #define GLINT_ENGINE_SETUP_IRIS_H
 
@@ -14,9 +14,9 @@ struct glint_iris_sides {
     int n; /* number of sides; 0: circle */
     bool arcs;
     double apothem;
-    double round, off; /* round: curvature of arcs, 0 for straight sides; off:
-                          distance of the arcs' centres from the stop's centre
-                          times the curvature, 1 for straight sides */
+    double round, off; /* round: curvature of the sides, 0 for straight sides.
+                          off: distance of the arcs' centres from the stop's
+                          centre times the curvature, 1 for straight sides. */
     double normal[GLINT_MAX_BLADES][2]; /* outward unit normal of each side */
 };
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prepares lens, stop and wavelengths for drawing: colours of the wavelengths,
- * and the flux of the direct image, relative to which all light is measured. */
+ * Prepares lens, stop and wavelengths for drawing. Computes the colours of the
+ * wavelengths, and the flux of the direct image, which is the unit of all
+ * light. */
 #include "engine/setup/setup.h"
 
 #include <math.h>
@@ -12,9 +13,10 @@
 #include "engine/setup/spectrum.h"
 #include "glint/model.h"
 
-/* Scales each channel of the wavelengths' colours to the sum 1, so that a flat
- * spectrum is white. If the sum of a channel is near 0 or negative, all its
- * values are set equal: a grey picture is better than wrong colours. */
+/* Scales each channel of the wavelengths' colours so that its sum over the
+ * wavelengths is 1. So a flat spectrum is white. If the sum of a channel is
+ * near 0 or negative, all its values are set equal, as a grey picture is better
+ * than wrong colours. */
 static void normalise_colours(struct glint_setup *s)
 {
     const int n = s->n_wavelengths;
@@ -120,7 +122,7 @@ static double evaluate_polynomial(const struct glint_real *coef, int n,
 }
 
 /* Returns the flux of the direct image, mm^2, at wavelength NM, clamped to the
- * model's band, with the stop at OPENING times the model's radius. */
+ * model's band. OPENING is the radius of the stop / the model's radius. */
 static double compute_model_flux(const struct glint_model_header *h,
                                  double opening, double nm)
 {
@@ -184,7 +186,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
 {
     const struct glint_model_header *h = lens->header;
     const double widest = glint_real_value(h->f_number);
-    /* F_NUMBER may be the rounded f-number of the fully open stop */
+    /* F_NUMBER may be the rounded f-number of the fully open stop. */
     const double by =
         fabs(widest / f_number - 1) < 1e-6 ? 1 : widest / f_number;
 
@@ -217,8 +219,9 @@ void glint_setup_weigh(struct glint_setup *setup)
         setup->unit_flux[i] = mean;
 }
 
-/* Returns the flux of the direct image, mm^2, at wavelength NM, interpolated by
- * a parabola in 1 / wavelength^2 through three wavelengths of S. */
+/* Returns the flux of the direct image, mm^2, at wavelength NM. It is
+ * interpolated by a parabola in 1 / wavelength^2 through three wavelengths of
+ * S. */
 static double interpolate_direct_flux(const struct glint_setup *s, double nm)
 {
     const int at[3] = {0, s->n_wavelengths / 2, s->n_wavelengths - 1};

@@ -24,9 +24,9 @@ enum glint_status glint_setup_set_unit_flux(struct glint_setup *setup,
                                             const char *name,
                                             struct glint_error *error);
 
-/* Returns the area of SETUP's stop as a fraction of the circle, which is also
- * the fraction of direct light that passes: that light is uniform over the stop
- * to 1/10000. */
+/* Returns the area of SETUP's stop divided by the area of its circle. It is
+ * also the fraction of direct light that passes the stop, as direct light is
+ * uniform over the stop to 1/10000. */
 double glint_iris_compute_area_fraction(const struct glint_setup *setup);
 
 #endif

@@ -26,14 +26,14 @@ enum {
     FIRST_NM = 400,
     LAST_NM = 700,
     STEP_NM = 10,
-    /* distance, nm, by which cubics are extrapolated beyond the outermost
+    /* distance, nm, to which cubics are extrapolated outside the outermost
      * wavelengths */
     BEYOND_NM = 15,
     POINTS = 4
 };
 
-/* Returns a Gaussian lobe at NM with the sigma BELOW on one side of its centre,
- * and ABOVE on the other. */
+/* Returns the value at NM of a Gaussian lobe with the sigma BELOW on the left
+ * of CENTRE and the sigma ABOVE on the right. */
 static double evaluate_gaussian_lobe(double nm, double centre, double below,
                                      double above)
 {
@@ -91,8 +91,8 @@ static void compute_all_colours(double rgb[N_ALL][3])
     }
 }
 
-/* Returns the density with which wavelengths are placed at NM, in arbitrary
- * units. */
+/* Returns the density with which wavelengths are placed at NM. Only ratios of
+ * densities matter. */
 static double compute_wavelength_density(double nm)
 {
     double rgb[3], squares = 0;
@@ -100,12 +100,13 @@ static double compute_wavelength_density(double nm)
     glint_observer_compute_rgb(nm, rgb);
     for (int c = 0; c < 3; c++)
         squares += rgb[c] * rgb[c];
-    return cbrt(squares / (nm * nm * nm)); /* the derivative of 1 / nm^2 is
-                                              proportional to nm^-3 */
+    return cbrt(squares / (nm * nm * nm)); /* The derivative of 1 / nm^2 is
+                                              proportional to nm^-3. */
 }
 
-/* Places N wavelengths: the integral of the density is divided into N equal
- * pieces, and each wavelength lies in the middle of one. */
+/* Places N wavelengths. The spectrum is divided into N ranges with equal
+ * integrals of the density, and each wavelength divides the integral of its
+ * range into halves. */
 static void place_wavelengths(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;
@@ -137,7 +138,7 @@ static int find_first_interpolated_wavelength(int n,
     return i > 0 ? i : 0;
 }
 
-/* Returns the weight of wavelength K in a value that is interpolated at NM: a
+/* Returns the weight of wavelength K in a value that is interpolated at NM by a
  * Lagrange polynomial. */
 static double compute_lagrange_weight(int n, const double *wavelength_nm, int k,
                                       double nm)

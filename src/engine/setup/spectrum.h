@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Colours of single wavelengths.
- */
+ * Computes the colours of single wavelengths. */
 #ifndef GLINT_ENGINE_SETUP_SPECTRUM_H
 #define GLINT_ENGINE_SETUP_SPECTRUM_H
 

@@ -20,7 +20,7 @@ struct glint_view glint_view_fit(int width, int height, double film_width_mm,
 
 /* ------------------------------------------------------------- projections */
 
-/* Max angle off the axis that is returned, degrees. */
+/* angle off the axis, degrees, to which results are clamped */
 #define MOST_DEG 89.9
 #define MOST_RHO 1e6
 

@@ -22,8 +22,8 @@ void glint_arcs_init(struct glint_arcs *a, int n, double rotation_deg,
               n * (2 * a->turn - sin(2 * a->turn)) / (2 * round * round);
 }
 
-/* Returns the number of sides to sum: all of an odd number, half of an even
- * number, as the contribution of the opposite side is the complex conjugate. */
+/* Returns the number of sides to sum. It is all N if N is odd, and half if N is
+ * even, as the contribution of the opposite side is the complex conjugate. */
 static int count_summed_sides(int n)
 {
     return n % 2 ? n : n / 2;
@@ -71,9 +71,10 @@ static double complex compute_fresnel_integral(double x)
     return x < 0 ? -value : value;
 }
 
-/* Returns the correction to the Fresnel integral at an end of an arc, where the
- * sine of half the angle to q is W: the slowly varying factor differs there
- * from that at w = 0. */
+/* Returns the correction of the Fresnel integral at an end of an arc. W is the
+ * sine of half the angle between the normal at the end and q. At the end the
+ * slowly varying factor differs from its value at w = 0, which the integral
+ * uses. */
 static double complex compute_arc_end_correction(double w, double kappa)
 {
     const double g = 2 * (1 - 2 * w * w) / sqrt(1 - w * w) - 2;
@@ -84,10 +85,10 @@ static double complex compute_arc_end_correction(double w, double kappa)
                                 (cos(phase) + i_unit * sin(phase));
 }
 
-/* Returns the integral along one arc by its far-field approximation, without
- * the phase of the arc's middle. TO: angle between the arc's normal and the
- * direction of q, radians; Q: |q|. For an arc on the far side of the stop the
- * integral is the complex conjugate. */
+/* Returns the integral along one arc by its approximation for large |q|,
+ * without the phase of the arc's middle. TO: angle between the arc's normal and
+ * the direction of q, radians; Q: |q|. For an arc on the far side of the stop
+ * the integral is the complex conjugate. */
 static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
                                                    double q, double to)
 {
@@ -109,8 +110,8 @@ static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
 
 /* --------------------------------------------------------------------- near */
 
-/* Returns the integral along one arc, including its phase, by Simpson's rule
- * with a few points per turn of the phase. */
+/* Returns the integral along one arc, including the phase of the arc's middle,
+ * by Simpson's rule with a few points per turn of the phase. */
 static double complex integrate_arc_numerically(const struct glint_arcs *a,
                                                 double normal, double q,
                                                 double direction)
@@ -131,8 +132,8 @@ static double complex integrate_arc_numerically(const struct glint_arcs *a,
     return sum * (q * radius * a->turn / steps / 3);
 }
 
-/* Returns the integral along one arc, including its phase, by its far-field
- * approximation, which is valid for large Q. */
+/* Returns the integral along one arc, including the phase of the arc's middle,
+ * by its approximation for large Q. */
 static double complex integrate_arc_far_from_centre(const struct glint_arcs *a,
                                                     double normal, double q,
                                                     double direction)
@@ -172,8 +173,8 @@ double glint_arcs_compute_far_pattern(const struct glint_arcs *a, double qx,
                                       double qy)
 {
     const double q = hypot(qx, qy), to = atan2(qy, qx);
-    /* squared sine of the angle within which the contributions of an arc's ends
-     * merge with that of its middle */
+    /* squared sine of the angle to an arc's end below which the contributions
+     * of the end and of the arc's middle merge */
     const double limit = 0.25 / (q * q);
     double sum = 0;
 
@@ -181,16 +182,17 @@ double glint_arcs_compute_far_pattern(const struct glint_arcs *a, double qx,
         const double normal = compute_side_normal_angle(a, i);
         const double size =
             cabs(integrate_arc_asymptotically(a, q, normal - to));
-        /* the corner after this arc: angles to the normals of both arcs there
-         */
+        /* angles between q and the normals of both arcs at the corner after
+         * this arc */
         const double one = to - (normal + a->turn);
         const double other = to - (normal + 2 * GLINT_PI / a->n - a->turn);
         const double s = sin(one), t = sin(other);
 
         sum += size * size;
-        /* subtracts twice the real part of the product of both arcs'
-         * contributions at the corner, (q n) / (2 pi i q t): one is the end of
-         * an arc, the other a beginning, so their signs differ */
+        /* At the corner each arc contributes (q n) / (2 pi i q t), where n is
+         * its normal and t its direction there. One arc ends and the other
+         * begins, so the signs differ. Twice the real part of the product of
+         * both contributions is subtracted. */
         sum -= 2 * cos(one) * cos(other) / (4 * GLINT_PI * GLINT_PI) *
                (s / (s * s + limit)) * (t / (t * t + limit));
     }

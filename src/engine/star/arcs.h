@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Fraunhofer pattern of a stop whose sides are arcs, in doubles.
+ * Computes the Fraunhofer diffraction pattern of a stop with arcs as sides, in
+ * doubles.
  *
  * The transform is an integral along the outline, with n its normal:
  *
@@ -35,8 +36,8 @@ void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
 double glint_arcs_compute_pattern(const struct glint_arcs *arcs, double qx,
                                   double qy);
 
-/* Like glint_arcs_compute_pattern(), for q far from the centre, and without the
- * fringes between different arcs. */
+/* Like glint_arcs_compute_pattern(), for q far from the centre. Omits the
+ * interference fringes between different arcs. */
 double glint_arcs_compute_far_pattern(const struct glint_arcs *arcs, double qx,
                                       double qy);
 

@@ -27,11 +27,12 @@ struct cells {
     const struct glint_psf *psf;
     const struct glint_smear
         *smear;       /* diffraction by dirt in the stop, or NULL */
-    double airy_px;   /* airy_px (550 nm times the f-number,
-                         pixels) for the smear */
-    int half, side;   /* number of cells from the middle to a side of the square
-                         (half), and per side of the square (side) */
-    double (*sum)[3]; /* [side + 1][side + 1] */
+    double airy_px;   /* 550 nm times the f-number, pixels: the scale of the
+                         smear */
+    int half, side;   /* half: number of cells from the middle to a side of the
+                         square; side: number of cells per side of the square */
+    double (*sum)[3]; /* [side + 1][side + 1]: summed-area table of the light of
+                         cells */
 };
 
 static double (*find_cell_sum(const struct cells *s, int i, int k))[3]
@@ -39,8 +40,8 @@ static double (*find_cell_sum(const struct cells *s, int i, int k))[3]
     return &s->sum[(i + s->half) * (s->side + 1) + k + s->half];
 }
 
-/* Returns the number of sample points per side of a cell whose middle is R
- * pixels from the lamp. */
+/* Returns the number of sample points per side of a cell. R is the distance
+ * between the middle of the cell and the lamp, pixels. */
 static int count_cell_samples(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
@@ -91,8 +92,8 @@ static double compute_light_beyond(const struct cells *s, double r, int c)
                : all;
 }
 
-/* Stores the light of each cell in the summed-area table, where its sum is
- * computed later. The half above the lamp is the point reflection of the half
+/* Stores the light of each cell in the memory of the summed-area table, which
+ * is summed later. The half above the lamp is the point reflection of the half
  * below. */
 static void compute_cell_lights(struct cells *s)
 {
@@ -131,8 +132,8 @@ static void make_summed_area_table(struct cells *s)
                     (*find_cell_sum(s, i, k))[c];
 }
 
-/* Sets RGB to the light of the pixel that is centred at (X, Y), a corner of
- * cells. */
+/* Sets RGB to the light of the pixel centred at (X, Y), the indices of a corner
+ * of cells. */
 static void sum_pixel_light(const struct cells *s, int y, int x, double rgb[3])
 {
     const int h = CELLS / 2;
@@ -203,9 +204,9 @@ static uint16_t encode_core_light(double light)
     return (uint16_t)(sign | e << 10 | ((unsigned)lrint(size) - 1024));
 }
 
-/* Returns the distance between nodes of the core table, in cells: 1, 2 or 4;
- * small enough to resolve diffraction rings, large enough that the table
- * extends to where rings have faded. */
+/* Returns the distance between nodes of the core table, in cells: 1, 2 or 4. It
+ * is small enough to resolve diffraction rings, and large enough for a table
+ * that extends to where rings have faded. */
 static int count_cells_between_nodes(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;
@@ -213,8 +214,8 @@ static int count_cells_between_nodes(const struct glint_psf *psf)
     return far > 0.5 ? 4 : far > 0.25 ? 2 : 1;
 }
 
-/* Adds the light of diffraction by dirt at (X, Y), pixels from the lamp, to
- * RGB. */
+/* Adds the light that dirt in the stop diffracts to (X, Y), pixels from the
+ * lamp, to RGB. */
 static void add_smear_light(const struct glint_star_tables *t, double x,
                             double y, double rgb[3])
 {

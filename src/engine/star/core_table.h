@@ -9,8 +9,8 @@
 #include "engine/star/smear.h"
 #include "star/starburst.h"
 
-/* Sets the core table of TABLES, whose other members must be set. SMEAR:
- * diffraction by dirt in the stop, or NULL; AIRY_PX as in
+/* Sets the core table of TABLES. All other members of TABLES must be set.
+ * SMEAR: diffraction by dirt in the stop, or NULL; AIRY_PX as in
  * glint_smear_compute_light(). Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
                                              const struct glint_psf *psf,
@@ -18,8 +18,8 @@ enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
                                              double airy_px);
 
 /* Sets RGB to the light of lines and halo at (X, Y), pixels from a light of
- * power 1, as TABLES give it; the drawn light differs only by integer rounding.
- */
+ * power 1, according to TABLES. The drawn light differs from it only by integer
+ * rounding. */
 void glint_star_evaluate_far_tables(const struct glint_star_tables *tables,
                                     double x, double y, double rgb[3]);
 

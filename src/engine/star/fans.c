@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The far field of stops with round blades or a soft edge, which diffract into
- * fans instead of lines: a table over distance from the lamp and angle to the
- * nearest line.
- */
+ * Computes the far field of stops with round blades or a soft edge, which
+ * diffract light into fans instead of lines. It is a table over the distance
+ * from the lamp and the angle to the nearest line. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -11,18 +10,19 @@
 #include "glint/view.h"
 
 enum {
-    COLUMNS = 129, /* number of table columns, from a line to half-way to the
-                      next line */
+    COLUMNS = 129, /* number of columns of the table; their angles are from a
+                      line to half-way to the next line */
     PER_OCTAVE = 4,
-    EVERY = 2 /* only every second wavelength is used */
+    EVERY = 2 /* distance between the wavelengths that are used: every second
+                 one */
 };
 
-/* Distance at which the table begins, in orders of diffraction, and at which it
- * ends, in pixels. */
+/* range of distances from the lamp that the table covers: from first_order, in
+ * orders of diffraction, to last_px, in pixels */
 static const double first_order = 12, last_px = 16384;
 
-/* Range of blade curvatures over which fans are blended into the far field of a
- * circular stop. */
+/* range of blade curvatures in which the far field changes from that of fans to
+ * that of a circular stop */
 static const double fade_from = 0.85, fade_to = 0.98;
 
 double glint_psf_compute_soft_edge_factor(double soft, double q)
@@ -34,8 +34,8 @@ double glint_psf_compute_soft_edge_factor(double soft, double q)
     return a * a;
 }
 
-/* Sets RGB to the light of fans times r^2, R pixels from the lamp, at an angle
- * OFF from the nearest line. */
+/* Sets RGB to the light of fans times R^2. The point is R pixels from the lamp,
+ * at the angle OFF from the nearest line. */
 static void sum_fan_light(const struct glint_psf *p, double r, double off,
                           double rgb[3])
 {
@@ -55,9 +55,9 @@ static void sum_fan_light(const struct glint_psf *p, double r, double off,
         rgb[c] = fmax(rgb[c], 0);
 }
 
-/* Blends the far field of a circular stop into RGB, which is light times r^2 at
- * R pixels: for a nearly circular stop the gaps between fans are as narrow as
- * the blur of their sides. */
+/* Blends the far field of a circular stop into RGB, which has light times r^2
+ * at R pixels from the lamp. For a nearly circular stop the gaps between fans
+ * are as narrow as the blur of their sides. */
 static void blend_circle_light(const struct glint_psf *p, double r,
                                double rgb[3])
 {

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Fast Fourier transform of a square array, radix 2 [Cooley65].
- */
+ * Computes the fast Fourier transform of a square array, radix 2 [Cooley65]. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -18,7 +17,8 @@ static void swap_complex(double a[2], double b[2])
     }
 }
 
-/* Permutes N numbers: each moves to the index whose bits are reversed. */
+/* Permutes N numbers: moves each number to the index with the reversed order of
+ * bits. */
 static void permute_bit_reversed(double (*at)[2], int n)
 {
     for (int i = 1, j = 0; i < n; i++) {
@@ -57,8 +57,8 @@ typedef double complex_number[2]; /* real, imaginary */
 
 enum glint_status glint_fourier_transform_2d(double (*at)[2], int n, int used)
 {
-    /* number of columns that are transformed together, as they share cache
-     * lines */
+    /* number of columns that are transformed together; neighbouring columns lie
+     * in the same cache lines */
     enum { ABREAST = 8 };
     complex_number *const root = malloc((size_t)n * sizeof *root);
     complex_number *const column = malloc((size_t)n * ABREAST * sizeof *column);

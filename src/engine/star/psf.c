@@ -10,7 +10,7 @@
 
 enum { ORDERS = 20, BLEND_FROM = 15 };
 
-/* Range of the table of a line profile, in units of width_px. */
+/* range of the table of a line's profile, in units of width_px */
 static const double span = 32;
 
 /* --------------------------------------------------------------- transform */
@@ -46,8 +46,9 @@ static double compute_circle_pattern(double q)
 
 /* The sides of a polygonal stop of circumradius 1. */
 struct sides {
-    int n, n_pair; /* n: number of listed sides; n_pair: 2 if opposite sides are
-                      parallel and each listed side stands for both, else 1 */
+    /* n: number of listed sides. n_pair: number of stop sides per listed side,
+     * 2 if opposite sides are parallel, else 1. */
+    int n, n_pair;
     double length, apothem, area;
     /* cosine and sine of the direction of each side's normal */
     double c[GLINT_MAX_BLADES], s[GLINT_MAX_BLADES];
@@ -70,8 +71,8 @@ static void set_polygon_sides(struct sides *p, int n, double rotation_deg)
     }
 }
 
-/* Returns |F|^2 / area^2 of a polygonal stop at (QX, QY), cycles per stop
- * radius. */
+/* Returns |F|^2 / area^2 of a polygonal stop at the frequency (QX, QY), cycles
+ * per stop radius. F is the Fourier transform of the stop. */
 static double compute_polygon_pattern(const struct sides *p, double qx,
                                       double qy)
 {
@@ -142,8 +143,8 @@ static void compute_line_profile(struct glint_psf *p)
     }
 }
 
-/* Sets the smooth profile: at each position the mean of the profile over one
- * fringe. */
+/* Sets the smooth profile of lines. Its value at a position is the mean of the
+ * profile over one fringe around it. */
 static void compute_smooth_line_profile(struct glint_psf *p)
 {
     const int half = (int)(0.6 / span * GLINT_PSF_PROFILE);
@@ -188,9 +189,9 @@ void glint_psf_interpolate_profile(const struct glint_psf *p, double v,
 
 /* -------------------------------------------------------------------- near */
 
-/* Returns a table of the stop's pattern at one wavelength, with N_ROWS rows: a
- * row per 1 / GLINT_PSF_STEPS order of diffraction, a column per angle. Returns
- * NULL if memory is short; the caller frees it. */
+/* Returns a table of the stop's diffraction pattern at one wavelength. It has
+ * N_ROWS rows, one per 1 / GLINT_PSF_STEPS order of diffraction, and a column
+ * per angle. Returns NULL if memory is short. The caller frees the table. */
 static double *tabulate_patterns(const struct glint_psf *p, int n_rows)
 {
     double *table =
@@ -201,8 +202,8 @@ static double *tabulate_patterns(const struct glint_psf *p, int n_rows)
     if (p->n_blades)
         set_polygon_sides(&sides, p->n_blades, 0);
     for (int k = 0; k < p->n_columns && table; k++) {
-        /* The table is for a stop without rotation. Angles begin at the
-         * normal of a side, half a side away from a corner. */
+        /* The table is for a stop without rotation. Its first angle is that of
+         * the normal of a side, which is half a side away from a corner. */
         const double angle =
             p->n_blades ? GLINT_PI / p->n_blades + half * k / (p->n_columns - 1)
                         : 0;
@@ -258,18 +259,19 @@ static enum glint_status make_near_table(struct glint_psf *p)
     return table && p->near ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Min curvature of the arcs with which fans are computed. */
+/* min curvature of the arcs for which fans are computed, 1 / stop radius */
 static const double least_round = 0.02;
 
 /* Blades with less curvature and less softness than these are treated as
- * straight and hard: their fans would be narrower than lines everywhere in a
+ * straight and hard, as their fans would be narrower than lines everywhere in a
  * picture. Blades with more curvature than circle_round are treated as a
- * circle, into which fans are blended before. */
+ * circle. For curvatures just below circle_round, fans are blended into the
+ * circle. */
 static const double straight_round = 0.01, straight_soft = 0.002;
 static const double circle_round = 0.98;
 
-/* Moves the edge of a soft stop to the middle of its slope: scales airy_px to
- * the smaller stop, and SOFT to its radius. */
+/* Replaces the soft edge of a stop by the middle of its slope: scales airy_px
+ * to the smaller stop, and SOFT to its radius. */
 static void move_soft_edge_to_slope_middle(struct glint_psf *p, double soft)
 {
     const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;
@@ -343,8 +345,8 @@ void glint_psf_finish(struct glint_psf *psf)
 double glint_psf_compute_line_angle(const struct glint_psf *p, int i)
 {
     const double step = 180.0 / p->n_lines;
-    /* y is up in the stop and down in the picture, which reverses the rotation
-     */
+    /* The direction of y is up in the stop and down in the picture, so rotation
+     * is reversed. */
     const double one =
         p->n_blades ? -(p->rotation_deg + 180.0 / p->n_blades) : 0;
 
@@ -354,10 +356,9 @@ double glint_psf_compute_line_angle(const struct glint_psf *p, int i)
 /* --------------------------------------------------------------------- far */
 
 /* Adds the light of all lines at (X, Y) to RGB, without the contribution of
- * corners. Sets SUM to the sum, over neighbouring edges, of products of the
- * cotangents of the angles to both, on which the corners' contribution depends;
- * cotangents are limited near lines.
- */
+ * corners. Sets SUM, on which the contribution of corners depends. It is the
+ * sum over neighbouring edges of the product of the cotangents of the angles to
+ * both. Cotangents are limited near lines. */
 static void add_edge_light(const struct glint_psf *p, double x, double y,
                            glint_psf_window_fn *window, const void *self,
                            double rgb[3], double *sum)

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The Fraunhofer diffraction pattern of a stop (its point spread function), in
- * doubles: near the lamp summed exactly over the spectrum, farther out without
- * fringes, which the spectrum averages out.
+ * Computes the Fraunhofer diffraction pattern of a stop (its point spread
+ * function), in doubles. Near the lamp it is summed exactly over the spectrum.
+ * Farther out it is computed without fringes, as the spectrum averages them
+ * out.
  *
  *     glint_psf_init(&psf, n_blades, rotation_deg, airy_px);
- *     glint_psf_compute_light(&psf, x, y, rgb);           a point of the
- * picture glint_psf_finish(&psf);
+ *     glint_psf_compute_light(&psf, x, y, rgb);     at a point of the picture
+ *     glint_psf_finish(&psf);
  *
  * With F the transform of the stop of area A (both in stop radii), and a =
  * wavelength times f-number in pixels, light per pixel^2 is |F(x / 2a)|^2 / (4
@@ -35,38 +36,40 @@ enum {
 struct glint_psf {
     int n_blades; /* number of blades; 0: circle */
     double rotation_deg;
-    double soft; /* width of a soft edge, stop radii */
+    double soft; /* width of the soft edge of the stop, stop radii; 0: hard edge
+                  */
     int fans; /* 1: blades are round or have a soft edge, and diffract into fans
-                 instead of lines */
+                 (wide lines) */
     double round;           /* curvature of blades with fans, 1 / stop radius */
-    struct glint_arcs arcs; /* arcs of a stop with fans, without rotation */
+    struct glint_arcs arcs; /* arcs of a stop with fans; the stop's rotation is
+                               not included */
     double (*far)[3];       /* [n_far][129]: table of the light of fans times
                                r^2 */
     int n_far;
     double airy_px; /* 550 nm times the f-number, pixels */
-    /* number of lines of the starburst, and number of parallel edges per line,
-     * 1 or 2 */
+    /* n_lines: number of lines of the starburst; n_pair: number of parallel
+     * edges per line, 1 or 2 */
     int n_lines, n_pair;
     double edge, area, perimeter; /* length of an edge, area and perimeter of
                                      the stop of radius 1 */
-    /* unit vectors along the lines, normal to the edges, y down; edges in order
-     */
+    /* [edge]: unit normal of an edge, which points along its line of the
+     * starburst, y down */
     double normal[GLINT_MAX_BLADES][2];
     double width_px; /* distance from the middle of a line's profile to its
                         first zero at 550 nm, pixels */
     double scale[GLINT_PSF_WAVES];     /* wavelength / 550 nm */
     double weight[GLINT_PSF_WAVES][3]; /* colour of each wavelength; each
                                           channel sums to 1 */
-    /* sums over the wavelengths: of weight * scale (mean), of weight * scale^2
-     * (square) */
+    /* sums over the wavelengths: mean: of weight * scale; square: of weight *
+     * scale^2 */
     double mean[3], square[3];
-    /* profile of a line: mean of sinc^2 over the spectrum at v = 32 width_px i
-     * / GLINT_PSF_PROFILE */
+    /* [i]: profile of a line at v = 32 width_px i / GLINT_PSF_PROFILE: mean of
+     * sinc^2 over the spectrum */
     double profile[GLINT_PSF_PROFILE + 1][3];
-    double smooth[GLINT_PSF_PROFILE + 1][3]; /* profile, averaged over one
-                                                fringe */
+    double smooth[GLINT_PSF_PROFILE + 1][3]; /* [i]: mean of the profile over
+                                                one fringe */
     int n_rows, n_columns; /* size of NEAR: GLINT_PSF_STEPS rows per order of
-                              diffraction, beginning at the centre; columns are
+                              diffraction, beginning at the centre; columns for
                               angles from a line to half-way to the next */
     double (*near)[3];     /* [n_rows][n_columns]: table of the light near the
                               lamp, times airy_px^2 */
@@ -94,23 +97,23 @@ enum glint_status glint_fans_make_table(struct glint_psf *psf);
 void glint_fans_interpolate_light(const struct glint_psf *psf, double r,
                                   double off, double rgb[3]);
 
-/* Returns the factor by which a soft edge of width SOFT, stop radii, reduces
- * light at Q cycles per stop radius: the squared Fourier transform of its
- * slope. */
+/* Returns the factor by which a soft edge reduces the light at Q cycles per
+ * stop radius. SOFT is the width of the edge, stop radii. The factor is the
+ * squared Fourier transform of the edge's slope. */
 double glint_psf_compute_soft_edge_factor(double soft, double q);
 
 /* Returns the angle of line I, radians, y down: 0 <= angle < pi, rising with I.
  */
 double glint_psf_compute_line_angle(const struct glint_psf *psf, int i);
 
-/* Sets RGB to the profile of a line, V pixels from its centre: light times r^4
- * / u^2. */
+/* Sets RGB to the profile of a line, V pixels from the line's centre. The
+ * profile is light times r^4 / u^2, see the head of this file. */
 void glint_psf_interpolate_profile(const struct glint_psf *psf, double v,
                                    double rgb[3]);
 
 /* Sets RGB to the far-field light at (X, Y), pixels from the lamp: lines,
- * corners and fans. If WINDOW is not NULL, the smooth profiles of lines are
- * used, multiplied by 1 - WINDOW(V). */
+ * corners and fans. If WINDOW is not NULL, lines have their smooth profiles,
+ * multiplied by 1 - WINDOW(V). */
 typedef double glint_psf_window_fn(double v, const void *self);
 void glint_psf_compute_far_light(const struct glint_psf *psf, double x,
                                  double y, glint_psf_window_fn *window,
@@ -119,13 +122,14 @@ void glint_psf_compute_far_light(const struct glint_psf *psf, double x,
 void glint_psf_compute_light(const struct glint_psf *psf, double x, double y,
                              double rgb[3]);
 
-/* Returns the fraction of the light of channel C that lies farther than R
- * pixels from the lamp. */
+/* Returns the fraction of the light of channel C that lies more than R pixels
+ * from the lamp. */
 double glint_psf_compute_light_beyond(const struct glint_psf *psf, double r,
                                       int c);
 
-/* Returns |F(q)|^2 / A^2 at one wavelength; q is in cycles per stop radius, x
- * to the right, y up. */
+/* Returns |F(q)|^2 / A^2, the pattern relative to its centre, at one
+ * wavelength. q = (QX, QY) is in cycles per stop radius, x to the right, y
+ * up. */
 double glint_psf_compute_pattern(int n_blades, double rotation_deg, double qx,
                                  double qy);
 

@@ -11,31 +11,31 @@ enum { N = GLINT_SMEAR_SIDE, HALF = N / 2 };
 
 static const double cell = (double)GLINT_SMEAR_SPAN / N;
 
-/* Frequencies in cycles per stop radius: the step between elements of the
- * transform (step_q), and the frequency at which D is measured to be
- * extrapolated (edge_q). */
+/* step_q: distance between neighbouring elements of the transform, cycles per
+ * stop radius. edge_q: frequency from which D is extrapolated, cycles per stop
+ * radius. */
 static const double step_q = 1.0 / GLINT_SMEAR_SPAN, edge_q = 112;
 
-/* Sums over the cells of a stop. */
+/* Sums over the cells that sample a stop. */
 struct totals {
     double light, area; /* integrals of the transmission T and of the clear
                            stop, stop radii^2 */
-    double rim, n_rim;  /* sum of amplitude with dirt / amplitude of the clear
-                           stop over the cells along the outline, and number of
-                           these cells */
+    double rim, n_rim;  /* rim: sum of (amplitude with dirt / amplitude of the
+                           clear stop) over the cells along the outline; n_rim:
+                           number of these cells */
 };
 
 /* ------------------------------------------------------------------ fields */
 
-/* Returns the fraction of a cell that lies within the outline, if its middle is
- * DEPTH stop radii inside. */
+/* Returns the fraction of a cell that lies within the stop's outline. DEPTH is
+ * the distance of its middle from the outline, stop radii, positive inside. */
 static double compute_inside_fraction(double depth)
 {
     return fmin(fmax(depth / cell + 0.5, 0), 1);
 }
 
-/* Returns the transmission of a soft edge of width SOFT at a point DEPTH stop
- * radii inside the outline. */
+/* Returns the transmission of a soft edge of width SOFT at a distance of DEPTH
+ * stop radii inside the outline. */
 static double compute_soft_edge_transmission(double soft, double depth)
 {
     const double in = soft > 0 ? fmin(fmax(depth / soft, 0), 1) : 1;
@@ -44,9 +44,8 @@ static double compute_soft_edge_transmission(double soft, double depth)
 }
 
 /* Sets AT[i] to the amplitudes in row J of cells of the stop: the real part is
- * g, with dirt, the imaginary part is o, without. Row 0 has the lowest y. Adds
- * to the sums T.
- */
+ * g, with dirt, the imaginary part is o, without dirt. Row 0 has the lowest y.
+ * Adds to the sums T. */
 static void set_amplitude_row(const struct glint_dirt *d, int j,
                               double (*at)[2], struct totals *t)
 {
@@ -75,14 +74,14 @@ static void set_amplitude_row(const struct glint_dirt *d, int j,
 
 /* --------------------------------------------------------------- transform */
 
-/* Returns element (I, K) of the transform, counted from zero frequency. */
+/* Returns element (I, K) of the transform, where (0, 0) is zero frequency. */
 static const double *get_transform_element(double (*at)[2], int i, int k)
 {
     return at[(size_t)((i + N) % N) * N + (size_t)((k + N) % N)];
 }
 
-/* Returns D (smear.h) at element (I, K): G and O are the transforms of the real
- * and the imaginary part. */
+/* Returns D (smear.h) at element (I, K). It is computed from G and O, the
+ * transforms of the real and of the imaginary part of AT. */
 static double compute_pattern_difference(double (*at)[2], int i, int k,
                                          const struct totals *t, double clear)
 {
@@ -162,7 +161,7 @@ void glint_smear_finish(struct glint_smear *smear)
 
 /* ------------------------------------------------------------------- means */
 
-/* Interpolates the running integral s->sum at (X, Y), in elements. */
+/* Returns the running integral s->sum at (X, Y), in elements, interpolated. */
 static double interpolate_difference_sum(const struct glint_smear *s, double y,
                                          double x)
 {
@@ -180,7 +179,7 @@ double glint_smear_compute_mean(const struct glint_smear *s, double qx,
                                 double qy, double half)
 {
     const double q = hypot(qx, qy), wide = fmax(half, 0.5 * step_q);
-    /* an element lies in the middle of its square */
+    /* Each element lies in the middle of a square of size 1. */
     const double x = qx / step_q + HALF + 0.5, y = qy / step_q + HALF + 0.5;
     const double h = wide / step_q;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The smear: change of a stop's diffraction pattern by dust, scratches, smudges
- * and masks, in doubles.
+ * Computes the smear, in doubles. It is the change of a stop's diffraction
+ * pattern by dust, scratches, smudges and masks.
  *
  * If T is the transmission of the stop, the amplitude is g = sqrt(T); for the
  * clear stop it is o = 1. With the Fourier transforms G and O the pattern is
@@ -31,12 +31,12 @@ enum {
 
 struct glint_smear {
     double clear; /* C */
-    /* [SIDE + 1][SIDE + 1]: running integral of D over both frequencies, cycles
-     * per radius, beginning at -SIDE / (2 SPAN); row 0 has the lowest y. NULL:
-     * dirt blocks all light */
+    /* [SIDE + 1][SIDE + 1]: running integral of D over both frequencies, which
+     * are in cycles per radius and begin at -SIDE / (2 SPAN); row 0 has the
+     * lowest y. NULL: dirt blocks all light. */
     double *sum;
-    double edge; /* mean of D around 112 cycles per radius, from which it is
-                    extrapolated */
+    double edge; /* mean of D around 112 cycles per radius; D at higher
+                    frequencies is extrapolated from it */
 };
 
 /* Computes the smear of the dirt in the stop of SETUP. Returns GLINT_E_MEMORY

@@ -10,20 +10,19 @@
 #include "engine/star/smear_table.h"
 #include "glint/view.h"
 
-/* Range of airy_px (550 nm times the f-number, pixels) for which tables are
- * made; values outside are clamped. */
+/* range of airy_px (550 nm times the f-number, pixels) for which tables are
+ * made; values out of range are clamped */
 static const double least_airy_px = 1.0 / 64, most_airy_px = 16;
 
 /* Half width of the tabulated line profiles, in multiples of the profile's
- * width, or in pixels if a pixel is wider. In the outer half, profiles fade
- * into the halo.
- */
+ * width, or in pixels if a pixel is wider. In the outer half the profiles fade
+ * out, and the halo replaces them. */
 static const double widths = 4;
 
 /* Half the length of a pixel's diagonal, pixels. */
 static const double filter_px = 0.7072;
 
-/* Size of the halo tables of extended lamps, bytes. */
+/* total size of the halo tables of extended lamps, bytes */
 static const size_t wide_bytes =
     GLINT_STAR_WIDE * GLINT_STAR_HALO_ROWS * sizeof(glint_star_halo_row);
 
@@ -60,8 +59,9 @@ static void set_line_direction(struct glint_star_line *line, double angle,
         round_and_clamp(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
 }
 
-/* Sets RGB to the profile at V, averaged over the area of a pixel that is
- * rotated by ANGLE relative to the line: a convolution with two boxes. */
+/* Sets RGB to the profile of a line at V, averaged over the area of a pixel, by
+ * a convolution with two boxes. ANGLE is the angle between the sides of the
+ * pixel and the line. */
 static void filter_profile_by_pixel(const struct glint_psf *psf,
                                     const struct window *window, double angle,
                                     double v, double rgb[3])
@@ -125,10 +125,11 @@ static void make_line_tables(struct glint_star_tables *t,
 
 /* -------------------------------------------------------------------- halo */
 
-/* Adds to RGB the light of fans, R pixels from a lamp of radius RADIUS, at V
- * pixels and the angle OFF from a line: the mean over chords of the lamp's
- * disc. Point lights are blurred slightly, too, as a fan may be thinner than a
- * pixel, and its sides steeper than the table's columns resolve. */
+/* Adds to RGB the light of fans at R pixels from a lamp of radius RADIUS. The
+ * point is V pixels and the angle OFF from a line. The light is the mean over
+ * chords of the lamp's disc. Point lights are blurred slightly, too, as a fan
+ * may be thinner than a pixel, and its sides steeper than the table's columns
+ * resolve. */
 static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
                              double v, double radius, double rgb[3])
 {
@@ -150,8 +151,8 @@ static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
     }
 }
 
-/* Sets LOG2_OF to log2 of light times r^2 at ROW and COLUMN of the halo table
- * of a lamp of radius RADIUS pixels. */
+/* Sets LOG2_OF to log2 of (light times r^2) at ROW and COLUMN of the halo table
+ * for lamps of RADIUS pixels. */
 static void compute_halo_node(const struct glint_psf *psf,
                               const struct window *window, double reach,
                               double radius, int row, int column,
@@ -172,8 +173,8 @@ static void compute_halo_node(const struct glint_psf *psf,
         log2_of[c] = log2(fmax(rgb[c] * r * r, 0x1p-60));
 }
 
-/* Computes and encodes row ROW of the halo table of a lamp of radius RADIUS,
- * and raises *MOST to the max code. */
+/* Computes and encodes row ROW of the halo table for lamps of radius RADIUS.
+ * Raises *MOST to the max code of the row. */
 static void encode_halo_row(struct glint_star_tables *t,
                             const struct glint_psf *psf,
                             const struct window *window, double radius, int row,
@@ -213,7 +214,7 @@ static void make_halo_table(struct glint_star_tables *t,
     }
 }
 
-/* Computes the halo tables of extended lamps, WIDE. */
+/* Computes WIDE, the halo tables of extended lamps. */
 static void make_wide_lamp_halos(struct glint_star_tables *t,
                                  const struct glint_psf *psf,
                                  const struct window *window,
@@ -245,12 +246,12 @@ static void set_profile_sizes(struct glint_star_tables *t,
     t->inner_q8 = (int32_t)lrint(256 * fmax(2, psf->airy_px));
 }
 
-/* Min fraction of the clear stop's pattern that remains in the tables, as a
- * logarithm of 0 does not exist. */
+/* min fraction of the clear stop's pattern in the tables; 0 has no logarithm */
 static const double least_clear = 1e-6;
 
-/* Adds dirt to the tables of the clear stop: scales lines and halo by the
- * fraction SMEAR leaves, and makes the smear table. */
+/* Adds dirt to the tables of the clear stop. Scales lines and halo by the
+ * fraction of their light that remains with dirt, and makes the table of
+ * SMEAR. */
 static enum glint_status make_dirt_smear_table(struct glint_star_tables *t,
                                                const struct glint_psf *psf,
                                                const struct glint_smear *smear,

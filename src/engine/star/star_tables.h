@@ -9,7 +9,7 @@
 #include "star/starburst.h"
 
 struct glint_star_optics {
-    int n_blades; /* 0 or 3 .. GLINT_MAX_BLADES */
+    int n_blades; /* number of blades, 3 .. GLINT_MAX_BLADES; 0: circle */
     double rotation_deg, f_number;
     double round, soft; /* as in struct glint_iris */
     double pixel_um;    /* side of a pixel on the sensor, um */
