@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Renders the exact picture, the reference for measuring models.
+ * Renders a picture with exactly traced rays, as a reference for measuring the
+ * errors of models.
  *
  *   in   every visible piece of every cell (cells.h) as a polygon with a flux
  *   out  linear light per pixel, by the exact area that polygons cover
@@ -19,10 +20,10 @@
 
 #include "bake/trace/cells.h"
 
-/* height of a band, in pixel rows; the last band may be lower */
+/* height of a band, pixel rows; only the last band may have fewer rows */
 enum { BAND = 32 };
-/* Max number of bundles (ghosts x lamps x wavelengths); more would take
- * years. */
+/* max number of bundles, which are combinations of a ghost, a lamp and a
+ * wavelength; tracing more would take years */
 enum { MAX_BUNDLES = 1 << 24 };
 
 /* A bundle of rays: one ghost, lamp and wavelength. */
@@ -30,7 +31,8 @@ struct bundle {
     const struct glint_lamp *lamp;
     int ghost, wavelength;
     bool seen;
-    /* grid of rays for this bundle; path and nodes are set when it is drawn */
+    /* grid of rays of the bundle; its path and nodes are set when the bundle is
+     * drawn */
     struct glint_cells cells;
 };
 
@@ -40,12 +42,12 @@ struct picture {
     int n_bundles;
     struct glint_cells cells; /* cells of the bundle being drawn */
     struct glint_path *path;
-    /* [n + 1][2]: min and max y of each row of nodes, pixels */
+    /* [n + 1][2]: min and max y of each row of grid nodes, pixels */
     double *row_y;
     /* [height][3][width + 2]: differences along each row of pixels */
     double *difference;
-    /* flux of a triangle (half a cell) whose rays have energy 1, per colour
-     * channel */
+    /* [channel]: flux of a triangle (half a cell of the grid) whose rays have
+     * energy 1 */
     double weight[3];
 };
 
@@ -59,16 +61,16 @@ static double *get_difference_row(const struct picture *p, int y, int channel)
 /* ------------------------------------------------------------------ deposit */
 
 /* Adds one polygon edge, clipped to one pixel row, to the differences of that
- * row. AMOUNT: light per area times signed height of the edge. X0 <= X1: the x
- * range of the edge, pixels. Every pixel to the right of X1 gets all of
- * AMOUNT. */
+ * row. AMOUNT is light per area times the signed height of the edge. The edge
+ * extends from X0 to X1, pixels, X0 <= X1. Every pixel to the right of X1 gets
+ * all of AMOUNT. */
 static void add_edge_to_row(double *row, double x0, double x1, double amount)
 {
     const int first = (int)x0;
     const int last = (int)ceil(x1) - 1;
     double before = 0;
 
-    if (last <= first) { /* the edge lies within one pixel */
+    if (last <= first) { /* The edge lies within one pixel. */
         const double right = 1 - (0.5 * (x0 + x1) - first);
 
         row[first] += amount * right;
@@ -76,14 +78,14 @@ static void add_edge_to_row(double *row, double x0, double x1, double amount)
         return;
     }
     for (int i = first; i <= last; i++) {
-        /* area to the right of the edge within pixel i */
+        /* left end of the edge within pixel i */
         const double a = i == first ? x0 : i;
         const double b = i == last ? x1 : i + 1;
         const double slope = amount / (x1 - x0);
         const double come = slope * (a - x0), go = slope * (b - x0);
-        /* A pixel gets the height that the edge has covered before the pixel,
-         * plus the area of the trapezium to the right of the edge inside the
-         * pixel. */
+        /* Each pixel gets the height that the edge has covered left of the
+         * pixel, plus the area of the trapezium on the right of the edge within
+         * the pixel. */
         const double area = come + (go - come) * (i + 1 - 0.5 * (a + b));
 
         row[i] += area - before;
@@ -164,8 +166,8 @@ static double compute_signed_area(double (*p)[2], int n)
     return 0.5 * sum;
 }
 
-/* Adds FLUX to the pixel at AT. Used for pieces without area in the picture,
- * such as those at the fold of a caustic. */
+/* Adds FLUX to the pixel at AT. It is for polygons of area 0 in the picture, as
+ * at the fold of a caustic. */
 static void add_flux_to_pixel(const struct picture *p, const struct band *band,
                               const double at[2], const double *flux)
 {
@@ -206,8 +208,8 @@ static void draw_cell_piece(const struct picture *p, const struct band *band,
         add_flux_to_pixel(p, band, polygon[0], light);
         return;
     }
-    /* Each edge of the polygon adds its height to all pixels on its right; the
-     * sign depends on whether the edge runs up or down the picture. */
+    /* Each edge of the polygon adds its height to all pixels on its right. The
+     * sign of the height is the direction of the edge, up or down. */
     for (int c = 0; c < 3; c++)
         light[c] /= -area;
     if (low[1] < band->y0)
@@ -247,8 +249,8 @@ static void convert_row_to_pixels(struct picture *p, int row)
     }
 }
 
-/* Traces row JOB of the rays. Round lenses: also sets the mirror image of the
- * row. */
+/* Traces row JOB of the rays. For a rotationally symmetric lens it also sets
+ * the mirror image of the row. */
 static void trace_ray_row(void *ctx, int job, int worker)
 {
     struct picture *p = ctx;
@@ -317,8 +319,8 @@ static enum glint_status list_ray_bundles(struct picture *p)
     const int ghosts = c->setup->n_ghosts, waves = c->setup->n_wavelengths;
     const uint64_t n = (uint64_t)c->n_lamps * (uint64_t)(ghosts * waves);
     const size_t most =
-        /* limits the array to half of the address space, also with 32-bit
-         * addresses */
+        /* The size of the array is limited to half of the address space, for
+         * 32-bit addresses. */
         SIZE_MAX / 2 / sizeof *p->bundle;
     const int all = n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 
@@ -383,7 +385,8 @@ static enum glint_status draw_all_bundles(struct picture *p)
     return status;
 }
 
-/* Sets RGB to the running sums of the differences along each row. */
+/* Sets RGB to the light of each pixel: the running sum of the differences along
+ * its row. */
 static void integrate_differences(const struct picture *p, double *rgb)
 {
     const int width = p->cfg->view.width;

@@ -2,16 +2,17 @@
  *
  * Draws a frame with exactly traced rays instead of a model (--rays exact).
  *
- * Light points (lamps, and the sample points of area lamps) whose directions
- * are close to each other are grouped into patches. Each ghost has one ray
- * field per patch (ray_field.h). The number of wavelengths of a field depends
- * on how far its colours separate on the sensor. Fields too faint for any pixel
- * are skipped. The flare rasteriser requests vertices row by row; they are
- * interpolated from the traced rays of the field.
+ * Light points are lamps, and the sample points of area lamps. Points in
+ * similar directions are grouped into patches. Each ghost has one ray field per
+ * patch (ray_field.h). A ray field traces a few rays and interpolates all
+ * others. The number of wavelengths of a field depends on how far its colours
+ * separate on the sensor. Fields too faint for any pixel are skipped. The flare
+ * rasteriser requests vertices row by row, which are interpolated from the
+ * field.
  *
- * Memory is bounded. A field whose rays do not fit is traced again each time
- * that it is needed; a picture whose edges do not fit is drawn in bands of
- * rows. Neither changes the result. */
+ * Memory is bounded. A field whose rays do not fit into memory is traced again
+ * on each use. A picture whose edges do not fit is drawn in bands of rows.
+ * Neither changes the result. */
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -22,45 +23,47 @@
 #include "engine/frame/frame_parts.h"
 #include "engine/setup/degrees.h"
 
-/* Max number of bundles per frame. A bundle: one ghost, light point and
- * wavelength. */
+/* max number of bundles per frame; a bundle is one ghost, light point and
+ * wavelength */
 enum { MAX_BUNDLES = 1 << 20 };
 
-/* Max bytes for traced rays, and for edges; the frame may have a lower
- * limit. */
+/* max bytes for traced rays, and max bytes for edges; a frame may have a lower
+ * limit */
 #define MOST_BYTES ((size_t)128 << 20)
 
-/* Max width of a patch, degrees. Interpolated positions are then off by less
- * than 0.1 pixel. */
+/* max width of a patch, degrees; interpolated positions are then wrong by less
+ * than 0.1 pixel */
 #define SPAN_DEG 1.0
 
-/* Distance of the outermost sample point of an area lamp from its centre / the
- * lamp's largest semi-axis, approximate. */
+/* distance of the outermost sample point of an area lamp from its centre / the
+ * lamp's major semi-axis, approximate */
 #define REACH 2.2
 
-/* PARTS: max number of progress reports per loop over jobs. LEAST_PART: min
- * number of jobs between two reports. */
+/* PARTS: max number of progress reports while jobs run. LEAST_PART: min number
+ * of jobs between two reports. */
 enum { PARTS = 100, LEAST_PART = 4 };
 
 /* Initial capacity per bundle: number of edges, and number of references to
  * edges from tiles. Enough for most frames. */
 #define EDGES 128.0
 
-/* Progress, 0 .. 1, when all rays are traced. Measuring the ghosts ends at
- * GLINT_FRAME_FOUND. It is skipped for those that an earlier frame has
- * measured; measuring more of them continues from there to MEASURED_MORE. */
+/* Progress of a frame, 0 .. 1: TRACED when all rays are traced. Measuring the
+ * ghosts raises it from 0 to GLINT_FRAME_FOUND. If an earlier frame has
+ * measured some of the ghosts, it is raised from there to MEASURED_MORE
+ * instead. */
 #define MEASURED_MORE 0.65
 #define TRACED        0.85
 
 /* A light point: a lamp, a sample point of an area lamp, or the sum of several
- * nearby points. Points form levels of detail: each level has about half as
- * many points as the level before. Faint ghosts are drawn from a higher
+ * nearby points. Points form levels of detail. Each level has about half as
+ * many points as the level before, and faint ghosts are drawn from a higher
  * level. */
 enum { LEVELS = 8 };
 struct point {
     struct glint_lamp lamp;
     double at[2];
-    /* radius of the lamps that the point represents, in the unit of at */
+    /* radius around at that contains the lamps that the point represents, in
+     * the unit of at */
     double reach;
     int patch;
     int first, last; /* the point belongs to the levels first .. last */
@@ -74,7 +77,8 @@ struct wave_set {
     double unit_flux[GLINT_MAX_WAVELENGTHS];
 };
 
-/* One bundle: the rays of a field for one light point and one wavelength. */
+/* One bundle: the rays of one ray field for one light point and one
+ * wavelength. */
 struct ray_bundle {
     int field, point, wave;
     /* range of pixel rows that the bundle covers; low > high: unknown */
@@ -87,8 +91,8 @@ struct ray_worker {
     struct ray_bundle *bundle;
     float low, high;
     int in_mem; /* index of the field whose rays are in mem; -1: none */
-    /* memory for the rays of the largest field that is traced again on each
-     * use */
+    /* memory for the rays of a field that is traced again on each use; large
+     * enough for the largest */
     void *mem;
 };
 
@@ -98,30 +102,34 @@ struct traced {
     int n_sets;
     struct point *point;
     struct ray_patch *patch;
-    /* [patches][n_ghosts of the setup]: fields measured for whole patches */
+    /* [patches][n_ghosts of the setup]: fields measured for complete patches,
+     * which later frames may reuse */
     struct ray_field *measured;
     /* [fields]: fields of this frame, with their grids */
     struct ray_field *field;
-    /* [fields]: index of the field's wavelength set; -1: field is skipped */
+    /* [fields]: index of the field's set of wavelengths; -1: the field is
+     * skipped */
     int *set_of;
-    /* [fields]: traced rays of the field; NULL: traced on each use */
+    /* [fields]: traced rays of the field; NULL: the field is traced on each
+     * use */
     void **mem;
     struct ray_bundle *bundle;
     struct ray_worker *worker;
     bool in_codes;
-    /* [fields]: level of the light points from which the field is drawn */
+    /* [fields]: level of the light points with which the field is drawn */
     int *level;
     /* optics of the setup for which the fields were measured */
     struct glint_optics optics;
     int n_ghosts;
     int n_points, n_patches, n_fields, n_bundles, n_workers;
-    double found; /* progress when the fields were measured, 0 .. 1 */
+    double found; /* progress of the frame when the fields had been measured, 0
+                     .. 1 */
     struct glint_flare_rays rays;
 };
 
 struct job {
     struct glint_frame *frame;
-    int first; /* index of the first job of the current part */
+    int first; /* index of the first job of the group of jobs that runs */
 };
 
 static struct traced *get_traced_state(const struct glint_frame *f)
@@ -129,8 +137,8 @@ static struct traced *get_traced_state(const struct glint_frame *f)
     return f->memory.traced;
 }
 
-/* Frees the arrays that depend on the current frame only; preserves points,
- * patches and measured fields. */
+/* Frees the arrays that depend on the current frame only. Points, patches and
+ * measured fields remain. */
 static void free_frame_plan(struct traced *t)
 {
     for (int i = 0; i < t->n_fields && t->mem; i++)
@@ -164,8 +172,8 @@ static void free_traced_arrays(struct traced *t)
     t->n_points = t->n_patches = t->n_fields = 0;
 }
 
-/* Runs N jobs in parts and reports progress after each part, from FROM to TO
- * (fractions of the frame's work). */
+/* Runs N jobs in groups, and reports progress after each group. The progress
+ * rises from FROM to TO, fractions of the frame's work. */
 static void run_jobs_with_progress(struct glint_frame *f, int n,
                                    glint_job_fn *each, double from, double to)
 {
@@ -198,8 +206,8 @@ static void insert_wavelength(struct wave_set *set, double nm,
     set->unit_flux[i] = unit_flux;
 }
 
-/* Copies the wavelength sets of setup S, or its only list of wavelengths,
- * sorted by wavelength. */
+/* Copies the sets of wavelengths of setup S, sorted by wavelength. If S has
+ * only one list of wavelengths, that list becomes the only set. */
 static void set_wavelength_sets(struct traced *t, const struct glint_setup *s,
                                 struct ray_field_config *cfg)
 {
@@ -227,10 +235,11 @@ static double compute_band_width(const struct wave_set *set)
     return 1 / (a * a) - 1 / (b * b);
 }
 
-/* Returns the index of the smallest wavelength set whose separate wavelengths
- * are not visible in FIELD: the brightness step between them is below STEP, or
- * they lie less than the pixel distance of the dispersion dial apart. LIGHT:
- * mean brightness of the field from one light point; 1: display white. Compare
+/* Returns the index of the smallest set of wavelengths for FIELD without
+ * visible steps of colour. Steps are invisible if the brightness step between
+ * wavelengths is below STEP, or if their images lie less than the pixel
+ * distance of the quality parameter for dispersion apart. LIGHT: mean
+ * brightness of the field from one light point, 1 = display white. Compare
  * wave_sets.c. */
 static int choose_wavelength_set(const struct glint_frame *f,
                                  const struct ray_field *field, double light,
@@ -281,8 +290,8 @@ static void extend_range_by_point(const struct point *p, double low[2],
     }
 }
 
-/* Returns the patch that covers the coordinates LOW .. HIGH relative to azimuth
- * PHI_DEG. */
+/* Returns the patch of directions with the coordinates LOW .. HIGH relative to
+ * azimuth PHI_DEG. */
 static struct ray_patch make_direction_patch(const struct traced *t,
                                              double phi_deg,
                                              const double low[2],
@@ -294,7 +303,8 @@ static struct ray_patch make_direction_patch(const struct traced *t,
         p.middle[k] = 0.5 * (low[k] + high[k]);
         p.half[k] = 0.5 * (high[k] - low[k]);
     }
-    /* either both half sizes are 0 or none, so that cross terms are known */
+    /* Either both half sizes are 0 or none is, so that the cross terms of the
+     * interpolation are known. */
     if (!t->cfg.round && (p.half[0] > 0 || p.half[1] > 0))
         for (int k = 0; k < 2; k++)
             p.half[k] = fmax(p.half[k], 1e-4);
@@ -315,8 +325,9 @@ static void add_patch_for_points(const struct traced *t, struct point *point,
     patch[n] = make_direction_patch(t, phi_deg, low, high);
 }
 
-/* Round lenses: sorts N points by angle off the axis and appends their patches
- * to PATCH[HAD]. Returns the new number of patches. */
+/* For rotationally symmetric lenses: sorts N points by angle off the axis and
+ * groups them into patches. Appends the patches to the HAD patches in PATCH.
+ * Returns the new number of patches. */
 static int group_points_by_angle(const struct traced *t, struct point *point,
                                  int n, struct ray_patch *patch, int had)
 {
@@ -342,9 +353,10 @@ static int group_points_by_angle(const struct traced *t, struct point *point,
     return had;
 }
 
-/* Lenses that are not round: starts a patch at the first point without one,
- * adds all points close to it, and repeats until all N points are in a patch.
- * Appends to PATCH[HAD]. Returns the new number of patches. */
+/* For lenses that are not rotationally symmetric: starts a patch at the first
+ * point without a patch, adds all points close to it, and repeats this until
+ * all N points have a patch. Appends the patches to the HAD patches in PATCH.
+ * Returns the new number of patches. */
 static int group_nearby_points(const struct traced *t, struct point *point,
                                int n, struct ray_patch *patch, int had)
 {
@@ -386,8 +398,8 @@ static bool is_point_in_patch(const struct ray_patch *patch,
            fabs(p->at[1] - patch->middle[1]) <= patch->half[1];
 }
 
-/* Returns the radius, in patch coordinates, that contains all sample points of
- * LAMP. */
+/* Returns the radius around LAMP, in patch coordinates, that contains all its
+ * sample points. */
 static double compute_lamp_radius(const struct traced *t,
                                   const struct glint_lamp *lamp)
 {
@@ -397,10 +409,10 @@ static double compute_lamp_radius(const struct traced *t,
            (t->cfg.round ? cosine * 180 / GLINT_PI : 1);
 }
 
-/* Makes patches that each contain one or more whole LAMPS; skips lamps wider
- * than a patch. Returns their number. These patches do not depend on the
- * picture size, which determines the number of sample points per lamp, so their
- * fields can be reused. ROOM: scratch memory. */
+/* Makes patches that each contain one or more complete LAMPS. Skips lamps wider
+ * than a patch. Returns the number of patches. The number of sample points per
+ * lamp depends on the picture's size, but these patches do not, so their fields
+ * can be reused. ROOM: scratch memory. */
 static int make_lamp_patches(const struct traced *t,
                              const struct glint_lamp *lamps, int n,
                              struct point *room, struct ray_patch *patch)
@@ -417,8 +429,8 @@ static int make_lamp_patches(const struct traced *t,
     return group_points_in_patches(t, room, narrow, patch, 0);
 }
 
-/* Assigns points to those of the N patches FROM that contain them. Moves the
- * other points to the front and returns their number. */
+/* Assigns points to those of the first N patches that contain them. Moves all
+ * other points to the front of the list and returns their number. */
 static int assign_points_to_patches(struct traced *t,
                                     const struct ray_patch *from, int n)
 {
@@ -447,7 +459,7 @@ static int assign_points_to_patches(struct traced *t,
 
 /* ------------------------------------------------------------------- levels */
 
-/* Sets D to the unit direction of LAMP times its light, and returns its
+/* Sets D to the unit direction of LAMP times the light of LAMP. Returns that
  * light. */
 static double compute_weighted_direction(const struct glint_lamp *lamp,
                                          double d[3])
@@ -461,8 +473,8 @@ static double compute_weighted_direction(const struct glint_lamp *lamp,
     return light;
 }
 
-/* Sets BOTH to a point with the summed light of A and B, in the mean direction
- * weighted by light. */
+/* Sets BOTH to a point with the sum of the light of A and B. Its direction is
+ * the mean of their directions, weighted by light. */
 static void merge_two_points(const struct traced *t, const struct point *a,
                              const struct point *b, struct point *both)
 {
@@ -484,8 +496,9 @@ static void merge_two_points(const struct traced *t, const struct point *a,
     set_point_coordinates(t, both, t->patch[a->patch].phi_deg);
 }
 
-/* Returns the squared distance between the unit directions of A and B, close to
- * their squared angle in radians; HUGE_VAL if one has no light. */
+/* Returns the squared distance between the unit directions of A and B. It is
+ * close to the squared angle between them in radians. Returns HUGE_VAL if a
+ * point has no light. */
 static double compute_squared_distance(const struct point *a,
                                        const struct point *b)
 {
@@ -551,8 +564,8 @@ static void build_point_levels(struct traced *t)
 
 /* --------------------------------------------------------------------- plan */
 
-/* Returns whether GHOST, the index of a ghost or of a part of one, is drawn in
- * this frame. */
+/* Returns whether this frame draws GHOST, the index of a ghost or of a part of
+ * a ghost. */
 static bool is_ghost_drawn(const struct glint_frame *f, int ghost)
 {
     return (f->only_ghost < 0 ||
@@ -560,7 +573,8 @@ static bool is_ghost_drawn(const struct glint_frame *f, int ghost)
            (!f->tints || f->tints[ghost].gain.mantissa > 0);
 }
 
-/* Returns whether FIELD is drawn but was not measured by an earlier frame. */
+/* Returns whether FIELD is drawn and still has to be measured, as no earlier
+ * frame has measured it. */
 static bool is_field_unmeasured(const struct glint_frame *f,
                                 const struct ray_field *field)
 {
@@ -604,15 +618,15 @@ static bool is_field_in_picture(const struct glint_frame *f,
            fabs(x * d + y * c) - fabs(d) * w - fabs(c) * h < half_h;
 }
 
-/* Returns the azimuth, degrees, by which the ghost of a field is rotated for
- * point P. */
+/* Returns the azimuth, degrees, by which the ghosts of point P are rotated in
+ * the picture. */
 static double get_field_azimuth(const struct traced *t, const struct point *p)
 {
     return t->cfg.round ? p->lamp.phi_deg : t->patch[p->patch].phi_deg;
 }
 
-/* Returns the light of point P through GHOST in its brightest channel, per mm^2
- * of pupil flux. */
+/* Returns the light of point P through GHOST, max over the colour channels, per
+ * mm^2 of pupil flux. */
 static double compute_point_light(const struct glint_frame *f,
                                   const struct point *p, int ghost)
 {
@@ -634,7 +648,8 @@ static double compute_field_pixels(const struct glint_frame *f,
     return (s[1] - s[0]) * (s[3] - s[2]) / (pixel * pixel) + 1;
 }
 
-/* Returns the flux of FIELD without any blocked rays, mm^2: an upper bound. */
+/* Returns the flux that FIELD would have if no ray were blocked, mm^2: an upper
+ * bound of its flux. */
 static double compute_unblocked_flux(const struct ray_field *field)
 {
     const struct glint_pupil *p = &field->pupil;
@@ -642,8 +657,8 @@ static double compute_unblocked_flux(const struct ray_field *field)
     return (p->x1_mm - p->x0_mm) * glint_pupil_height(p) * field->energy_unit;
 }
 
-/* Computes the light through FIELD from the points of LEVEL: the sum ALL over
- * all points, and the max MOST of a single point. */
+/* Computes the light that the points of LEVEL send through FIELD: ALL, the sum
+ * over all points, and MOST, the max of a single point. */
 static void sum_point_light(const struct glint_frame *f, int field, int level,
                             double *all, double *most)
 {
@@ -661,7 +676,7 @@ static void sum_point_light(const struct glint_frame *f, int field, int level,
         }
 }
 
-/* Returns whether the fields of T were measured with the lens and the
+/* Returns whether the fields of T were measured with the lens and the band of
  * wavelengths of CFG. */
 static bool is_same_lens_and_band(const struct traced *t,
                                   const struct ray_field_config *cfg)
@@ -686,7 +701,7 @@ struct measured_fields {
 };
 
 /* Moves the patches and fields of T to HAD if they were measured with the lens
- * and the wavelengths of CFG; else sets HAD empty. */
+ * and the band of wavelengths of CFG. Otherwise sets HAD empty. */
 static void move_measured_fields(struct traced *t,
                                  const struct ray_field_config *cfg,
                                  struct measured_fields *had)
@@ -700,8 +715,8 @@ static void move_measured_fields(struct traced *t,
     t->measured = NULL;
 }
 
-/* Groups LAMPS in patches and builds their levels. LAMPS[N]: sample points of
- * the N_GIVEN lamps GIVEN. */
+/* Groups LAMPS into patches and builds the levels of their points. LAMPS has N
+ * elements, the sample points of the N_GIVEN lamps in GIVEN. */
 static enum glint_status
 group_lamps_in_patches(struct traced *t, const struct glint_lamp *lamps, int n,
                        const struct glint_lamp *given, int n_given)
@@ -737,8 +752,8 @@ static bool are_patches_equal(const struct ray_patch *a,
            a->half[1] == b->half[1];
 }
 
-/* Returns the fields of HAD for PATCH, or NULL. They are bit-identical to a new
- * measurement. */
+/* Returns the fields that HAD has measured for PATCH, or NULL. They are
+ * bit-identical to a new measurement. */
 static const struct ray_field *
 find_measured_fields(const struct measured_fields *had,
                      const struct ray_patch *patch, int n_ghosts)
@@ -749,8 +764,8 @@ find_measured_fields(const struct measured_fields *had,
     return NULL;
 }
 
-/* Allocates one field per ghost and patch. Copies those that HAD has
- * measured. */
+/* Allocates one field per ghost and patch. Copies the fields that HAD has
+ * measured already. */
 static enum glint_status
 allocate_ghost_fields(struct traced *t, const struct measured_fields *had,
                       int n_ghosts)
@@ -776,8 +791,8 @@ allocate_ghost_fields(struct traced *t, const struct measured_fields *had,
     return GLINT_OK;
 }
 
-/* Sets the list of fields to those drawn in this frame, and chooses their grids
- * for the picture. */
+/* Sets the list of fields to the fields that this frame draws, and chooses the
+ * sizes of their grids for the picture. */
 static void list_drawn_fields(const struct glint_frame *f)
 {
     struct traced *const t = get_traced_state(f);
@@ -790,8 +805,8 @@ static void list_drawn_fields(const struct glint_frame *f)
         }
 }
 
-/* Groups N LAMPS, at least 1, into patches and measures their fields, except
- * those that HAD has measured. */
+/* Groups N LAMPS, at least 1, into patches and measures the fields of these
+ * patches. Fields that HAD has measured are copied. */
 static enum glint_status measure_lamp_fields(struct glint_frame *f,
                                              const struct glint_lamp *lamps,
                                              int n,
@@ -821,7 +836,7 @@ static enum glint_status measure_lamp_fields(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Measures the fields of LAMPS for frame F. Reuses those of the last frame if
+/* Measures the fields of LAMPS for frame F. Reuses fields of the last frame if
  * lens and wavelengths are the same. */
 static enum glint_status measure_frame_fields(struct glint_frame *f,
                                               const struct glint_lamp *lamps,
@@ -853,8 +868,8 @@ static enum glint_status measure_frame_fields(struct glint_frame *f,
     return status;
 }
 
-/* Skips ghosts that cannot reach the brightness FAINTEST in any pixel even if
- * the light of all points falls on the same pixel. */
+/* Skips the fields of ghosts that are too faint: they would stay below FAINTEST
+ * even in a pixel that the light of all points reaches. */
 static enum glint_status skip_faint_ghosts(struct glint_frame *f, double scale,
                                            double faintest)
 {
@@ -881,8 +896,8 @@ static enum glint_status skip_faint_ghosts(struct glint_frame *f, double scale,
     return GLINT_OK;
 }
 
-/* Returns whether field I uses point P: same patch, and P belongs to the
- * field's level. */
+/* Returns whether field I is drawn from point P: both have the same patch, and
+ * P belongs to the field's level. */
 static bool is_field_drawn_from_point(const struct traced *t, int i, int p)
 {
     return &t->patch[t->point[p].patch] == t->field[i].patch &&
@@ -890,8 +905,8 @@ static bool is_field_drawn_from_point(const struct traced *t, int i, int p)
 }
 
 /* Chooses the directions and wavelengths for which field I is traced. They
- * cover only the points that the field uses, which are fewer than those of its
- * patch. */
+ * cover only the points of the field's level, which are fewer than all points
+ * of its patch. */
 static void choose_field_samples(struct traced *t, int i)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -905,8 +920,8 @@ static void choose_field_samples(struct traced *t, int i)
     glint_ray_field_choose_samples(&t->field[i], &range, set->nm, set->n);
 }
 
-/* Lists the bundles whose ghost overlaps the picture, sorted by field, then by
- * wavelength. */
+/* Lists the bundles of ghosts that overlap the picture, sorted by field, then
+ * by wavelength. */
 static enum glint_status list_visible_bundles(struct glint_frame *f)
 {
     struct traced *const t = get_traced_state(f);
@@ -989,8 +1004,8 @@ static void run_field_trace_job(void *ctx, int job, int worker)
         glint_ray_field_trace_rays(&t->cfg, &t->field[i], t->mem[i]);
 }
 
-/* Allocates memory for the rays of as many fields as fit into the limit, and
- * per worker for one of the others. */
+/* Allocates memory for the rays of as many fields as fit into the limit. For
+ * the remaining fields, allocates memory for one field per worker. */
 static enum glint_status allocate_ray_memory(struct glint_frame *f)
 {
     struct traced *const t = get_traced_state(f);
@@ -1025,10 +1040,10 @@ static enum glint_status allocate_ray_memory(struct glint_frame *f)
     return GLINT_OK;
 }
 
-/* Reduces the work for field I as long as the error is not visible in 8-bit
- * codes: draws it from a level with fewer points, while each point adds less
+/* Reduces the work for field I as long as the error is invisible in 8-bit
+ * codes. Draws it from a level with fewer points, while each point adds less
  * than half of STEP, and with a coarser grid. LIGHT: mean brightness of the
- * field per unit of a point's light. Errors of faint light shrink, in codes, by
+ * field for a point of light 1. In codes, errors of faint light shrink by
  * 2^(5/12) per octave. Compare plan_cells.c. */
 static void coarsen_faint_field(struct glint_frame *f, int i, double light,
                                 double step)
@@ -1051,7 +1066,7 @@ static void coarsen_faint_field(struct glint_frame *f, int i, double light,
 }
 
 /* Plans the frame: measures the fields of LAMPS, skips faint ghosts, and
- * chooses wavelengths, levels and grids. SCALE: factor on the light. */
+ * chooses wavelengths, levels and grids. SCALE is a factor on the light. */
 static enum glint_status plan_ray_frame(struct glint_frame *f,
                                         const struct glint_lamp *lamps, int n,
                                         double scale,
@@ -1093,9 +1108,9 @@ static enum glint_status plan_ray_frame(struct glint_frame *f,
     return status == GLINT_OK ? allocate_ray_memory(f) : status;
 }
 
-/* Prepares the interpolation of bundle I for compute_vertex_row(). Returns 0 if
- * the bundle lies outside rows Y0 .. Y1. Callback of struct
- * glint_flare_rays. */
+/* Callback of struct glint_flare_rays: prepares the interpolation of bundle I
+ * for compute_vertex_row(). Returns 0 if the bundle lies outside rows Y0 ..
+ * Y1. */
 static int open_ray_bundle(void *ctx, int worker, int i, int y0, int y1)
 {
     const struct glint_frame *f = ctx;
@@ -1136,13 +1151,14 @@ static void compute_vertex_row(void *ctx, int worker, int j,
             w->low = y < w->low ? y : w->low;
             w->high = y > w->high ? y : w->high;
         }
-    if (j == n) { /* cells may extend a pixel beyond their corners */
+    if (j == n) { /* Cells may extend a pixel beyond the positions of their
+                     corners. */
         w->bundle->low = w->low - 2;
         w->bundle->high = w->high + 2;
     }
 }
 
-/* Sets BUNDLE to bundle B of the frame, with its light multiplied by SCALE. */
+/* Sets BUNDLE to bundle B of the frame. SCALE is a factor on its light. */
 static void set_flare_bundle(const struct glint_frame *f,
                              const struct ray_bundle *b, double scale,
                              struct glint_bundle *bundle)
@@ -1176,8 +1192,8 @@ static void set_flare_bundle(const struct glint_frame *f,
 
 /* -------------------------------------------------------------------- frame */
 
-/* Allocates the flare's memory block for the capacities of F and adds all
- * bundles to the flare. */
+/* Allocates the flare's memory block for the capacities of F, and adds all
+ * bundles to the flare. SCALE is a factor on their light. */
 static enum glint_status begin_flare(struct glint_frame *f, double scale)
 {
     struct traced *const t = get_traced_state(f);
@@ -1209,8 +1225,8 @@ static enum glint_status begin_flare(struct glint_frame *f, double scale)
     return GLINT_OK;
 }
 
-/* Sets the capacities to N edges and REFS references. Returns the size of the
- * flare's memory block in bytes. */
+/* Sets the capacities of the flare to N edges and REFS references. Returns the
+ * size of its memory block in bytes. */
 static size_t set_edge_capacity(struct glint_frame *f, double n, double refs)
 {
     f->cfg.max_primitives = (int)fmin(INT_MAX, n);
@@ -1225,14 +1241,14 @@ static bool has_edge_capacity(const struct glint_frame *f,
            s->need_refs <= f->cfg.max_refs;
 }
 
-/* Raises the capacities to the demand that S reports, within the memory limit
- * unless ANYWAY. Returns whether a capacity grew. */
+/* Raises the capacities to the requirements in S. They stay within the memory
+ * limit unless ANYWAY. Returns whether a capacity grew. */
 static bool enlarge_edge_capacity(struct glint_frame *f,
                                   const struct glint_flare_stats *s,
                                   bool anyway)
 {
     const int had = f->cfg.max_primitives, refs_had = f->cfg.max_refs;
-    /* A single row of tiles cannot be divided: its capacity grows beyond the
+    /* A single row of tiles cannot be divided. So its capacity grows above the
      * limit until it can be drawn. */
     const double least = anyway ? 1.25 * had + 1024 : had;
     const double least_refs = anyway ? 1.25 * refs_had + 1024 : refs_had;
@@ -1257,8 +1273,8 @@ static void bin_pixel_rows(struct glint_frame *f, int y0, int y1,
     glint_flare_bin(f->memory.flare, s);
 }
 
-/* Returns the number of pixel rows, a multiple of the tile side, that fit the
- * capacities, if N rows have the demand S. */
+/* Returns the number of pixel rows that fit into the capacities, if N rows have
+ * the requirements S. It is a multiple of the tile side. */
 static int choose_fewer_rows(const struct glint_frame *f, int n,
                              const struct glint_flare_stats *s)
 {

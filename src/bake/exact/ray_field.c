@@ -8,16 +8,19 @@
 #include "engine/setup/degrees.h"
 #include "lens/grid.h"
 
-/* Cells per side of two grids of rays. SAMPLING: grid for choosing barrels and
- * the grid size. LOOKS: grid for measuring the brightness of a ghost. */
+/* Cells per side of two coarse grids of rays. SAMPLING: the grid from which the
+ * barrels and the number of grid cells are chosen. LOOKS: the grid with which
+ * the brightness of a ghost is measured. */
 enum { SAMPLING = 24, LOOKS = 16 };
-/* With fewer than FEW_INSIDE visible rays the sampling cannot determine the
- * grid size; the grid then gets CELLS_A_RADIUS cells per stop radius. */
+/* FEW_INSIDE: min number of visible rays in the grid SAMPLING from which the
+ * number of grid cells can be computed. CELLS_A_RADIUS: number of cells per
+ * stop radius if fewer rays are visible. */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
-/* number of rays per call of the tracer */
+/* number of rays that one call of the tracer traces */
 enum { SOME = 8 };
-/* Channels of a node: position in pixels and in stop radii, both in the light's
- * frame; barrels as in struct glint_vertex; energy / energy_unit. */
+/* Channels of a node: X, Y: position in pixels; STOP_X, STOP_Y: position in
+ * stop radii; both are in the light's frame. BARREL_0, BARREL_1: as in struct
+ * glint_vertex. ENERGY: energy / energy_unit. */
 enum { X, Y, STOP_X, STOP_Y, BARREL_0, BARREL_1, ENERGY, CHANNELS };
 enum { MOST_SIDE = GLINT_MAX_CELLS + 1 };
 
@@ -45,17 +48,17 @@ static void init_field_path(const struct ray_field_config *cfg,
 
 /* --------------------------------------------------------------------- look */
 
-/* Returns the curvature of the stop's edges, relative to a circular stop: 0
- * (straight blades) .. 1. */
+/* Returns the curvature of the stop's edges: 0 for straight blades, 1 for a
+ * circular stop. */
 static double compute_stop_curvature(const struct ray_field_config *cfg)
 {
     return cfg->setup->n_blades == 0 ? 1 : cfg->setup->iris.roundness;
 }
 
-/* Returns the number of cells per side: the rule of lens/grid.h, but at least
- * LEAST_CELLS, so that the rays cannot miss the opening of the stop. Near total
- * reflection the pupil box may be the whole front element, while the light
- * enters through 1 % of it. */
+/* Returns the number of cells per side by the rule of lens/grid.h, but at least
+ * LEAST_CELLS. With fewer cells the rays could miss the opening of the stop.
+ * Near total reflection the pupil box may be the complete front element, while
+ * the light enters through 1 % of it. */
 static int choose_cell_count(const struct ray_field_config *cfg,
                              const struct ray_measures *s, bool folds,
                              int *least_cells)
@@ -79,8 +82,8 @@ static int choose_cell_count(const struct ray_field_config *cfg,
         fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
 }
 
-/* Lists the barrels that block rays. First comes the barrel that forms most of
- * the outline: it has a channel of its own, because the max over several
+/* Lists the barrels that block rays. The first is the barrel that forms most of
+ * the outline. It has a channel of its own, because the max over several
  * barrels may have kinks. */
 static void list_blocking_barrels(struct ray_field *field,
                                   struct glint_sampling *sampling)
@@ -98,7 +101,7 @@ static void list_blocking_barrels(struct ray_field *field,
     }
 }
 
-/* Merges the sampling MORE of another direction into ALL. */
+/* Merges MORE, the sampling of another direction, into ALL. */
 static void merge_sampling(struct glint_sampling *all,
                            const struct glint_sampling *more)
 {
@@ -125,8 +128,8 @@ static void merge_sampling(struct glint_sampling *all,
     all->folds |= more->folds;
 }
 
-/* Sets AT to the direction at the middle of side K (0 .. 3) of PATCH. Returns
- * false if the patch has no extent in that direction. */
+/* Sets AT to the direction in the middle of side K (0 .. 3) of PATCH. Returns
+ * false if PATCH has no extent towards that side. */
 static bool get_patch_side_middle(const struct ray_field_config *cfg,
                                   const struct ray_patch *patch, int k,
                                   double at[2])
@@ -136,8 +139,9 @@ static bool get_patch_side_middle(const struct ray_field_config *cfg,
     return k < (cfg->round ? 2 : 4) && patch->half[k / 2] > 0;
 }
 
-/* Enlarges the pupil such that the ghost grows by one pixel on each side:
- * pixels whose centre lies just outside the ghost still receive light. */
+/* Enlarges the pupil of the ghost such that the ghost grows by one pixel on
+ * each side. Pixels whose centre lies just outside the ghost still receive
+ * light. */
 static void enlarge_pupil_by_pixel(const struct ray_field_config *cfg,
                                    struct glint_pupil *p)
 {
@@ -176,7 +180,8 @@ struct coarse_grid {
     double barrel[LOOKS + 1][LOOKS + 1][2];
 };
 
-/* Returns (1 + r^2) / 2 for relative radius r at the barrel of event K. */
+/* Returns (1 + r^2) / 2 at the barrel of event K, where r is the ray's distance
+ * from the axis in barrel radii. */
 static double compute_barrel_value(const struct glint_path *path, int k,
                                    double (*hits)[2])
 {
@@ -187,7 +192,7 @@ static double compute_barrel_value(const struct glint_path *path, int k,
 }
 
 /* Sets VALUE[0] to the value of the field's first barrel and VALUE[1] to the
- * max over its other barrels; 0 if there is no such barrel. */
+ * max over the other barrels of the field. A value without a barrel is 0. */
 static void compute_barrel_values(const struct ray_field *field,
                                   const struct glint_path *path,
                                   double (*hits)[2], double value[2])
@@ -240,8 +245,8 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
     }
 }
 
-/* Adds the flux of cell (I, J) to FLUX. Raises the max flux per cell and the
- * max flux per mm^2 on the sensor in MEASURES. */
+/* Adds the flux of cell (I, J) to FLUX. Raises two members of MEASURES: the max
+ * flux per cell, and the max flux per mm^2 on the sensor. */
 static void add_cell_flux(const struct coarse_grid *l, int i, int j,
                           double *flux, struct ray_measures *measures)
 {
@@ -272,15 +277,17 @@ static void add_cell_flux(const struct coarse_grid *l, int i, int j,
         fmax(measures->density, energy * l->cell_mm2 / fmax(area, 1e-12));
 }
 
-/* Sums over pairs of neighbouring rays: squared distances in the stop, stop
- * radii^2, and second differences of both barrel values. */
+/* Sums over pairs of neighbouring rays: squared distances between their
+ * positions in the stop, stop radii^2, and second differences of both barrel
+ * values. */
 struct difference_sums {
     int n_steps, n_bends;
     double step2, bend[2];
 };
 
-/* Adds the squared distance in the stop between rays (I, J) and (I + DI, J +
- * DJ), and the second difference of the barrel values at ray (I, J). */
+/* Adds the squared distance in the stop between ray (I, J) and its neighbour (I
+ * + DI, J + DJ). Adds the second difference of the barrel values at ray (I, J)
+ * in the same direction. */
 static void add_second_differences(const struct coarse_grid *l, int i, int j,
                                    int di, int dj, double stop_mm,
                                    struct difference_sums *b)
@@ -305,9 +312,9 @@ static void add_second_differences(const struct coarse_grid *l, int i, int j,
     b->n_bends++;
 }
 
-/* Sets the sags of MEASURES, the interpolation errors of a grid of one cell: (D
- * + E) / 12, where D and E are the second differences along rows and columns.
- */
+/* Sets the sags of MEASURES, which are the interpolation errors of a grid of
+ * one cell. A sag is (D + E) / 12, where D and E are the second differences
+ * along rows and columns. */
 static void compute_barrel_sags(struct ray_measures *measures, double stop_mm,
                                 const struct coarse_grid *l)
 {
@@ -327,8 +334,8 @@ static void compute_barrel_sags(struct ray_measures *measures, double stop_mm,
     }
 }
 
-/* Measures flux, brightness and interpolation errors (sags) of FIELD, and how
- * far its colours separate. */
+/* Measures FIELD: its flux, brightness, interpolation errors (sags), and how
+ * far its colours separate on the sensor. */
 static void measure_brightness(const struct ray_field_config *cfg,
                                struct ray_field *field)
 {
@@ -367,7 +374,7 @@ static void measure_brightness(const struct ray_field_config *cfg,
     field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
     compute_barrel_sags(measures, cfg->setup->optics.stop_radius_mm, &look[1]);
     field->energy_unit = 1.5 * most;
-    /* all rays of the coarse grid miss the opening of the stop */
+    /* In this case all rays of the coarse grid miss the opening of the stop. */
     if (field->flux == 0) {
         field->flux = field->pupil.energy *
                       (field->pupil.x1_mm - field->pupil.x0_mm) *
@@ -376,7 +383,7 @@ static void measure_brightness(const struct ray_field_config *cfg,
     }
 }
 
-/* Finds the region of the pupil that contains the visible rays for all
+/* Finds the part of the pupil through which visible rays enter, for all
  * directions of the patch and all wavelengths. Returns false if no light
  * passes. */
 static bool find_pupil_of_whole_patch(const struct ray_field_config *cfg,
@@ -539,7 +546,7 @@ size_t glint_ray_field_compute_bytes(const struct ray_field_config *cfg,
 /* -------------------------------------------------------------------- trace */
 
 /* Sets the channels of NODE from RAY. Returns false if a value exceeds the
- * range of a vertex; positions must not be clamped. */
+ * range of a vertex, as a clamped position would be wrong. */
 static bool set_node_channels(const struct ray_field_config *cfg,
                               const struct ray_field *field,
                               const struct glint_path *path,
@@ -635,7 +642,8 @@ static double compute_lagrange_weight(double x, const double at[3], int k)
     return (x - a) * (x - b) / ((at[k] - a) * (at[k] - b));
 }
 
-/* Adds the weights that interpolate the traced wavelengths at NM, times BY. */
+/* Adds, times BY, the weights that interpolate a value at wavelength NM from
+ * the values at the traced wavelengths. */
 static void add_wavelength_weights(struct ray_place *p, double nm, double by)
 {
     const struct ray_field *f = p->field;
@@ -662,8 +670,9 @@ static void add_wavelength_weights(struct ray_place *p, double nm, double by)
             (float)(by * compute_lagrange_weight(1 / (nm * nm), at, k));
 }
 
-/* Corrects the weights at both ends of the band, where positions change with
- * the direction offset T by another amount than at the middle wavelength. */
+/* Corrects the weights at both ends of the band of wavelengths. There a
+ * direction offset T changes positions by another amount than at the middle
+ * wavelength. */
 static void add_band_end_weights(struct ray_place *p, const double t[2],
                                  double nm, int first, bool both)
 {
