@@ -23,8 +23,8 @@ void glint_bright_allocate(struct glint_bright *b, struct glint_arena *arena,
         glint_arena_allocate(arena, count_blocks(width), sizeof *b->marked);
 }
 
-/* Clears the brightness values beyond WIDTH in the last block, as whole words
- * are read there. */
+/* Clears the brightness values after pixel WIDTH - 1 in the last block, as this
+ * block is read in whole words. */
 void glint_bright_clear_padding(struct glint_bright *b, int width)
 {
     const int padded = (int)count_blocks(width) * BRIGHT_BLOCK;
@@ -35,9 +35,9 @@ void glint_bright_clear_padding(struct glint_bright *b, int width)
         b->value[x] = 0;
 }
 
-/* Fills BEYOND, a table from the luma of a clipped pixel to its brightness: 250
- * for luma below 192, then 1 more per 15 of luma, up to 255 for luma of 252 or
- * more. */
+/* Fills BEYOND, a table from the luma of a clipped pixel to the pixel's
+ * brightness. The brightness is 250 for luma below 192, then 1 more per 15 of
+ * luma, up to 255 for luma of 252 or more. */
 static void fill_clipped_brightness_table(uint8_t beyond[256])
 {
     for (int luma = 0; luma < 256; luma++)

@@ -11,17 +11,17 @@
  *              ... b->value in blocks with nonzero b->block,
  *              glint_bright_read_pixel_light(b, x) ...
  *
- * Brightness is the largest channel, so that lamps of any colour are found.
- * Below BRIGHT_CLIPPED it is that channel's full-range code. From there on the
- * largest channel is clipped, and brightness rises with luma, which rises with
- * the two other channels: the sun is brighter than the red sky around it.
+ * The brightness of a pixel is its largest channel, so that lamps of any colour
+ * are found. Below BRIGHT_CLIPPED it is the full-range code of that channel.
+ * Otherwise the largest channel is clipped, and brightness rises with luma, to
+ * which the two other channels contribute. So the sun is brighter than the red
+ * sky around it.
  *
  * Most of a night picture is dark. Dark blocks are found without computing
  * brightness: eight bytes at a time are compared with the min code that a
  * bright pixel must have, and blocks of BRIGHT_BLOCK pixels without such a byte
  * are skipped. For pictures in Y, Cb, Cr, a block's max luma and its min and
- * max chroma give an upper bound of its R, G and B.
- */
+ * max chroma give an upper bound of its R, G and B. */
 #ifndef GLINT_LAMPS_BRIGHT_H
 #define GLINT_LAMPS_BRIGHT_H
 
@@ -32,15 +32,15 @@ struct glint_arena;
 
 enum {
     BRIGHT_BLOCK = 32,    /* pixels per block */
-    BRIGHT_CLIPPED = 250, /* min code of a clipped channel; clipped channels
-                             have no colour information */
+    BRIGHT_CLIPPED = 250, /* min code of a channel that counts as clipped;
+                             clipped channels carry no colour information */
     /* brightness of clipped pixels whose luma is 237 .. 251 */
     BRIGHT_WHITE = 254,
     BRIGHT_HOT = 255 /* brightness of clipped pixels of luma 252 or more */
 };
 
-/* The addresses of one channel (Y, Cb, Cr, R, G, B or a byte of RGB565) of a
- * row's pixels. */
+/* The memory layout of one channel of a row. The channel is Y, Cb, Cr, R, G, B
+ * or a byte of RGB565. */
 struct glint_bright_code {
     const uint8_t *first;
     int step, shift; /* the code of pixel x is at first + (x >> shift) * step */
@@ -48,11 +48,13 @@ struct glint_bright_code {
 
 struct glint_bright {
     int width;
-    uint8_t *value;  /* [width, rounded up to whole blocks]: brightness of the
-                        row's pixels; only set in marked blocks */
-    uint8_t *block;  /* [width / BRIGHT_BLOCK, rounded up]: max brightness in a
-                        block, or 0 if it is below low */
-    int32_t *marked; /* indices of the blocks with nonzero block[i], rising */
+    uint8_t *value;  /* [width, rounded up to complete blocks]: brightness of
+                        the row's pixels; set only in blocks that are listed in
+                        marked */
+    uint8_t *block;  /* [number of blocks]: max brightness in the block, or 0 if
+                        it is below low */
+    int32_t *marked; /* indices of the blocks with a nonzero value in BLOCK,
+                        rising */
     int n_marked;
 
     /* Private. */
@@ -60,20 +62,20 @@ struct glint_bright {
     const struct glint_layout *layout;
     /* channels of the row: Y Cb Cr, or R G B, or two bytes */
     struct glint_bright_code code[3];
-    int n_codes;  /* number of channels in use; the other elements of CODE
+    int n_codes;  /* number of channels in use; the remaining elements of CODE
                      repeat the first */
     int low;      /* min brightness of a bright pixel, 1 .. 255 */
-    int low_code; /* min code (of grey, R, G or B) that makes a pixel bright;
-                     256 if no code does */
-    int32_t low_sum_q16; /* min value of the max channel, computed from Y, Cb
-                            and Cr, of a bright pixel, minus one code for
-                            rounding */
+    int low_code; /* min code (of grey, R, G or B) of a bright pixel; 256 if no
+                     code is bright */
+    int32_t low_sum_q16; /* min value of the largest channel of a bright pixel,
+                            computed from Y, Cb and Cr; one code lower, to allow
+                            for rounding */
     struct glint_curve *curve;
-    int curve_tone; /* transfer function that the table CURVE was made for; -1
-                       if there is no table yet */
+    int curve_tone; /* transfer function of the table CURVE; -1 if there is no
+                       table yet */
     struct glint_ycc ycc;
     uint8_t *full_luma; /* [256]: full-range luma of each Y code */
-    uint8_t *beyond;    /* [256]: brightness of a clipped pixel by its luma */
+    uint8_t *beyond;    /* [luma]: brightness of a clipped pixel */
 };
 
 /* Allocates the tables for rows of WIDTH pixels from ARENA. If ARENA only
@@ -99,8 +101,9 @@ int glint_bright_scan_row(struct glint_bright *b, int y);
 void glint_bright_read_pixel_light(const struct glint_bright *b, int x,
                                    int32_t rgb_q20[3]);
 
-/* Returns the difference in linear light between LIGHT and the next higher code
- * of channel C in formats with fewer than 8 bits, else 0. */
+/* Returns the resolution of the pixel format at LIGHT: the linear light of the
+ * next higher code of channel C minus LIGHT. Returns 0 for formats with 8 bits
+ * or more. */
 int32_t glint_bright_compute_code_step_q20(const struct glint_bright *b, int c,
                                            int32_t light_q20);
 

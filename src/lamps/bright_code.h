@@ -91,8 +91,8 @@ bright_compute_rgb_brightness(const struct glint_bright *b, int x)
                                     : b->beyond[bright_compute_luma(rgb)];
 }
 
-/* Returns what Cb and Cr of pixel X add to its luma in the largest of R, G and
- * B, in full-range codes. */
+/* Returns the largest amount, over R, G and B, that Cb and Cr of pixel X add to
+ * its luma, in full-range codes. */
 static WHOLLY_INLINE int32_t
 bright_compute_max_chroma_term_q16(const struct glint_bright *b, int x)
 {

@@ -11,8 +11,8 @@
 
 /* ------------------------------------------------------------ one threshold */
 
-/* Finds bytes of CODE or more among N words at P. Returns the OR of one mask
- * per word, with the high bit of each such byte set. */
+/* Tests N words at P for bytes of value CODE or more. Returns the OR of one
+ * mask per word, in which the high bit of each such byte is set. */
 static WHOLLY_INLINE uint64_t find_bytes_at_or_above_code(const uint8_t *p,
                                                           int n, int code,
                                                           int is_above_128)
@@ -26,7 +26,7 @@ static WHOLLY_INLINE uint64_t find_bytes_at_or_above_code(const uint8_t *p,
 }
 
 /* Returns the min RGB565 sample of N_BITS bits whose 8-bit code is CODE or
- * more. The 8-bit code repeats the sample's highest bits below it. */
+ * more. The 8-bit code is the sample followed by its highest bits. */
 static int find_min_rgb565_sample(int code, int n_bits)
 {
     int v = 0;
@@ -37,8 +37,8 @@ static int find_min_rgb565_sample(int code, int n_bits)
     return v;
 }
 
-/* Finds pixels with a sample of CODE or more among N words of four RGB565
- * pixels at P. Returns the OR of one mask per word, with a bit set for each
+/* Tests N words of four RGB565 pixels at P for pixels with a sample of CODE or
+ * more. Returns the OR of one mask per word, in which a bit is set for each
  * such pixel. */
 static uint64_t find_rgb565_samples_at_or_above_code(const uint8_t *p, int n,
                                                      int code)
@@ -60,8 +60,8 @@ static uint64_t find_rgb565_samples_at_or_above_code(const uint8_t *p, int n,
     return found;
 }
 
-/* Returns a mask of the bytes of a word that hold colour samples rather than
- * padding. */
+/* Returns a mask of the bytes of a word that have colour samples; all other
+ * bytes are padding. */
 static uint64_t compute_sample_mask(const struct glint_layout *layout)
 {
     const struct glint_layout_sample *s = &layout->sample[0];
@@ -77,8 +77,8 @@ static WHOLLY_INLINE uint64_t find_high_bytes(const uint8_t *p, int n, int code)
                       : find_bytes_at_or_above_code(p, n, code, 0);
 }
 
-/* Returns a mask for a quick test of bytes: bytes of CODE or more have a bit in
- * common with it. All bytes of the mask are equal. */
+/* Returns a mask for a quick test of bytes. Bytes of CODE or more have a bit in
+ * common with it. All eight bytes of the mask are equal. */
 static uint64_t compute_bright_byte_mask(int code)
 {
     const int highest = (1 << bit_length((uint64_t)code)) >> 1;
@@ -87,7 +87,7 @@ static uint64_t compute_bright_byte_mask(int code)
 }
 
 /* Returns the OR of N words at P. Load and OR are separate statements, as gcc
- * loads single bytes otherwise. */
+ * would load single bytes if they were one. */
 static WHOLLY_INLINE uint64_t or_together_words(const uint8_t *p, int n)
 {
     uint64_t bits = 0;
@@ -101,9 +101,9 @@ static WHOLLY_INLINE uint64_t or_together_words(const uint8_t *p, int n)
     return bits;
 }
 
-/* Marks those complete blocks of a row without chroma at PX that may be bright.
- * STEP: bytes per pixel. If the OR of a block's bytes has none of the bits of a
- * bright byte, the block is dark; most blocks are. */
+/* Marks the complete blocks of a row without chroma at PX that may be bright.
+ * STEP is the number of bytes per pixel. A block is dark if the OR of its bytes
+ * has no bit in common with the mask of bright bytes. Most blocks are dark. */
 static WHOLLY_INLINE int
 mark_bright_blocks_without_chroma(struct glint_bright *b, const uint8_t *px,
                                   int step)
@@ -124,7 +124,7 @@ mark_bright_blocks_without_chroma(struct glint_bright *b, const uint8_t *px,
 }
 
 /* Calls mark_bright_blocks_without_chroma() with a constant number of bytes per
- * pixel, so that its inner loops have constant bounds. */
+ * pixel. So its inner loops have constant bounds. */
 static int mark_bright_blocks_by_pixel_bytes(struct glint_bright *b,
                                              const uint8_t *px)
 {
@@ -153,8 +153,8 @@ static int mark_bright_rgb565_blocks(struct glint_bright *b, const uint8_t *px)
 
 /* ------------------------------------------------------------- Y, Cb and Cr */
 
-/* Max and min of bytes: element i is over all bytes whose index modulo 4 is i.
- */
+/* Max and min of bytes. Element i covers all bytes whose index modulo 4 is
+ * i. */
 struct extremes {
     uint8_t most[4], least[4];
 };
@@ -169,10 +169,11 @@ static WHOLLY_INLINE uint8_t min_u8(uint8_t a, uint8_t b)
     return a < b ? a : b;
 }
 
-/* Sets HALF[i] (i below 8) to the max, and HALF[8 + i] to 255 minus the min, of
- * those of the 16 N bytes at P whose index modulo 8 is i. N must be 1, 2 or 4;
- * if it is below 4, some bytes are read twice. Compilers vectorize these loops
- * only if they are not nested in another loop. */
+/* Sets HALF[i] (i below 8) to the max and HALF[8 + i] to the max of 255 minus
+ * the byte, over the bytes at P whose index modulo 8 is i. There are 16 N
+ * bytes; N must be 1, 2 or 4. If N is below 4, some bytes are read twice.
+ * Compilers vectorize these loops only if they are not nested in another
+ * loop. */
 static NEVER_INLINE void find_byte_max_and_inverted_min(uint8_t half[16],
                                                         const uint8_t *p, int n)
 {
@@ -222,8 +223,8 @@ static WHOLLY_INLINE int get_smallest_byte(const struct extremes *e)
                   min_u8(e->least[2], e->least[3]));
 }
 
-/* Returns the max that chroma in the range LEAST .. MOST adds to luma in any of
- * R, G and B. */
+/* Returns the max that chroma can add to luma in any of R, G and B. LEAST and
+ * MOST are the ranges of Cb and Cr. */
 static WHOLLY_INLINE int32_t compute_max_chroma_term_q16(
     const struct glint_bright *b, const int most[2], const int least[2])
 {
@@ -236,9 +237,9 @@ static WHOLLY_INLINE int32_t compute_max_chroma_term_q16(
     return bright_larger(red_q16, bright_larger(green_q16, blue_q16));
 }
 
-/* Returns whether a pixel with luma up to LUMA and chroma in LEAST .. MOST can
- * be bright. These limits bound its R, G and B; one code is allowed for
- * rounding. */
+/* Returns whether a pixel can be bright if its luma is at most LUMA and its
+ * chroma is in LEAST .. MOST. These limits bound its R, G and B. One code is
+ * added for rounding. */
 static WHOLLY_INLINE int can_pixel_be_bright(const struct glint_bright *b,
                                              int luma, const int most[2],
                                              const int least[2])
@@ -264,11 +265,11 @@ static int can_packed_block_be_bright(const struct glint_bright *b,
                                (const int[]){e.least[cb], e.least[cr]});
 }
 
-/* max distance of the chroma of quiet blocks from grey, in codes */
+/* max distance, in codes, of a quiet block's chroma from grey */
 enum { QUIET_CHROMA = 24 };
 
-/* Returns the min luma code, 0 .. 256, at which a pixel with chroma within
- * QUIET_CHROMA of grey can be bright. Blocks that reach this luma are loud. */
+/* Returns the min luma code, 0 .. 256, of a bright pixel whose chroma is within
+ * QUIET_CHROMA of grey. Blocks that reach this luma are loud. */
 static int find_min_loud_luma(const struct glint_bright *b)
 {
     const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
@@ -280,16 +281,17 @@ static int find_min_loud_luma(const struct glint_bright *b)
     return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
 }
 
-/* Returns a number for testing four bytes at once, each in a lane of 16 bits:
- * its sum with them has bit 8 of a lane set if the byte is CODE or more. */
+/* Returns a number with which four bytes are tested at once, each in a lane of
+ * 16 bits. If this number is added to the four bytes, bit 8 of a lane is set if
+ * its byte is CODE or more. */
 static uint64_t compute_threshold_carry(int code)
 {
     return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
 }
 
-/* Returns whether a block exceeds the limits of quiet blocks. MOST and INVERSE
- * have the max v and the max 255 - v of its bytes v. Luma is in the low bytes
- * of pairs if Y is 0, else in the high bytes. */
+/* Returns whether a block exceeds the limits of quiet blocks. MOST has the max
+ * of its bytes, INVERSE the max of 255 minus its bytes. Luma is in the low
+ * bytes of pairs if Y is 0, otherwise in the high bytes. */
 static WHOLLY_INLINE int is_block_loud(uint64_t most, uint64_t inverse, int y,
                                        uint64_t luma_carry,
                                        uint64_t chroma_carry)
@@ -304,12 +306,12 @@ static WHOLLY_INLINE int is_block_loud(uint64_t most, uint64_t inverse, int y,
     return (sum & ~low) != 0;
 }
 
-/* number of blocks of YUYV or UYVY per common test */
+/* number of blocks of YUYV or UYVY that are tested together */
 enum { TOGETHER = 4 };
 
-/* The limits of quiet blocks (QUIET_CHROMA and find_min_loud_luma()): at each
- * index modulo 16 the max allowed v and the max allowed 255 - v of a byte v.
- */
+/* The limits of quiet blocks (QUIET_CHROMA and find_min_loud_luma()). For each
+ * index modulo 16 it has the max allowed byte and the max allowed 255 minus the
+ * byte. */
 struct quiet {
     uint8_t most[16], inverse[16];
 };
@@ -336,8 +338,8 @@ static WHOLLY_INLINE uint8_t find_min_of_8_strided_bytes(const uint8_t *p)
                   min_u8(min_u8(p[64], p[80]), min_u8(p[96], p[112])));
 }
 
-/* Sets ABOVE[i] to nonzero if a byte of TOGETHER blocks at P, at an index that
- * is i modulo 16, exceeds QUIET. Compilers vectorise it like
+/* Tests TOGETHER blocks at P. Sets ABOVE[i] to nonzero if a byte exceeds QUIET
+ * whose index modulo 16 is i. Compilers vectorise this function like
  * find_byte_max_and_inverted_min(). */
 static NEVER_INLINE void
 find_bytes_above_limits(uint8_t above[restrict 16], const uint8_t *restrict p,
@@ -369,13 +371,13 @@ static WHOLLY_INLINE int are_blocks_quiet(const uint8_t *p,
 }
 
 /* Marks the complete blocks of a row of YUYV or UYVY at PX that can have bright
- * pixels; Y is the offset of the first luma byte. Most blocks are quiet:
- * neither bright nor strongly coloured. First TOGETHER blocks are tested for
- * this at once, by their max luma and the extremes of all their chroma; if they
- * are not quiet, each block is. Blocks that are not quiet (loud) are tested
- * again, by the extremes of Cb and of Cr. Loud blocks are usually neighbours,
- * so the TOGETHER blocks after a loud block are tested one by one. If
- * find_min_loud_luma() is 0, no block is quiet. */
+ * pixels. Y is the offset of the first luma byte. Most blocks are quiet:
+ * neither bright nor strongly coloured. First, TOGETHER blocks are tested for
+ * this at once, by the max of their luma and the extremes of their chroma. If
+ * they are not quiet, each block is tested separately. Blocks that are not
+ * quiet (loud) are tested again, by the extremes of Cb and of Cr. Loud blocks
+ * are usually neighbours, so the TOGETHER blocks after a loud block are tested
+ * one by one. If find_min_loud_luma() is 0, no block is quiet. */
 static WHOLLY_INLINE int mark_bright_yuyv_blocks(struct glint_bright *b,
                                                  const uint8_t *px, int y)
 {
@@ -418,8 +420,9 @@ static int mark_bright_packed_blocks(struct glint_bright *b, const uint8_t *px)
                                        : mark_bright_yuyv_blocks(b, px, 0);
 }
 
-/* Returns whether a block of a planar picture can have bright pixels. Its Y is
- * at PX; its Cb and Cr, 16 N bytes each, are at C[0] and C[1]. */
+/* Returns whether a block of a planar picture can have bright pixels. Its Y
+ * samples begin at PX; its Cb and Cr samples, 16 N bytes each, begin at C[0]
+ * and C[1]. */
 static WHOLLY_INLINE int
 can_planar_block_be_bright(const struct glint_bright *b, const uint8_t *px,
                            const uint8_t *const c[2], int n)
@@ -435,8 +438,8 @@ can_planar_block_be_bright(const struct glint_bright *b, const uint8_t *px,
         (const int[]){get_smallest_byte(&cb), get_smallest_byte(&cr)});
 }
 
-/* Returns whether a block with interleaved chroma at C can have bright pixels.
- * CB is the offset of the first Cb, 0 or 1. */
+/* Returns whether a block can have bright pixels if its chroma is interleaved,
+ * beginning at C. CB is the offset of the first Cb sample, 0 or 1. */
 static WHOLLY_INLINE int
 can_semiplanar_block_be_bright(const struct glint_bright *b, const uint8_t *px,
                                const uint8_t *c, int cb)
@@ -489,8 +492,8 @@ static int mark_bright_planar_blocks(struct glint_bright *b)
 }
 
 /* Sets block[i] to 1 if block i may have a pixel of brightness low or more,
- * else 0; an incomplete last block is not tested. Returns 0 if no block may
- * have such a pixel. */
+ * else to 0. An incomplete last block is not tested. Returns 0 if no tested
+ * block may have such a pixel. */
 static int mark_bright_blocks_of_row(struct glint_bright *b)
 {
     const uint8_t *first = b->code[0].first;
@@ -509,7 +512,8 @@ static int mark_bright_blocks_of_row(struct glint_bright *b)
 
 /* --------------------------------------------------------------- R, G and B */
 
-/* Returns the brightness of pixel X, one of whose channels must be clipped. */
+/* Returns the brightness of pixel X. At least one of its channels must be
+ * clipped. */
 static WHOLLY_INLINE uint8_t
 look_up_clipped_brightness(const struct glint_bright *b, int x)
 {
@@ -539,8 +543,9 @@ static int compute_rgb_brightness_range(struct glint_bright *b, int x, int end)
 
 enum { RGB_BYTES = 3 * BRIGHT_BLOCK };
 
-/* Sets LARGEST[I] to the max of bytes P[I .. I + 2], for I up to RGB_BYTES - 3.
- * Returns the max of all bytes. The last vector overlaps the one before it. */
+/* Sets LARGEST[I] to the max of the three bytes P[I .. I + 2], for I up to
+ * RGB_BYTES - 3. Returns the max of all bytes. The last vector overlaps the
+ * vector before it. */
 static NEVER_INLINE int find_max_of_next_3_bytes(const uint8_t *p,
                                                  uint8_t largest[RGB_BYTES])
 {
@@ -563,8 +568,8 @@ static NEVER_INLINE int find_max_of_next_3_bytes(const uint8_t *p,
     return greatest;
 }
 
-/* Like compute_rgb_brightness_range(), for the whole block from pixel X in a
- * format with three bytes per pixel. */
+/* Like compute_rgb_brightness_range(), for the complete block that begins at
+ * pixel X, in a format with three bytes per pixel. */
 static int compute_rgb24_block_brightness(struct glint_bright *b, int x)
 {
     const ptrdiff_t at = (ptrdiff_t)3 * x - b->layout->sample[0].offset;
@@ -592,10 +597,10 @@ static WHOLLY_INLINE int16_t multiply_high(int16_t a, int16_t b)
     return (int16_t)((int32_t)a * b >> 16);
 }
 
-/* Sets VALUE to max(R, G, B) of each pixel, computed from LUMA, CB and CR and
- * clamped to 0 .. 255; the error before rounding is at most 1/5 code. Compilers
- * vectorise it in 16 bits: codes have 7 fraction bits, coefficients 13 and
- * products 4, at most 2.12 * 255 * 16 < 2^14. */
+/* Sets VALUE to max(R, G, B) of each pixel, clamped to 0 .. 255. It is computed
+ * from LUMA, CB and CR; the error before rounding is at most 1/5 code.
+ * Compilers vectorise this in 16 bits: codes have 7 fraction bits, coefficients
+ * 13 and products 4, at most 2.12 * 255 * 16 < 2^14. */
 static WHOLLY_INLINE void compute_block_max_channels(
     const struct glint_bright *b, uint8_t value[BRIGHT_BLOCK],
     const uint8_t luma[BRIGHT_BLOCK], const uint8_t cb[BRIGHT_BLOCK],
@@ -625,7 +630,8 @@ static WHOLLY_INLINE void compute_block_max_channels(
     }
 }
 
-/* Copies one channel of a block, whose codes are STEP bytes apart. */
+/* Copies one channel of a block. Neighbouring codes of the channel are STEP
+ * bytes apart. */
 static WHOLLY_INLINE void copy_block_codes(uint8_t code[BRIGHT_BLOCK],
                                            const uint8_t *px, int step)
 {
@@ -633,8 +639,8 @@ static WHOLLY_INLINE void copy_block_codes(uint8_t code[BRIGHT_BLOCK],
         code[k] = px[k * step];
 }
 
-/* Copies one channel of a block, whose codes are STEP bytes apart and are each
- * shared by two pixels: writes each code twice. */
+/* Copies one channel of a block in which two pixels share each code. The codes
+ * are STEP bytes apart, and each is written twice. */
 static WHOLLY_INLINE void copy_block_codes_twice(uint8_t code[BRIGHT_BLOCK],
                                                  const uint8_t *px, int step)
 {
@@ -642,9 +648,9 @@ static WHOLLY_INLINE void copy_block_codes_twice(uint8_t code[BRIGHT_BLOCK],
         code[2 * k] = code[2 * k + 1] = px[k * step];
 }
 
-/* Copies channel I of a block from pixel X on; past the end of the row it
- * repeats the code of the last pixel. Steps and bounds are constant in the
- * common cases, so that compilers vectorise the loops. */
+/* Copies channel I of the block that begins at pixel X. After the end of the
+ * row it repeats the code of the last pixel. Steps and bounds are constant in
+ * the common cases, so that compilers vectorise the loops. */
 static void copy_block_channel(const struct glint_bright *b, int i, int x,
                                uint8_t code[BRIGHT_BLOCK])
 {
@@ -670,9 +676,9 @@ static void copy_block_channel(const struct glint_bright *b, int i, int x,
     }
 }
 
-/* Sets the brightness of the block from pixel X on, from luma and chroma or
- * from luma alone. Returns the max; if all pixels are below low and unclipped,
- * returns 0 and sets nothing. */
+/* Sets the brightness of the block that begins at pixel X, from luma and chroma
+ * or from luma alone. Returns the max brightness. If all pixels are below low
+ * and unclipped, sets nothing and returns 0. */
 static NEVER_INLINE int compute_ycc_block_brightness(struct glint_bright *b,
                                                      int x)
 {
@@ -730,7 +736,7 @@ int glint_bright_scan_row(struct glint_bright *b, int y)
     b->n_marked = 0;
     glint_bright_select_row(b, y);
     any = mark_bright_blocks_of_row(b);
-    /* An incomplete last block is always marked, as it is not tested. */
+    /* An incomplete last block has not been tested, so it is always marked. */
     if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;
     for (int i = 0; any && i < n_blocks; i++)

@@ -2,11 +2,12 @@
  *
  * Finds lamps among the bright regions of a picture.
  *
- * For each row, the regions of all brightness levels are first continued into
- * the row, by brightness alone. Then the light of the row's pixels is summed,
- * only for regions that are still small enough for a lamp. A finished region
- * that qualifies becomes a candidate. The brightest LIGHT_CANDIDATES candidates
- * are kept; they are merged after all regions have been found. */
+ * The picture is read row by row, at several levels of brightness. For each
+ * level, the runs of bright pixels in the row are first joined to the regions
+ * above it. Then the light of the row's pixels is summed, but only for regions
+ * that are still small enough for a lamp. A finished region that qualifies
+ * becomes a candidate. Only the brightest LIGHT_CANDIDATES candidates are
+ * stored. They are merged after all regions have been found. */
 #include "glint/lamps.h"
 
 #include "base/arena.h"
@@ -24,8 +25,9 @@ enum { DEFAULT_HIGH_Q8 = -26, DEFAULT_LOW_Q8 = -38 };
 /* --------------------------------------------------------------------- list
  */
 
-/* If more than MAX lamps are found, each excess lamp is merged into the nearest
- * kept lamp that is within JOIN_REACH merge distances. */
+/* If more than MAX lamps are found, only the first MAX remain. Each excess lamp
+ * is merged into the nearest remaining lamp that is within JOIN_REACH merge
+ * distances. */
 #define JOIN_REACH 4
 
 static int is_candidate_brighter(const struct glint_lamp_finder *f, int32_t a,
@@ -68,7 +70,7 @@ static void sort_candidates_by_flux(struct glint_lamp_finder *f)
     glint_heap_sort(&heap, f->n);
 }
 
-/* Adds CANDIDATE. If there are LIGHT_CANDIDATES candidates already, drops the
+/* Adds CANDIDATE. If there are LIGHT_CANDIDATES candidates already, removes the
  * faintest. */
 static void add_candidate(struct glint_lamp_finder *f,
                           const struct glint_candidate *candidate)
@@ -95,7 +97,7 @@ static void add_candidate(struct glint_lamp_finder *f,
     f->dropped += !last->faint;
 }
 
-/* Removes from f->order the candidates that are marked as gone. */
+/* Removes the candidates whose member gone is set from f->order. */
 static void remove_gone_candidates(struct glint_lamp_finder *f)
 {
     const int n_before = f->n;
@@ -137,8 +139,8 @@ static int64_t compute_squared_distance_q16(const struct glint_candidate *a,
     return dx_q8 * dx_q8 + dy_q8 * dy_q8;
 }
 
-/* Merges CANDIDATE into INTO, whose position compute_candidate_positions() has
- * to update. */
+/* Merges CANDIDATE into INTO. The position of INTO is then outdated, and
+ * compute_candidate_positions() must be called. */
 static void merge_candidate(struct glint_candidate *candidate,
                             struct glint_candidate *into)
 {
@@ -179,8 +181,8 @@ static void merge_all_near_lamps(struct glint_lamp_finder *f)
         ;
 }
 
-/* Returns the candidate nearest to C among the first MAX, or NULL if none is
- * within JOIN_REACH merge distances. */
+/* Returns the candidate nearest to C among the first MAX candidates. Returns
+ * NULL if it is not within JOIN_REACH merge distances. */
 static struct glint_candidate *
 find_nearest_kept_lamp(const struct glint_lamp_finder *f,
                        const struct glint_candidate *c, int max)
@@ -200,8 +202,9 @@ find_nearest_kept_lamp(const struct glint_lamp_finder *f,
     return best;
 }
 
-/* Reduces the candidates to MAX: each excess lamp is merged into the nearest
- * kept lamp within JOIN_REACH merge distances, or is dropped. */
+/* Reduces the candidates to the first MAX. Each excess candidate is merged into
+ * the nearest of these within JOIN_REACH merge distances. If there is none, the
+ * excess candidate is dropped. */
 static void reduce_lamps_to_max(struct glint_lamp_finder *f, int max)
 {
     const int n_lights = count_certain_lamps(f);
@@ -222,17 +225,18 @@ static void reduce_lamps_to_max(struct glint_lamp_finder *f, int max)
 
 /* ------------------------------------------------------------------- levels */
 
-/* A region is taken for a lit surface, not a lamp, if less than 1 / 2^SEED_LOG2
- * of its pixels reach the upper threshold. */
+/* log2 of (area of a region / min number of its pixels at the upper threshold);
+ * a region with fewer such pixels is a lit surface, not a lamp */
 #define SEED_LOG2 3
 
-/* Of several nested regions, the one with the highest score minus the cost of
- * its level is chosen. These costs make regions at the thresholds, which have
- * the lamp's full width, win over the lamp's clipped core unless the core's
- * score is clearly higher. Regions of a level whose white is below clipping,
- * and regions at thresholds below the defaults, win only if they contain no
- * other lamp. DARK_SHARE: levels with a white below clipping are only used if
- * the lower threshold is reached by at most this fraction of the picture. */
+/* Costs of levels. Of several nested regions, the finder chooses the region
+ * with the highest score minus the cost of its level. Regions at the thresholds
+ * have the lamp's full width. These costs make them win over the lamp's clipped
+ * core unless the score of the core is clearly higher. Regions of a level whose
+ * white is below clipping win only if they contain no other lamp. So do regions
+ * at thresholds below the defaults. DARK_SHARE: max fraction of the picture at
+ * or above the lower threshold for which levels with a white below clipping are
+ * used. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
@@ -250,8 +254,8 @@ static int is_threshold_below_default(const struct glint_lamp_finder_config *c)
                         c->threshold_low_q8 < DEFAULT_LOW_Q8);
 }
 
-/* Adds a level for regions of pixels above the thresholds T, where LIGHT counts
- * as white. */
+/* Adds a level. Its regions consist of pixels above the thresholds T, relative
+ * to the white LIGHT. */
 static void add_threshold_level(struct glint_lamp_finder *f, int32_t light_q20,
                                 struct thresholds t, int32_t cost_q8)
 {
@@ -264,9 +268,10 @@ static void add_threshold_level(struct glint_lamp_finder *f, int32_t light_q20,
     level->cost_q8 = cost_q8;
 }
 
-/* Adds two levels for a picture whose white is below clipping: one of regions
- * above the lower threshold, one of regions above the upper threshold. Adds
- * none if more than DARK_SHARE of the picture reaches the lower threshold. */
+/* Adds two levels for a picture whose white is below clipping. The regions of
+ * the first are above the lower threshold, those of the second above the upper
+ * threshold. Adds no level if more than DARK_SHARE of the picture reaches the
+ * lower threshold. */
 static void add_dark_picture_levels(struct glint_lamp_finder *f,
                                     struct thresholds t, int32_t cost_q8)
 {
@@ -283,9 +288,9 @@ static void add_dark_picture_levels(struct glint_lamp_finder *f,
         f->n_levels -= 2;
 }
 
-/* Adds the levels for the thresholds T: relative to clipping and, if the
- * picture's white is below clipping, also relative to its white, as its lamps
- * may or may not be clipped. */
+/* Adds the levels for the thresholds T relative to the light at which codes
+ * clip. If the picture's white is below clipping, also adds levels relative to
+ * that white, as the lamps of such a picture may or may not be clipped. */
 static void add_all_threshold_levels(struct glint_lamp_finder *f,
                                      struct thresholds t, int32_t cost_q8)
 {
@@ -300,7 +305,8 @@ static void add_all_threshold_levels(struct glint_lamp_finder *f,
     }
 }
 
-/* Adds a level for regions of clipped pixels, of brightness LOW or more. */
+/* Adds a level whose regions consist of clipped pixels of brightness LOW or
+ * more. */
 static void add_clipped_level(struct glint_lamp_finder *f, int low,
                               int32_t cost_q8)
 {
@@ -321,9 +327,8 @@ static void sort_levels_by_brightness(struct glint_lamp_finder *f)
 }
 
 /* Measures the picture's white, and sets the brightness levels at which regions
- * are searched. Thresholds below the defaults add levels to those of the
- * defaults, so that every lamp found with the defaults is found with them, too.
- */
+ * are searched. Thresholds below the defaults add levels to the default levels.
+ * So every lamp that the defaults find is found with lower thresholds, too. */
 static void choose_brightness_levels(struct glint_lamp_finder *f)
 {
     const struct thresholds t = {f->cfg.threshold_high_q8,
@@ -361,16 +366,16 @@ static int is_region_bright_enough(const struct glint_lamp_finder *f,
            sum->n_seeds >= sum->area >> SEED_LOG2;
 }
 
-/* Returns whether region SUM is large enough to be a known lamp that has faded.
- */
+/* Returns whether region SUM is large enough to be a lamp of an earlier frame
+ * that has faded. */
 static int can_region_be_faded_lamp(const struct glint_lamp_finder *f,
                                     const struct glint_region *sum)
 {
     return f->cfg.keep_faint && sum->area >= (f->cfg.min_area + 1) / 2;
 }
 
-/* Adds the finished region SUM to the candidates if it may be a lamp or a faded
- * lamp. */
+/* Adds the finished region SUM to the candidates if it may be a lamp, or a lamp
+ * of an earlier frame that has faded. */
 static void add_region_if_qualified(void *finder,
                                     const struct glint_region *sum)
 {
@@ -388,7 +393,7 @@ static void add_region_if_qualified(void *finder,
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns how many of the N brightness values are CODE or more. */
+/* Returns how many of the first N values in VALUE are CODE or more. */
 static WHOLLY_INLINE int count_codes_at_least(const uint8_t *value, int n,
                                               int code, int is_above_128)
 {
@@ -402,8 +407,8 @@ static WHOLLY_INLINE int count_codes_at_least(const uint8_t *value, int n,
     return (int)found;
 }
 
-/* Returns how many pixels of RUN have brightness CODE or more. All pixels of
- * RUN must have LEAST or more. */
+/* Returns how many pixels of RUN have a brightness of CODE or more. LEAST is a
+ * brightness that all pixels of RUN have at least. */
 static int count_run_pixels_at_least(const uint8_t *value,
                                      const struct glint_run *run, int least,
                                      int code)
@@ -432,9 +437,9 @@ static void add_run_to_region_counts(struct glint_region *sum,
         count_run_pixels_at_least(value, run, level->low, level->clipped);
 }
 
-/* Marks the pixels of RUN as needed for sums of light. The mark is stored in
- * the run of the first level that contains RUN, which is *OUTER or follows it;
- * sets *OUTER to that run. */
+/* Marks the pixels of RUN, as their light is needed for sums. The mark is
+ * stored in the run of the first level that contains RUN. That run is *OUTER or
+ * a later run of its row; sets *OUTER to it. */
 static void mark_needed_pixels(struct glint_run **outer,
                                const struct glint_run *run)
 {
@@ -472,8 +477,7 @@ static void link_row_regions_of_level(struct glint_lamp_finder *f, int greatest,
     }
 }
 
-/* Computes the prefix sums of light over those pixels of the row that are
- * marked as needed. */
+/* Computes the prefix sums of light over the marked pixels of the row. */
 static void sum_needed_row_light(struct glint_lamp_finder *f)
 {
     const struct glint_run_row *row = &f->regions[0].here;
@@ -630,8 +634,8 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Returns the min score of a lamp. Regions at thresholds below the defaults can
- * lower this min, but not raise it. */
+/* Returns the min score of a lamp. If thresholds are below the defaults, their
+ * regions can lower this min, but not raise it. */
 static int32_t find_min_lamp_score(struct glint_lamp_finder *f,
                                    const struct glint_score *score)
 {
@@ -655,9 +659,9 @@ static int32_t find_min_lamp_score(struct glint_lamp_finder *f,
     return q_smaller(least_q8, default_q8);
 }
 
-/* Scores the candidates, and removes those whose score is too low for a lamp.
- * If keep_faint is set, candidates with a slightly lower score stay and are
- * marked faint. */
+/* Scores the candidates, and removes candidates whose score is too low for a
+ * lamp. If keep_faint is set, candidates with a slightly lower score remain and
+ * are marked as faint. */
 static void score_and_select_candidates(struct glint_lamp_finder *f)
 {
     const struct glint_score score = {&f->bright,    f->white, f->cfg.width,
@@ -684,8 +688,9 @@ static void score_and_select_candidates(struct glint_lamp_finder *f)
 
 /* ------------------------------------------------------------------- result */
 
-/* Converts CANDIDATE to a spot. The origin of spots is the corner of the
- * picture's first pixel, that of regions the pixel's centre. */
+/* Converts CANDIDATE to a spot. Positions of spots are relative to the corner
+ * of the picture's first pixel, positions of regions to the centre of that
+ * pixel. */
 static struct glint_spot
 convert_candidate_to_spot(const struct glint_candidate *candidate)
 {

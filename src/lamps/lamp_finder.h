@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The state of the lamp finder (lamp_finder.c), for programs that list its
- * candidates. */
+ * Declares the state of the lamp finder (lamp_finder.c), for programs that list
+ * its candidates. */
 #ifndef GLINT_LAMPS_LAMP_FINDER_H
 #define GLINT_LAMPS_LAMP_FINDER_H
 
@@ -15,8 +15,8 @@
 enum {
     LIGHT_CANDIDATES = 2048, /* max number of candidates, more than the max of
                                 1024 lamps per picture */
-    LIGHT_LEVELS_LOWER = 3,  /* number of levels added for thresholds below the
-                                defaults */
+    LIGHT_LEVELS_LOWER = 3,  /* max number of levels that are added for
+                                thresholds below the defaults */
     LIGHT_LEVELS = 6 + LIGHT_LEVELS_LOWER
 };
 
@@ -26,16 +26,16 @@ struct glint_lamp_finder {
     int64_t merge2_q16; /* squared merge distance, pixels^2 */
     struct glint_bright bright;
     struct glint_white *white;
-    int32_t least_white_q20; /* min linear light that counts as white in the
-                                next picture */
+    int32_t least_white_q20; /* min linear light that may count as the white of
+                                the next picture */
     int32_t alone_q8; /* alone_q8 of struct glint_score for the next picture */
     struct glint_row_light row;
     struct glint_regions *regions;          /* one per level */
     struct glint_level level[LIGHT_LEVELS]; /* brightness levels, rising */
     int n_levels;
     int at; /* index of the level whose regions are being processed */
-    /* [LIGHT_CANDIDATES + 1]: candidates; the last slot is for a new candidate
-     * that may replace the faintest */
+    /* [LIGHT_CANDIDATES + 1]: candidates; the last element is for a new
+     * candidate that may replace the faintest */
     struct glint_candidate *candidate;
     int32_t *order; /* indices of candidates: a heap while candidates are added,
                        then sorted by descending flux */

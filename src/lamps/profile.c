@@ -5,7 +5,8 @@
 #include "lamps/unclip.h"
 
 /* Allocates a profile from A. Returns NULL if A only measures or has too little
- * memory. No row is scanned, so tables for a width of one pixel are enough. */
+ * memory. The tables have a width of one pixel, as a profile reads single
+ * pixels and scans no rows. */
 static struct glint_profile *allocate_profile(struct glint_arena *a)
 {
     struct glint_profile *placed = glint_arena_allocate(a, 1, sizeof *placed);
@@ -39,8 +40,9 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
     return GLINT_OK;
 }
 
-/* Measures the spots in place. This changes neither position nor size_q8 of a
- * spot, the only members of it that the measurement of other spots reads. */
+/* The measurement changes each spot in place. It does not change position and
+ * size_q8 of a spot, which are the only members that the measurement of other
+ * spots reads. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The definition of struct glint_profile (glint/profile.h), which measures the
- * light around spots. */
+ * Defines struct glint_profile (glint/profile.h), the state of the functions
+ * that measure the light around spots. */
 #ifndef GLINT_LAMPS_PROFILE_H
 #define GLINT_LAMPS_PROFILE_H
 

@@ -39,8 +39,8 @@ void glint_region_add_region(struct glint_region *sum,
     }
 }
 
-/* Returns A / B with FRAC fraction bits, rounded; 0 <= A / B < 2^(62 - FRAC), 0
- * < B < 2^(62 - FRAC). */
+/* Returns A / B with FRAC fraction bits, rounded. Requires 0 <= A / B < 2^(62 -
+ * FRAC) and 0 < B < 2^(62 - FRAC). */
 static int64_t divide_to_fixed_point(uint64_t a, int64_t b, int frac)
 {
     const uint64_t d = (uint64_t)b;
@@ -60,15 +60,16 @@ void glint_region_compute_centroid(const struct glint_region *sum,
     *y_q8 = compute_mean_coordinate_q8(sum->wy_q14, sum->w_q14);
 }
 
-/* Returns the RMS distance from the centre in a uniformly lit box whose squared
- * diagonal is DIAGONAL2. */
+/* Returns the RMS distance from the centre of a uniformly lit box. DIAGONAL2 is
+ * the square of the box's diagonal. */
 static int32_t compute_box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
 }
 
-/* First moves the origin of the sums to the pixel nearest to the centroid. This
- * is exact although sums may have wrapped, as it is done modulo 2^64. */
+/* The origin of the sums is first moved to the pixel nearest to the centroid.
+ * The sums may have wrapped, but the result is exact, as it is computed modulo
+ * 2^64. */
 int32_t glint_region_compute_rms_radius_q8(const struct glint_region *sum)
 {
     const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
@@ -90,10 +91,10 @@ int32_t glint_region_compute_rms_radius_q8(const struct glint_region *sum)
     return (int32_t)q_root(mean_q16 > 0 ? (uint64_t)mean_q16 : 0);
 }
 
-/* Clipped pixels have little colour information, so their weight is 1/64 of
- * that of the unclipped pixels in and beside the region. A large rim of those
- * determines the colour, a region without them becomes white, and the
- * transition is continuous. */
+/* Clipped pixels carry little colour information. So their weight is 1/64 of
+ * that of the unclipped pixels in the region and beside it. A large rim of
+ * unclipped pixels determines the colour. Without such pixels the region
+ * becomes white. The transition is continuous. */
 void glint_region_compute_colour(const struct glint_region *sum,
                                  int32_t rgb_q15[3])
 {
@@ -177,7 +178,8 @@ static WHOLLY_INLINE uint32_t make_bright_pixel_mask(
     return bits;
 }
 
-/* Appends the run of pixels BEGIN .. END - 1 to ROW, unless BEGIN is -1. */
+/* Appends the run of pixels BEGIN .. END - 1 to ROW. Does nothing if BEGIN is
+ * -1. */
 static WHOLLY_INLINE void append_run(struct glint_run_row *row, int begin,
                                      int end)
 {
@@ -186,9 +188,10 @@ static WHOLLY_INLINE void append_run(struct glint_run_row *row, int begin,
             (struct glint_run){.x0 = begin, .x1 = end, .label = -1};
 }
 
-/* Appends to ROW the runs of set bits in BITS, the mask of the block from pixel
- * X. BEGIN is the first pixel of a run that the block before left open, or -1.
- * Returns the first pixel of the run that this block leaves open, or -1. */
+/* Appends to ROW the runs of set bits in BITS, which is the mask of the block
+ * that begins at pixel X. BEGIN is the first pixel of a run that is not
+ * finished at the end of the block before; -1: none. Returns the first pixel of
+ * the run that is not finished at the end of this block, or -1. */
 static int find_runs_in_block(struct glint_run_row *row, uint32_t bits, int x,
                               int begin)
 {
@@ -233,13 +236,13 @@ static void find_row_runs(struct glint_run_row *row,
     append_run(row, begin, next < b->width ? next : b->width);
 }
 
-/* Labels each run of row Y: the run unites the regions of all runs that it
- * touches in the row above, or begins a new region if it touches none. */
+/* Labels each run of row Y. A run joins all regions that it touches in the row
+ * above into one. If it touches no region, it begins a new one. */
 static void link_runs_to_row_above(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;
     int first = 0; /* index of the first run of the row above that may touch run
-                      i or a later run */
+                      i or a run after it */
 
     for (int i = 0; i < r->here.n_runs; i++) {
         struct glint_run *run = &r->here.run[i];

@@ -41,8 +41,8 @@ struct glint_bright;
 struct glint_region {
     int32_t first; /* index y * width + x of the region's first pixel;
                       identifies the region */
-    /* Number of all pixels, of pixels at the upper threshold or above, and
-     * of clipped pixels. The caller counts the last two. */
+    /* Numbers of pixels: area: all; n_seeds: at or above the upper threshold;
+     * n_clipped: with a clipped channel. The caller counts the last two. */
     int32_t area, n_seeds, n_clipped;
     /* Bounding box: columns x0 .. x1 - 1, rows y0 .. y1 - 1. */
     int32_t x0, y0, x1, y1;
@@ -50,8 +50,8 @@ struct glint_region {
     uint64_t wr2_q14;
     int64_t rgb_q14[3];     /* sums of linear R, G, B over all pixels */
     int64_t rim_rgb_q14[3]; /* sums of linear R, G, B over pixels without a
-                               clipped channel, both in the region and up to
-                               ROW_LIGHT_RIM pixels beside its runs */
+                               clipped channel: those of the region, and those
+                               up to ROW_LIGHT_RIM pixels beside its runs */
 };
 
 /* The light of one pixel, as added to a region. */
@@ -60,8 +60,8 @@ struct glint_region_light {
     int32_t rgb_q14[3];
 };
 
-/* Returns the linear luminance (BT.709) of linear R, G, B, times 2^15;
- * region_compute_luminance() returns it without this factor. */
+/* Returns the linear luminance (BT.709) of linear R, G, B, multiplied by
+ * 2^15. */
 static inline int64_t region_compute_luminance_times_2_15(int64_t r, int64_t g,
                                                           int64_t b)
 {
@@ -74,8 +74,8 @@ static inline int64_t region_compute_luminance(int64_t r, int64_t g, int64_t b)
     return q_shift(region_compute_luminance_times_2_15(r, g, b), 15);
 }
 
-/* Converts linear light RGB, 0 .. white, of a pixel to the light that is added
- * to regions. */
+/* Converts RGB, the linear light of a pixel, 0 .. white, to the sums that the
+ * pixel adds to a region. */
 static inline struct glint_region_light
 region_compute_pixel_light(const int32_t rgb_q20[3])
 {
@@ -118,16 +118,16 @@ void glint_region_compute_colour(const struct glint_region *sum,
 
 struct glint_component {
     struct glint_region sum;
-    int32_t parent; /* label of the parent in the union-find tree; a root is its
-                       own parent */
+    int32_t parent; /* label of the parent in the union-find tree; the parent of
+                       a root is the root */
     int32_t last_row;
 };
 
 struct glint_run {
-    int32_t x0, x1; /* first pixel of the run, and last pixel + 1 */
+    int32_t x0, x1; /* first pixel of the run, and the pixel after its last */
     int32_t label;
     int32_t want0, want1; /* range of pixels of the row, want0 .. want1 - 1,
-                             whose light the caller needs; 0, 0: none */
+                             whose light the caller sums; 0, 0: none */
 };
 
 struct glint_run_row {
@@ -139,7 +139,7 @@ struct glint_regions {
     int width;
     struct glint_run_row above, here;
     struct glint_component *component;
-    int32_t *active, *idle; /* labels in use; free labels */
+    int32_t *active, *idle; /* labels that are in use, and free labels */
     int n_active, n_idle;
 };
 
@@ -151,8 +151,8 @@ void glint_regions_allocate(struct glint_regions *r, struct glint_arena *arena,
 void glint_regions_begin_picture(struct glint_regions *r);
 
 /* Fills r->here with the runs of pixels of row Y that have brightness LOW or
- * more, and assigns each run to the region of the runs that it touches in the
- * row above. LOW must be at least the min brightness set for BRIGHT. */
+ * more. Assigns each run to the region of the runs that it touches in the row
+ * above. LOW must not be below the min brightness that was set for BRIGHT. */
 void glint_regions_link_row(struct glint_regions *r,
                             const struct glint_bright *bright, int low, int y);
 
@@ -163,7 +163,8 @@ struct glint_region *glint_regions_find_region_of_run(struct glint_regions *r,
 /* Receives a finished REGION, which is valid only during the call. */
 typedef void glint_region_fn(void *ctx, const struct glint_region *region);
 
-/* Calls DONE for each region that has no run in row Y, and frees its labels. */
+/* Calls DONE for each region that has no run in row Y, and so is finished.
+ * Frees the labels of these regions. */
 void glint_regions_report_finished(struct glint_regions *r,
                                    glint_region_fn *done, void *ctx, int y);
 

@@ -7,9 +7,9 @@
 
 #define WHITE_Q20 LINEAR_WHITE_Q20
 #define ONE_Q16   (1 << 16)
-/* linear light of about code 231: brighter pixels count as partly clipped */
+/* linear light of about code 231, from which pixels count as partly clipped */
 #define CLIP_FIRST Q_CONST(0.80, 20)
-/* linear light of about code 253: brighter pixels count as clipped */
+/* linear light of about code 253, from which pixels count as fully clipped */
 #define CLIP_LAST     Q_CONST(0.98, 20)
 #define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
@@ -22,7 +22,7 @@ enum {
     RAY_SAMPLES = 64, /* number of steps of a ray along the radius of the core
                        */
     RIM_RADIUS = 32,  /* min radius, pixels, of a core whose rim is measured; an
-                         eighth of it exceeds the blur of a lens */
+                         eighth of this radius exceeds the blur of a lens */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
     NEAR = GLINT_PROFILE_NEAR
@@ -30,12 +30,12 @@ enum {
 
 /* ------------------------------------------------------------------- window */
 
-/* The border line between a spot and a neighbour: pixels beyond it belong to
- * the neighbour. */
+/* The border line between a spot and a neighbouring spot. Pixels on the far
+ * side belong to the neighbour. */
 struct border {
     int x, y;      /* vector from the spot to the neighbour, pixels */
-    int64_t limit; /* pixels whose dot product with (x, y) is larger lie beyond
-                      the line */
+    int64_t limit; /* max dot product of a pixel's offset with (x, y) for pixels
+                      on the spot's side of the line */
     /* distance of the line from the middle of the spot, pixels */
     int32_t at_q8;
 };
@@ -47,14 +47,14 @@ struct window {
     int n_borders;
     int width, height;
     int x, y;   /* pixel in the middle of the window */
-    int radius; /* radius of the inner disc, pixels; ring i has the outer radius
-                   radius << i */
+    int radius; /* radius of the inner disc, pixels; the outer radius of ring i
+                   is radius << i */
     int step;   /* distance between samples in the inner disc, pixels; in ring i
                    it is step << i */
 };
 
-/* A sampled pixel, which represents SHARE pixels. DX, DY: its offset from the
- * middle of the window, pixels. */
+/* A sampled pixel. SHARE is the number of pixels that it represents; DX, DY is
+ * its offset from the middle of the window, pixels. */
 struct sample {
     int32_t rgb_q20[3];
     int dx, dy, share, ring;
@@ -62,10 +62,9 @@ struct sample {
 
 typedef void sample_fn(void *ctx, const struct sample *sample);
 
-/* Returns the window around SPOT, without borders. The inner disc has twice the
- * spot's RMS radius, which covers a disc or a tube, plus 3 pixels for the blur
- * of the lens.
- */
+/* Returns the window around SPOT, without borders. The radius of the inner disc
+ * is twice the spot's RMS radius, which covers a disc or a tube, plus 3 pixels
+ * for the blur of the lens. */
 static struct window make_spot_window(const struct glint_image *image,
                                       const struct glint_spot *spot)
 {
@@ -93,8 +92,8 @@ static int is_inside_borders(const struct window *w, int dx, int dy)
     return 1;
 }
 
-/* Calls SEE for those samples at the x offsets X0, X0 + STEP ... X1 of a row
- * that lie in the picture and within the borders. */
+/* Calls SEE for the samples of a row at the x offsets X0, X0 + STEP ... X1.
+ * Skips samples off-screen or outside the borders. */
 static void visit_row_samples(const struct window *w, int x0, int x1,
                               struct sample *at, int step, sample_fn *see,
                               void *ctx)
@@ -166,8 +165,8 @@ static void insert_border_if_near(struct window *w, struct border border)
     w->n_borders += w->n_borders < BORDERS;
 }
 
-/* Adds to W the border line between SPOT and OTHER, half way between their
- * rims, if it crosses the window. */
+/* Adds the border line between SPOT and OTHER to W, if it crosses the window.
+ * The line is half way between the rims of both spots. */
 static void add_border_to_neighbour(struct window *w,
                                     const struct glint_spot *spot,
                                     const struct glint_spot *other)
@@ -257,9 +256,9 @@ static void sort_sectors_by_light(struct part *part, int n)
         }
 }
 
-/* Returns the mean light of a ring's samples from FROM eighths to TO eighths of
- * their number, in order of light. PART: the N sectors sorted by mean light;
- * ALL: number of samples. */
+/* Returns the mean light of the samples of a ring between two quantiles, FROM
+ * eighths and TO eighths, in order of light. PART: the N sectors of the ring,
+ * sorted by mean light; ALL: number of samples. */
 static int32_t compute_mean_of_quantiles(const struct part *part, int n,
                                          int64_t all, int from, int to)
 {
@@ -277,9 +276,9 @@ static int32_t compute_mean_of_quantiles(const struct part *part, int n,
     return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
 }
 
-/* Sets the background light of channel C from the ring's sectors in order of
- * their light: its mean is that of the middle half, its spread the difference
- * between the means of the last and the first quarter of that half. */
+/* Sets the background light of channel C from the ring's sectors, sorted by
+ * light. Its mean is that of the middle half. Its spread is the mean of the
+ * last quarter of that half minus the mean of the first quarter. */
 static void set_channel_background(struct glint_profile_channel *of,
                                    const struct sectors *sectors, int c)
 {
@@ -316,10 +315,10 @@ static int32_t compute_clipped_fraction_q8(int32_t light_q20)
                                         ((CLIP_LAST - CLIP_FIRST) >> 4);
 }
 
-/* Counts a sample of light U, which represents SHARE pixels: adds SHARE to the
- * pixels of its level, and a fraction of SHARE to the level's area.
+/* Counts a sample of light U, which represents SHARE pixels. Adds SHARE to the
+ * pixels of the level of U, and a fraction of SHARE to the level's area.
  * add_brighter_levels_to_areas() later adds all pixels of a level to the areas
- * of darker levels. */
+ * of the darker levels. */
 static void count_sample_in_level(struct glint_profile_channel *of,
                                   int32_t u_q16, int share, int ring)
 {
@@ -333,8 +332,8 @@ static void count_sample_in_level(struct glint_profile_channel *of,
             ((((int64_t)u_q16 << level) - ONE_Q16) >> 8) * share;
 }
 
-/* Adds sample S to the moments of the core, in steps: samples of the inner disc
- * are one step apart. */
+/* Adds sample S to the moments of the core. The unit of length is a step, the
+ * distance between samples of the inner disc. */
 static void add_sample_to_core_moments(struct glint_profile_sums *sums,
                                        int32_t u_q16, const struct sample *s)
 {
@@ -351,8 +350,9 @@ static void add_sample_to_core_moments(struct glint_profile_sums *sums,
 
 /* ---------------------------------------------------------------------- rim */
 
-/* Returns the max channel, linear light, of the pixel at offset (X, Y) from the
- * window's middle; -1 if the pixel belongs to another spot or is off-screen. */
+/* Returns the largest channel, linear light, of the pixel at offset (X, Y) from
+ * the window's middle. Returns -1 if the pixel belongs to another spot or is
+ * off-screen. */
 static int32_t read_max_channel(const struct window *w, int32_t x_q8,
                                 int32_t y_q8)
 {
@@ -368,8 +368,8 @@ static int32_t read_max_channel(const struct window *w, int32_t x_q8,
 }
 
 /* Returns the drop of light along ray I at the rim of a core of radius RADIUS,
- * as a fraction of white; 0 if the rim is near the middle, as such a core is a
- * ring; -1 if the drop cannot be measured. */
+ * as a fraction of white. Returns 0 if the rim is near the middle, as such a
+ * core is a ring. Returns -1 if the drop cannot be measured. */
 static int32_t measure_light_drop_at_rim(const struct window *w, int i,
                                          int32_t radius_q8)
 {
@@ -396,8 +396,8 @@ static int32_t measure_light_drop_at_rim(const struct window *w, int i,
                          : q_clamp_sat(WHITE_Q20 - light_q20, 0, WHITE_Q20);
 }
 
-/* Returns the radius of a disc with the area of the core: the max over the
- * channels of the clipped area. */
+/* Returns the radius of a disc that has the area of the core, which is the max
+ * over the channels of the clipped area. */
 static int32_t compute_core_radius_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = 0;
@@ -465,7 +465,8 @@ static void add_sample_to_sums(void *ctx, const struct sample *s)
         add_sample_to_core_moments(sums, most_q16, s);
 }
 
-/* Adds to the area of each level the pixels of all brighter levels. */
+/* Adds the number of pixels of all brighter levels to the area of each
+ * level. */
 static void add_brighter_levels_to_areas(struct glint_profile_channel *of)
 {
     int64_t n = 0;

@@ -38,36 +38,38 @@
 enum {
     GLINT_PROFILE_RINGS = 3,
     GLINT_PROFILE_LEVELS = 7,
-    /* bright levels, up to this one, are only counted in the disc and the first
-     * ring */
+    /* levels up to this one are bright, and are only counted in the disc and
+     * the first ring */
     GLINT_PROFILE_NEAR = 3,
     GLINT_PROFILE_SPOTS = 1024
 };
 
 struct glint_profile_channel {
-    int32_t black_q20, scale_q16; /* background, linear light; the factor 1 / (1
-                                     - background), at most 16 */
+    int32_t black_q20, scale_q16; /* black_q20: light of the background, linear;
+                                     scale_q16: 1 / (1 - background), at most 16
+                                     */
     int32_t spread_q16;           /* spread of the background's light, in u */
-    int32_t step_q16; /* difference in u between the background and the next
-                         higher code if codes have fewer than 8 bits; else 0 */
-    /* [k]: number of pixels whose u is 2^-k or more; those below 2^(1 - k)
-     * count as fractions; [0]: number of clipped pixels */
+    int32_t step_q16; /* resolution of u at the background: the distance to the
+                         next higher code if codes have fewer than 8 bits, else
+                         0 */
+    /* [k]: number of pixels whose u is 2^-k or more, where pixels below 2^(1 -
+     * k) count as fractions; [0]: number of clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
     /* [k]: number of pixels whose u is 2^-k or more and below 2^(1 - k); [0]:
-     * whose u is 1 or more */
+     * number of pixels whose u is 1 or more */
     int64_t n[GLINT_PROFILE_LEVELS + 1];
-    int64_t fringe_q16; /* sum of the light of unclipped pixels (fringe), and
-                           that of clipped pixels (white); the weight of a pixel
-                           is the max u over its channels */
+    int64_t fringe_q16; /* fringe: sum of the light of unclipped pixels; white:
+                           that of clipped pixels. The weight of a pixel is the
+                           max of u over its channels. */
     int64_t white_q16;
 };
 
 struct glint_profile_sums {
     struct glint_profile_channel of[3];
-    /* Sums over the pixels of the core: weights, first and second moments
-     * relative to the middle pixel of the window, in steps. */
+    /* Sums over the pixels of the core: weights, first and second moments.
+     * Positions are relative to the middle pixel of the window, in steps. */
     int64_t w_q16, moment_q16[2], square_q16[3]; /* xx, yy, xy */
-    int step;        /* pixels between samples of the core */
+    int step;        /* distance between samples of the core, pixels */
     int32_t rim_q15; /* drop of light at the rim of the core as a fraction of
                         white, the median over all rays; 0 for a small core, or
                         if too few rays end in the picture */
@@ -79,8 +81,8 @@ struct glint_rings {
                                           right */
 };
 
-/* Prepares for glint_rings_sum_spot_light() of the N SPOTS of IMAGE. N must be
- * at most GLINT_PROFILE_SPOTS, and rings->bright must be initialized. */
+/* Prepares for summing the light of the N SPOTS of IMAGE. N must be at most
+ * GLINT_PROFILE_SPOTS, and rings->bright must be initialized. */
 void glint_rings_begin_picture(struct glint_rings *rings,
                                const struct glint_image *image,
                                const struct glint_spot *spots, int n);

@@ -18,8 +18,9 @@ void glint_row_light_begin_row(struct glint_row_light *row)
     row->end = -1;
 }
 
-/* Sets OF to what a pixel of linear light RGB adds to the sums. It adds to the
- * sums for the rim only if all its channels are below CLIPPED. */
+/* Sets OF to the amounts that a pixel of linear light RGB adds to the sums. A
+ * pixel with a channel of CLIPPED or more adds nothing to the sums for the
+ * rim. */
 static WHOLLY_INLINE void compute_pixel_sums(int32_t of[ROW_LIGHT_SUMS],
                                              const int32_t rgb_q20[3],
                                              int32_t clipped_q20)
@@ -36,8 +37,8 @@ static WHOLLY_INLINE void compute_pixel_sums(int32_t of[ROW_LIGHT_SUMS],
     }
 }
 
-/* Sets *NEXT to the prefix sum *SUM plus the pixel in column X, which adds OF.
- */
+/* Sets *NEXT to the prefix sum *SUM plus OF, the amounts of the pixel in column
+ * X. */
 static WHOLLY_INLINE void
 add_pixel_to_prefix_sum(struct glint_row_sum *restrict next,
                         const struct glint_row_sum *restrict sum,
@@ -57,9 +58,9 @@ static int64_t sum_integers_below(int64_t n)
     return n * (n - 1) / 2;
 }
 
-/* Sets *AT to the prefix sum over the pixels left of X + N, of which the last N
- * are equal. SUM[0] is the prefix sum over the pixels left of X, SUM[1] that
- * over the pixels left of X + 1. */
+/* Sets *AT to the prefix sum over the pixels left of X + N. The last N of these
+ * pixels are equal. SUM[0] is the prefix sum over the pixels left of X, SUM[1]
+ * the prefix sum over the pixels left of X + 1. */
 static void extend_sum_by_equal_pixels(struct glint_row_sum *at,
                                        const struct glint_row_sum *restrict sum,
                                        int x, int n)
@@ -75,9 +76,9 @@ static void extend_sum_by_equal_pixels(struct glint_row_sum *at,
                                           region_sum_squares_below(x));
 }
 
-/* Sets CHROMA to what Cb and Cr, bits 8 .. 23 of CODES, add to R, G and B, in
- * full-range codes, plus half a unit for the rounding in
- * decode_ycc_to_linear(). */
+/* Sets CHROMA to the amounts that Cb and Cr add to R, G and B, in full-range
+ * codes, plus half a unit for the rounding in decode_ycc_to_linear(). Cb and Cr
+ * are bits 8 .. 23 of CODES. */
 static WHOLLY_INLINE void compute_chroma_terms(const struct glint_ycc *ycc,
                                                int32_t codes,
                                                int32_t chroma_q16[3])
@@ -89,9 +90,10 @@ static WHOLLY_INLINE void compute_chroma_terms(const struct glint_ycc *ycc,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Sets RGB to the linear light of luma Y and CHROMA. Equals
- * curve_decode_to_light() of convert_ycc_to_rgb(). The first column of the
- * matrix has the same value in all rows. */
+/* Sets RGB to the linear light of a pixel of luma Y; compute_chroma_terms()
+ * returns CHROMA. The result equals curve_decode_to_light() of
+ * convert_ycc_to_rgb(). The first column of the matrix has the same value in
+ * all rows. */
 static WHOLLY_INLINE void decode_ycc_to_linear(const struct glint_bright *b,
                                                int y,
                                                const int32_t chroma_q16[3],
@@ -108,9 +110,9 @@ static WHOLLY_INLINE void decode_ycc_to_linear(const struct glint_bright *b,
     }
 }
 
-/* The memory layout of a row: codes of the first channel are STEP bytes apart;
- * those of the second and third channel are STEP_C bytes apart, and each
- * belongs to 1 << SHIFT pixels. */
+/* The memory layout of a row. Codes of the first channel are STEP bytes apart.
+ * Codes of the second and third channel are STEP_C bytes apart, and 1 << SHIFT
+ * pixels share each of them. */
 struct packing {
     enum glint_layout_kind kind;
     int step, step_c, shift;
@@ -127,7 +129,8 @@ static WHOLLY_INLINE int32_t read_pixel_codes(const struct glint_bright *b,
 }
 
 /* Computes the prefix sums after each of the pixels X0 .. X1 - 1. In a run of
- * equal pixels, only those after the first and the last pixel are stored. */
+ * equal pixels, only the sums after the first and after the last pixel are
+ * stored. */
 static WHOLLY_INLINE void compute_prefix_sums(struct glint_row_light *row,
                                               const struct glint_bright *b,
                                               int x0, int x1, struct packing p)
@@ -169,8 +172,8 @@ static WHOLLY_INLINE void compute_prefix_sums(struct glint_row_light *row,
     }
 }
 
-/* Calls compute_prefix_sums(), for the common formats with a constant layout.
- */
+/* Calls compute_prefix_sums(). For the common formats the memory layout is a
+ * constant, so that the compiler optimises for it. */
 static void compute_prefix_sums_by_layout(struct glint_row_light *row,
                                           const struct glint_bright *b, int x0,
                                           int x1)
@@ -204,8 +207,8 @@ void glint_row_light_sum_pixels(struct glint_row_light *row,
         row->end = x1;
 }
 
-/* Returns the prefix sum over the pixels left of X. If it is not stored,
- * computes it in *ROOM. */
+/* Returns the prefix sum over the pixels left of X. If that sum is not stored,
+ * computes it and stores it in *ROOM. */
 static const struct glint_row_sum *
 get_prefix_sum(const struct glint_row_light *row, int x,
                struct glint_row_sum *room)

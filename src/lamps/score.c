@@ -5,35 +5,36 @@
 #include "base/sort.h"
 
 enum {
-    FLOOR_Q20 = 1 << 12, /* added to linear light before log2, so that noise in
-                            the dark is not taken for contrast */
+    FLOOR_Q20 = 1 << 12, /* light that is added to linear light before log2, so
+                            that noise in the dark does not count as contrast */
     LEAST_Q8 = -256,     /* contrasts are clamped to -1 .. 6 stops */
     MOST_Q8 = 6 * 256,
-    SMALL_Q8 = -2424, /* log2 of the area of small regions / picture area
-                         (1/709): up to this size the weight of colour is 1 */
-    LARGE_Q8 = -1400, /* log2 of the area of large regions / picture area
-                         (1/44): from this size on the weight of colour is 0 */
+    SMALL_Q8 = -2424, /* log2 of (area of a small region / area of the picture),
+                         1/709; up to this size the weight of colour is 1 */
+    LARGE_Q8 = -1400, /* log2 of (area of a large region / area of the picture),
+                         1/44; from this size on the weight of colour is 0 */
     HALO_MOST_Q8 = 512,
-    WIDE_Q8 = 1400,  /* range of log2 of the area over which a region changes
-                        from small to large: from 1/1960 to 1/44 of the picture
-                        */
-    DRAWN_AREA = 36, /* min area, pixels, for EVIDENCE_DRAWN; smaller squares
-                        may be round lamps */
+    WIDE_Q8 = 1400,  /* range of log2 of the area in which a region changes
+                        gradually from small to large: from 1/1960 to 1/44 of
+                        the picture */
+    DRAWN_AREA = 36, /* min area, pixels, of a region with EVIDENCE_DRAWN;
+                        smaller squares may be round lamps */
     DRAWN_BOX_Q8 = 250,
     SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };
 
-/* A term of the score: WEIGHT * (EVIDENCE clamped to LEAST .. MOST, minus
- * LEAST). EVIDENCE is the value of MEASURE. */
+/* A term of the score: WEIGHT times (EVIDENCE clamped to LEAST .. MOST, minus
+ * LEAST). EVIDENCE is the value of the measure MEASURE. */
 struct term {
     int8_t measure;
     int16_t least_q8, most_q8, weight_q8;
 };
 
-/* Weights from a logistic regression, each constrained to the sign that is
- * plausible for its measure; tests/corpus/fit prints them. A score higher by 64
- * multiplies the odds by e. The last weight is set by hand: no lamp of the
- * corpus fills its box, but a bright box in the dark is a lamp nevertheless. */
+/* Weights from a logistic regression. Each has the sign that is plausible for
+ * its measure. tests/corpus/fit prints them. A score that is higher by 64
+ * multiplies the odds of a lamp by e. The last weight is set by hand: no lamp
+ * of the corpus fills its box, but a bright box in the dark is a lamp
+ * nevertheless. */
 enum { BIAS_Q8 = -1438 };
 
 static const struct term terms[] = {
@@ -69,9 +70,10 @@ static void compute_log2_of_light(const int64_t rgb_q20[3], int32_t stops_q8[2])
     stops_q8[1] = glint_compute_light_log2_q8(y_q20 + FLOOR_Q20);
 }
 
-/* Returns the contrast between the region, whose log2 light is IN, and pixel X
- * of the current row, 1/256 stops: the max of the differences of the max
- * channel and of the luminance. */
+/* Returns the contrast between a region, whose log2 of light is IN, and pixel X
+ * of the current row, 1/256 stops. There are two differences: that of the
+ * largest channel and that of the luminance. The contrast is the larger of
+ * these. */
 static int32_t compute_contrast_to_pixel(const struct glint_score *s,
                                          const int32_t in_q8[2], int x)
 {
@@ -88,8 +90,8 @@ static int32_t compute_contrast_to_pixel(const struct glint_score *s,
                        MOST_Q8);
 }
 
-/* Sets (X, Y) to point I of an ellipse: the one inscribed in SUM's bounding box
- * after the box has been enlarged by D on all sides. */
+/* Sets (X, Y) to point I of an ellipse. The ellipse is inscribed in SUM's
+ * bounding box after the box has been enlarged by D on all sides. */
 static void compute_ellipse_point(const struct glint_region *sum, int32_t d,
                                   int i, int32_t *x, int32_t *y)
 {
@@ -105,8 +107,9 @@ static void compute_ellipse_point(const struct glint_region *sum, int32_t d,
     *y = q_narrow(sum->y0 - d + q_shift(h * (16384 + sine_q14[i]), 15));
 }
 
-/* Sets FOUND to the contrasts at those points of the ellipse at distance D from
- * SUM's box that lie within the picture. Returns their number. */
+/* Sets FOUND to the contrasts between a region and the points of an ellipse at
+ * distance D from SUM's box. Only points within the picture count. Returns the
+ * number of contrasts. */
 static int list_ellipse_contrasts(const struct glint_score *s,
                                   const struct glint_region *sum, int32_t d,
                                   const int32_t in_q8[2],
@@ -146,8 +149,8 @@ static void sort_contrasts(int32_t *v, int n)
         }
 }
 
-/* Returns the distance of ring I from SUM's bounding box, pixels: a fraction of
- * the picture's side plus a fraction of the box's side. */
+/* Returns the distance between ring I and SUM's bounding box, pixels. It is a
+ * fraction of the picture's side plus a fraction of the box's side. */
 static int32_t compute_ring_distance(const struct glint_score *s,
                                      const struct glint_region *sum, int i)
 {
@@ -167,8 +170,8 @@ struct ring {
                                             1/256 stops */
 };
 
-/* Sets RING to the contrasts at distance D pixels; leaves RING unchanged if no
- * point is in the picture. */
+/* Sets RING to the contrasts at distance D pixels. Does not change RING if no
+ * point of the ring is in the picture. */
 static void measure_ring_contrast(struct ring *ring,
                                   const struct glint_score *s,
                                   const struct glint_region *sum, int32_t d,
@@ -195,8 +198,8 @@ static void compute_mean_log2_of_light(const struct glint_region *sum,
     compute_log2_of_light(mean_q20, stops_q8);
 }
 
-/* Returns VALUE times the degree to which C is a large region: 0 for small, 1
- * for large regions. */
+/* Returns VALUE times the degree to which the region of C is large: 0 for small
+ * regions, 1 for large regions. */
 static int32_t scale_by_largeness_q8(const struct glint_candidate *c,
                                      int32_t value_q8)
 {
@@ -207,8 +210,9 @@ static int32_t scale_by_largeness_q8(const struct glint_candidate *c,
 
 /* -------------------------------------------------------------------- shape */
 
-/* Returns area / (2 pi r^2) of region SUM, at most 2; it is 1 for a disc. r is
- * the RMS radius; 1/6, the r^2 of a single pixel, is added to r^2. */
+/* Returns area / (2 pi r^2) of region SUM, at most 2, where r is the RMS
+ * radius. It is 1 for a disc. 1/6 is added to r^2, which is r^2 of a single
+ * pixel. */
 static int32_t compute_disc_fill_q8(const struct glint_region *sum)
 {
     const int64_t r_q8 = glint_region_compute_rms_radius_q8(sum);
@@ -218,8 +222,8 @@ static int32_t compute_disc_fill_q8(const struct glint_region *sum)
     return q_clamp_sat(((int64_t)sum->area << 24) / disc_q16, 0, 512);
 }
 
-/* Returns EVIDENCE_DRAWN of region SUM, which fills the fraction BOX of its
- * bounding box. */
+/* Returns EVIDENCE_DRAWN of region SUM. BOX is the fraction of its bounding box
+ * that it fills. */
 static int32_t compute_box_filling_degree_q8(const struct glint_region *sum,
                                              int32_t box_q8)
 {
@@ -239,17 +243,17 @@ static int32_t compute_saturation_q8(const struct glint_region *sum)
     return 256 - (int32_t)(least / (max_of_3(rim) / 256 + 1));
 }
 
-/* Returns PIXELS / number of pixels of the picture. */
+/* Returns PIXELS divided by the number of pixels of the picture. */
 static int64_t compute_picture_fraction_q20(const struct glint_score *s,
                                             int64_t pixels)
 {
     return (pixels << 20) / ((int64_t)s->width * s->height);
 }
 
-/* Returns EVIDENCE_DIM: 5 stops minus log2 of the white of LEVEL / the median
- * of the picture, clamped to 0 .. 5 stops; 0 if the white of LEVEL is where
- * codes clip. An underexposed night picture has lamps that do not clip; a
- * picture that is grey overall has grey objects. */
+/* Returns EVIDENCE_DIM: 5 stops minus log2 of (white of LEVEL / median of the
+ * picture), clamped to 0 .. 5 stops. Returns 0 if the white of LEVEL is where
+ * codes clip. An underexposed night picture has lamps that do not clip. A
+ * picture that is grey overall has grey objects instead of lamps. */
 static int32_t compute_dim_white_evidence_q8(const struct glint_score *s,
                                              const struct glint_level *level)
 {
@@ -265,8 +269,8 @@ static int32_t compute_dim_white_evidence_q8(const struct glint_score *s,
         0, 5 * 256);
 }
 
-/* Finds the brightness that 1 / 2^PART_LOG2 of the picture's pixels reach, and
- * returns how far it is below white, 1/256 stops. */
+/* Finds the brightness that 1 / 2^PART_LOG2 of the picture's pixels reach.
+ * Returns log2 of (white / this brightness), 1/256 stops. */
 static int32_t compute_below_white_q8(const struct glint_score *s,
                                       int part_log2)
 {
@@ -340,9 +344,9 @@ static int32_t compute_score_from_evidence(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-/* Returns the doubt that a low value of MEASURE causes
- * (glint_score_choose_doubt()); no doubt for measures that only some lamps have
- * high values of. */
+/* Returns the doubt that a low value of MEASURE causes, for
+ * glint_score_choose_doubt(). Measures of which only some lamps have high
+ * values cause no doubt. */
 static enum glint_doubt get_doubt_of_evidence(int measure)
 {
     switch (measure) {
@@ -394,8 +398,8 @@ enum glint_doubt glint_score_choose_doubt(const struct glint_candidate *c)
     return get_doubt_of_evidence(worst);
 }
 
-/* Returns the ring after whose measurement MEASURE is known; SCORE_RINGS if
- * MEASURE does not depend on rings. */
+/* Returns the number of the last ring on which MEASURE depends. Returns
+ * SCORE_RINGS if MEASURE does not depend on rings. */
 static int find_last_ring_of_evidence(int measure)
 {
     switch (measure) {
@@ -427,10 +431,10 @@ static int32_t compute_max_score_from_rings(int first)
     return (sum_q16 >> 8) + 1;
 }
 
-/* Prepares the measures of C for an upper bound of its score before rings are
- * read: those of rings are so low that they add nothing, as
- * compute_max_score_from_rings() adds their max. That function leaves out
- * EVIDENCE_WIDE_HALO, which is therefore set to its max. */
+/* Sets the measures of C such that its score is an upper bound before rings are
+ * read. Measures of rings are set so low that they add nothing, as
+ * compute_max_score_from_rings() adds their max. That function omits
+ * EVIDENCE_WIDE_HALO, so this measure is set to its max. */
 static void assume_best_ring_evidence(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
@@ -439,7 +443,7 @@ static void assume_best_ring_evidence(struct glint_candidate *c)
     c->evidence_q8[EVIDENCE_WIDE_HALO] = scale_by_largeness_q8(c, HALO_MOST_Q8);
 }
 
-/* Sets those measures of C that are known after ring I has been measured. */
+/* Sets the measures of C that are known as soon as ring I has been measured. */
 static void set_evidence_of_ring(struct glint_candidate *c,
                                  const struct ring *ring, int i)
 {
@@ -461,9 +465,9 @@ static void set_evidence_of_ring(struct glint_candidate *c,
     }
 }
 
-/* Returns the score of C. If is_brief of S is set, stops reading rings once
- * they cannot raise the score to -SCORE_DOUBT any more. MOST[I]: the max that
- * ring I and later rings can add to the score. */
+/* Returns the score of C. If is_brief of S is set, reading of rings stops when
+ * the score can no longer reach -SCORE_DOUBT. MOST[I]: the max that ring I and
+ * later rings can add to the score. */
 static int32_t score_candidate_ring_by_ring(struct glint_candidate *c,
                                             const struct glint_score *s,
                                             const int32_t most_q8[SCORE_RINGS])
@@ -526,9 +530,12 @@ void glint_score_score_candidates(const struct glint_score *score,
 
 /* ------------------------------------------------------------------- choice */
 
-/* The limits of ranks, by which the lamp is chosen among nested regions
- * (glint_score_choose_among_nested()). */
-enum { SURE_Q8 = 384 }; /* higher scores are clamped to this score */
+/* Limits of ranks. glint_score_choose_among_nested() chooses the lamp among
+ * nested regions by rank. */
+enum {
+    SURE_Q8 = 384
+}; /* max score that is used for ranks; higher scores are
+      clamped to it */
 
 static int is_rank_higher(const void *ctx, int32_t a, int32_t b)
 {
@@ -542,8 +549,8 @@ static int is_rank_higher(const void *ctx, int32_t a, int32_t b)
     return p->sum.first < q->sum.first;
 }
 
-/* Returns whether INNER is of a brighter level than OUTER, and its bounding box
- * lies in that of OUTER. */
+/* Returns whether INNER belongs to a brighter level than OUTER and its bounding
+ * box lies within that of OUTER. */
 static int is_region_within(const struct glint_candidate *inner,
                             const struct glint_candidate *outer)
 {

@@ -8,12 +8,12 @@
  *        e of the odds; below -SCORE_DOUBT it is not a lamp, even if it was
  *        a lamp in the previous frame
  *
- * A picture with one lamp often has more: in a picture with SCORE_SEVERAL
- * lamps, the min score of a lamp falls from 0 to -SCORE_COMPANY. If no score
- * reaches 0, the best region is accepted if its score is -SCORE_ALONE or more
- * in a still picture, since a picture for a flare usually has a lamp. In a
- * video it must reach -SCORE_ALONE_VIDEO, as a region is scored again in each
- * frame, which gives false lamps more chances.
+ * A picture with several lamps often has more of them. So with SCORE_SEVERAL
+ * lamps the min score of a lamp falls from 0 to -SCORE_COMPANY. A picture that
+ * gets a flare usually has a lamp. So if no score reaches 0, the region with
+ * the highest score is accepted as a lamp. In a still picture this score must
+ * be -SCORE_ALONE or more. In a video it must be -SCORE_ALONE_VIDEO or more, as
+ * a region is scored in each frame, which gives false lamps more chances.
  *
  * The score is a sum of terms. Each is a measure of the region, clamped to a
  * range and multiplied by a weight, so that small changes of the picture change
@@ -41,36 +41,39 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
-    SCORE_ALONE = 48, /* for still pictures; see tests/figures/finder.md */
+    SCORE_ALONE = 48, /* negated min score, in a still picture, of a region that
+                         is a lamp although no score reaches 0; see
+                         tests/figures/finder.md */
     SCORE_ALONE_VIDEO = 32,
     SCORE_LEVELS = 9
 };
 
 /* Measures of a region from which its score is computed, _q8. */
 enum glint_evidence {
-    EVIDENCE_AROUND, /* lower quartile of the contrast with the middle ellipse,
+    EVIDENCE_AROUND, /* lower quartile of the contrast between the region and
+                        the middle ellipse around it, stops */
+    EVIDENCE_HALO,   /* fall-off of light: mean contrast with the outermost
+                        ellipse minus mean contrast with the innermost ellipse,
                         stops */
-    EVIDENCE_HALO,   /* fall-off of light: mean contrast with the farthest
-                        ellipse minus that with the nearest ellipse, stops */
     EVIDENCE_SPREAD, /* upper minus lower quartile of the contrast with the
-                        nearest ellipse, stops; large if the fall-off of light
+                        innermost ellipse, stops; large if the fall-off of light
                         depends on the direction */
     EVIDENCE_FILL,   /* area of the region / area of a disc of the same RMS
                         radius: 256 for a disc */
     EVIDENCE_BOX,    /* area of the region / area of its bounding box: 256 if
                         the box is full */
     EVIDENCE_SIZE,   /* log2 of region area / picture area, 0 or less */
-    EVIDENCE_COLOUR, /* saturation, 256 for a single channel; reduced for large
-                        regions */
-    EVIDENCE_DIM,   /* if the level's white is below clipping: 5 minus the stops
-                       from the picture's median to that white, at least 0; else
-                       0 */
-    EVIDENCE_CLOSE, /* lower quartile of the contrast with the nearest ellipse,
-                       stops: lamps have steep edges */
+    EVIDENCE_COLOUR, /* saturation of the colour, 256 for a single channel;
+                        reduced for large regions */
+    EVIDENCE_DIM,   /* 5 stops minus log2 of (white of the level / median of the
+                       picture), at least 0; 0 if that white is not below
+                       clipping */
+    EVIDENCE_CLOSE, /* lower quartile of the contrast with the innermost
+                       ellipse, stops; high for lamps, which have steep edges */
     EVIDENCE_WHITE, /* log2 of the region's mean luminance / its level's white,
                        stops */
-    EVIDENCE_CROWD, /* log2 of the number of regions of the same level; lamps
-                       are few */
+    EVIDENCE_CROWD, /* log2 of the number of regions of the same level; low for
+                       lamps, which are few */
     EVIDENCE_HIGH,  /* height of the centroid above the picture's lower edge;
                        256 at the top */
     /* EVIDENCE_HALO of a large region (the sun or a lampshade); 0 for a small
@@ -78,9 +81,9 @@ enum glint_evidence {
     EVIDENCE_WIDE_HALO,
     EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as its level's white;
                           0 for a small or darker region */
-    /* For one pixel in 2, 4, 32 of the picture: how far below white the
-     * brightness is that so many pixels reach, stops. If nearly all of the
-     * picture is dark, bright objects are light sources. */
+    /* log2 of (white / brightness), stops, for the brightness that one pixel in
+     * 2, 4 or 32 of the picture reaches. If nearly all of the picture is dark,
+     * bright objects are light sources. */
     EVIDENCE_DARK_2,
     EVIDENCE_DARK_4,
     EVIDENCE_DARK_32,
@@ -101,18 +104,19 @@ struct glint_candidate {
     int32_t rank_q8;
     uint8_t faint;
     uint8_t doubt; /* value of enum glint_doubt */
-    uint8_t gone;  /* 1: merged into another region, or replaced by a region of
-                      higher rank */
+    uint8_t gone;  /* 1: the region has been merged into another region, or a
+                      region of higher rank has replaced it */
     int32_t evidence_q8[EVIDENCES];
 };
 
 /* A brightness level at which regions are searched. */
 struct glint_level {
     int low;           /* min brightness of pixels of its regions */
-    int seed, clipped; /* min brightness of seeds (pixels at the upper
-                          threshold), and of pixels that count as clipped */
-    int32_t cost_q8;   /* subtracted from the score when nested regions are
-                          compared */
+    int seed, clipped; /* seed: min brightness of seeds, which are pixels at the
+                          upper threshold; clipped: min brightness of pixels
+                          that count as clipped */
+    int32_t cost_q8;   /* cost of the level, which is subtracted from scores
+                          when nested regions are compared */
 };
 
 struct glint_score {
@@ -120,19 +124,19 @@ struct glint_score {
     const struct glint_white *white;
     int width, height;
     const struct glint_level *level;
-    int is_brief;     /* 1: stop reading the rings of a region once its score is
-                         certain to be below -SCORE_DOUBT, and return an upper
-                         bound of the score that is below -SCORE_DOUBT */
-    int32_t alone_q8; /* if no score reaches 0, the best region is a lamp if its
-                         score is at least -alone_q8 */
+    int is_brief;     /* 1: reading the rings of a region stops once its score
+                         is certain to be below -SCORE_DOUBT; the returned score
+                         is then an upper bound below -SCORE_DOUBT */
+    int32_t alone_q8; /* If no score reaches 0, the region with the highest
+                         score is a lamp if this score is at least -alone_q8. */
 };
 
-/* Sets the scores of the N candidates that ORDER lists. */
+/* Computes the scores of the N candidates whose indices are in ORDER. */
 void glint_score_score_candidates(const struct glint_score *score,
                                   struct glint_candidate *candidate,
                                   const int32_t *order, int n);
 
-/* Returns the main reason for which C may not be a lamp: the measure whose term
+/* Returns the main reason why C may not be a lamp. It is the measure whose term
  * is farthest below the middle of its range. */
 enum glint_doubt glint_score_choose_doubt(const struct glint_candidate *c);
 
@@ -143,9 +147,9 @@ int32_t glint_score_find_min_lamp_score(const struct glint_score *score,
                                         struct glint_candidate *candidate,
                                         int32_t *order, int n);
 
-/* Sorts ORDER by descending rank (score minus cost of the level). Of candidates
- * that lie in each other's boxes, marks all but the one of highest rank as
- * gone. */
+/* Sorts ORDER by descending rank, which is the score minus the cost of the
+ * level. Of candidates that lie in each other's boxes, only the candidate of
+ * the highest rank remains; the others are marked as gone. */
 void glint_score_choose_among_nested(const struct glint_score *score,
                                      struct glint_candidate *candidate,
                                      int32_t *order, int n);

@@ -14,8 +14,8 @@ enum {
     LEVELS = GLINT_PROFILE_LEVELS,
     FEATURES = GLINT_UNCLIP_FEATURES,
     UNITS = GLINT_UNCLIP_UNITS,
-    SHOWN = 5 /* darkest level whose pixels count as light that the picture
-                 shows */
+    SHOWN = 5 /* darkest level whose pixels count as visible light of the lamp
+               */
 };
 
 /* ------------------------------------------------------------------- colour */
@@ -28,8 +28,8 @@ static int64_t compute_luminance(const int64_t v[3])
 }
 
 /* Sets the colour of SPOT. Clipped light has 1/63 of the weight of the
- * unclipped light around it (fringe): a large fringe determines the colour, a
- * spot clipped to white becomes white, and the transition is continuous. */
+ * unclipped light around it (fringe). So a large fringe determines the colour,
+ * and a spot without a fringe becomes white. The transition is continuous. */
 static void set_spot_colour(struct glint_spot *spot,
                             const struct glint_profile_sums *sums)
 {
@@ -74,10 +74,10 @@ static void compute_central_moments(const struct glint_profile_sums *sums,
     }
 }
 
-/* Returns the radius of the lamp / the radius of its clipped core, 0 .. 1,
- * estimated from the width of the fall-off around the core. The glare of a
- * small lamp far over white is clipped, too, and falls off over half of the
- * core's radius or more; a large lamp has a sharp rim, one pixel wide. */
+/* Returns the radius of the lamp / the radius of its clipped core, 0 .. 1. It
+ * is estimated from the width of the fall-off around the core. A small lamp far
+ * above white has clipped glare around it, which falls off over half of the
+ * core's radius or more. A large lamp has a sharp rim, one pixel wide. */
 static int32_t
 estimate_lamp_radius_by_glare_q15(const struct glint_profile_sums *sums)
 {
@@ -87,7 +87,8 @@ estimate_lamp_radius_by_glare_q15(const struct glint_profile_sums *sums)
     for (int c = 1; c < 3; c++)
         if (sums->of[c].area_q8[0] > of->area_q8[0])
             of = &sums->of[c];
-    /* radii of circles with these areas, times sqrt(pi) */
+    /* Both values are radii of circles, times sqrt(pi), computed from their
+     * areas. */
     inner_q8 = q_root((uint64_t)of->area_q8[0] << 8);
     outer_q8 = q_root((uint64_t)of->area_q8[2] << 8);
     rim_q8 = outer_q8 - inner_q8 - Q_CONST(1.7725, 8);
@@ -97,9 +98,10 @@ estimate_lamp_radius_by_glare_q15(const struct glint_profile_sums *sums)
            q_clamp_sat(q_divide(rim_q8 << 16, inner_q8), 0, 1 << 15);
 }
 
-/* Returns the radius of the lamp / the radius of its clipped core, 0 .. 1,
- * estimated from the rim of a large core: if light drops more at the rim than
- * glare can drop, the whole core is the lamp. Returns 0 for a small core. */
+/* Returns the radius of the lamp / the radius of its clipped core, 0 .. 1. It
+ * is estimated from the rim of a large core. If light drops more at the rim
+ * than glare can drop, the complete core is the lamp. Returns 0 for a small
+ * core. */
 static int32_t
 estimate_lamp_radius_by_rim_q15(const struct glint_profile_sums *sums)
 {
@@ -112,8 +114,8 @@ estimate_lamp_radius_by_rim_q15(const struct glint_profile_sums *sums)
  * moments of its pixels. */
 struct axes {
     int32_t major_q8, minor_q8;
-    int64_t half, apart; /* half of xx - yy, and half of the difference between
-                            the eigenvalues of the moments */
+    int64_t half, apart; /* half: half of xx - yy; apart: half of the difference
+                            between the eigenvalues of the moments */
     int is_down;
 };
 
@@ -159,9 +161,9 @@ static int32_t compute_area_log2(int64_t area_q8)
            8 * ONE_Q16;
 }
 
-/* Returns the weight of level K's area as a feature: 1 for levels 1 and 2; for
- * other levels 1 if the background's spread is at most half of the level's min
- * light, falling to 0 where the spread equals that light. */
+/* Returns the weight of level K's area as a feature. It is 1 for levels 1 and
+ * 2. For other levels it is 1 if the background's spread is at most half of the
+ * level's min light. It falls to 0 where the spread equals that light. */
 static int32_t compute_level_weight_q16(const struct glint_profile_channel *of,
                                         int k)
 {
@@ -172,9 +174,10 @@ static int32_t compute_level_weight_q16(const struct glint_profile_channel *of,
                   : q_clamp_sat(-k * ONE_Q16 - spread_q16, 0, ONE_Q16);
 }
 
-/* Returns the sum of u over the pixels of levels up to SHOWN. Level k covers u
- * from 2^-k to 2^(1 - k). The sum of its area times 2^-k over all levels is the
- * sum of u - 2^-SHOWN; the area of level SHOWN adds the missing 2^-SHOWN. */
+/* Returns the visible light of a lamp: the sum of u over the pixels of levels
+ * up to SHOWN. Level k covers u from 2^-k to 2^(1 - k). The sum of its area
+ * times 2^-k over all levels is the sum of u - 2^-SHOWN. The area of level
+ * SHOWN adds the missing 2^-SHOWN. */
 static int64_t compute_shown_flux_q16(const struct glint_profile_channel *of)
 {
     int64_t sum_q16 = 0;
@@ -211,8 +214,8 @@ static int64_t find_min_clipped_area_q8(const struct glint_profile_sums *sums)
     return area_q8;
 }
 
-/* Returns the max channel of the spot's colour, which has luminance 1; 0.5 if
- * it has no colour. */
+/* Returns the largest channel of the spot's colour, where the colour is scaled
+ * to luminance 1. Returns 0.5 if the spot has no colour. */
 static int32_t find_max_colour_channel_q15(const struct glint_spot *spot)
 {
     int32_t most = Q_CONST(0.5, 15);
@@ -222,9 +225,9 @@ static int32_t find_max_colour_channel_q15(const struct glint_spot *spot)
     return most;
 }
 
-/* Returns the degree to which the picture's codes resolve LEVEL: 1 if the
- * level's min light is two code steps above the background, 0 if it is one step
- * above. */
+/* Returns the degree to which the codes of the picture resolve LEVEL. It is 1
+ * if the level's min light is two code steps above the background, 0 if it is
+ * one step above. */
 static int32_t
 compute_level_resolution_q16(const struct glint_profile_sums *sums, int level)
 {
@@ -237,11 +240,11 @@ compute_level_resolution_q16(const struct glint_profile_sums *sums, int level)
                        0, ONE_Q16);
 }
 
-/* Sets GROWTH to log2 of area / area of the core, per level. With codes as
- * coarse as RGB565, the area of a dark level only reflects where the picture
- * steps from one code to the next; such a level is assumed to grow like the
- * level before it. Levels are an octave apart, so at most one level is partly
- * resolved. Sums are below 2^26. */
+/* Sets GROWTH to log2 of (area / area of the core), per level. If codes are as
+ * coarse as in RGB565, the area of a dark level depends only on where the
+ * picture changes from one code to the next. So such a level is assumed to grow
+ * like the level before it. Levels are an octave apart, so at most one level is
+ * partly resolved. Sums are below 2^26. */
 static void compute_level_growth(int32_t growth_q16[LEVELS],
                                  const struct glint_profile_sums *sums,
                                  int32_t core_q16)
@@ -278,7 +281,8 @@ void glint_unclip_compute_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
     feature_q16[1] =
         core_q16 - compute_area_log2(find_min_clipped_area_q8(sums));
     compute_level_growth(feature_q16 + 2, sums, core_q16);
-    /* means over the channels, plus 0.001 (spread) and 0.002 (light) */
+    /* spread and light of the background: means over the channels, plus 0.001
+     * (spread) and 0.002 (light) */
     feature_q16[2 + LEVELS] =
         q_log2_q16((uint64_t)spread_q16 + 197) - Q_CONST(17.585, 16);
     feature_q16[3 + LEVELS] =
@@ -339,8 +343,8 @@ void glint_unclip_compute_shown_light(int64_t *seen_q16, int64_t *core_q16,
                          find_max_colour_channel_q15(spot));
 }
 
-/* Sets the power of SPOT: the light that the picture shows plus the light of
- * the core that is lost to clipping, which is estimated from features and
+/* Sets the power of SPOT, which is the visible light plus the light of the core
+ * that is lost to clipping. The lost light is estimated from features, and
  * clamped to 2^27 white pixels. The sum is clamped to MAX_POWER. */
 static void set_spot_power(struct glint_spot *spot,
                            const struct glint_profile_sums *sums)

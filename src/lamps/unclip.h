@@ -8,12 +8,12 @@
 #include "lamps/rings.h"
 
 /* Number of features from which the power of a clipped core is predicted. All
- * are logarithms: the core's area; the same relative to the clipped area of the
- * channel that clips least; the area of each level relative to the core's;
- * spread and light of the background; the max channel of the colour at
- * luminance 1; the minor semi-axis of the lamp without glare, from the areas
- * alone. The major semi-axis is not a feature, since for two lamps in one spot
- * it is their distance. */
+ * are logarithms: the core's area; the core's area relative to the clipped area
+ * of the channel that clips least; the area of each level relative to the
+ * core's; spread and light of the background; the largest channel of the colour
+ * at luminance 1; the minor semi-axis of the lamp without glare, from the areas
+ * alone. The major semi-axis is not a feature. For two lamps in one spot it is
+ * the distance between them. */
 enum { GLINT_UNCLIP_FEATURES = 6 + GLINT_PROFILE_LEVELS };
 
 /* Sets FEATURE to the features of SPOT, whose colour must have been set. */
@@ -21,9 +21,9 @@ void glint_unclip_compute_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
                                    const struct glint_spot *spot,
                                    const struct glint_profile_sums *sums);
 
-/* Sets SEEN to the light above the background that the picture shows of SPOT,
- * and CORE to the light that its clipped core would have if its brightest
- * channel were exactly white. Unit: light of one white pixel. */
+/* Sets SEEN to the visible light of SPOT, above the background. Sets CORE to
+ * the light that its clipped core would have if its brightest channel were
+ * exactly white. Unit: light of one white pixel. */
 void glint_unclip_compute_shown_light(int64_t *seen_q16, int64_t *core_q16,
                                       const struct glint_spot *spot,
                                       const struct glint_profile_sums *sums);

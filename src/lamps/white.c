@@ -4,8 +4,8 @@
 #include "base/q.h"
 #include "lamps/bright_code.h"
 
-/* Approximates log2(1 + f), where f is the fraction that follows the leading
- * bit of the light, by f + f (1 - f) (0.4273 - 0.175 f); the error is below
+/* log2(1 + f) is approximated by f + f (1 - f) (0.4273 - 0.175 f), where f is
+ * the fraction that follows the leading bit of the light. The error is below
  * 0.002. */
 int32_t glint_compute_light_log2_q8(int64_t light_q20)
 {
@@ -21,8 +21,8 @@ int32_t glint_compute_light_log2_q8(int64_t light_q20)
            (int32_t)q_shift(f_q12 + q_mul(bent_q12, by_q12, 12), 4);
 }
 
-/* Returns the min code whose linear light is at least 2^(STOPS / 256) times
- * white, at most BRIGHT_CLIPPED. */
+/* Returns the min code, at most BRIGHT_CLIPPED, whose linear light is at least
+ * 2^(STOPS / 256) times white. */
 static int find_min_code_of_light(const struct glint_bright *b,
                                   int32_t stops_q8)
 {
@@ -34,8 +34,8 @@ static int find_min_code_of_light(const struct glint_bright *b,
     return code;
 }
 
-/* Iterates over the N columns or rows of a sampling grid over SIDE pixels:
- * number i is at pixel (2 i + 1) SIDE / (2 N), rounded down. */
+/* Iterates over the N columns or rows of a grid of samples over SIDE pixels.
+ * Number i is at pixel (2 i + 1) SIDE / (2 N), rounded down. */
 struct grid {
     int at, past, step, step_past, whole;
 };

@@ -5,12 +5,11 @@
  *    in   a picture for which glint_bright_begin_picture() was called
  *    out  number of pixels of a grid that reach each brightness; codes
  *
- * White is the brightness of lamps. In an underexposed picture it may be far
- * below the max code. So it is the code at which codes clip if at least one
- * pixel in 2^WHITE_PART_LOG2 is clipped; else it is the code that this fraction
- * of pixels reaches, but at least WHITE_LEAST, so that noise is not mistaken
- * for lamps.
- */
+ * White is the brightness from which objects may be lamps. In an underexposed
+ * picture it may be far below the max code. If at least one pixel in
+ * 2^WHITE_PART_LOG2 is clipped, white is the code at which codes clip.
+ * Otherwise white is the code that this fraction of pixels reaches. It is at
+ * least WHITE_LEAST, so that noise is not mistaken for lamps. */
 #ifndef GLINT_LAMPS_WHITE_H
 #define GLINT_LAMPS_WHITE_H
 
@@ -25,8 +24,8 @@ enum {
 
 struct glint_white {
     int n;                 /* number of pixels sampled */
-    int32_t at_least[257]; /* [i]: number of sampled pixels whose brightness is
-                              i or more */
+    int32_t at_least[257]; /* [i]: number of sampled pixels of brightness i or
+                              more */
     int32_t light_q20;     /* linear light of white */
 };
 
@@ -37,12 +36,12 @@ void glint_white_measure_picture(struct glint_white *white,
                                  struct glint_bright *bright, int height);
 
 /* Returns the min code, 1 .. BRIGHT_CLIPPED, whose linear light is at least
- * LIGHT times 2^(EV / 256). EV must be 0 or less. */
+ * LIGHT times 2^(EV / 256). EV must not be above 0. */
 int glint_white_find_code(const struct glint_bright *bright, int32_t light_q20,
                           int32_t ev_q8);
 
-/* Returns the min brightness that at most 1 / 2^PART_LOG2 of the pixels reach.
- */
+/* Returns the min brightness that no more than 1 / 2^PART_LOG2 of the sampled
+ * pixels reach. */
 int glint_white_find_brightness_of_rank(const struct glint_white *white,
                                         int part_log2);
 
