@@ -29,14 +29,14 @@ struct bake_run {
     struct glint_fitted_ghost *fitted;
     /* integer polynomials, [n_ghosts][n_systems] */
     struct glint_quantised_system **quantised;
-    /* [n_ghosts]: status of the current step (fitting, quantising) of each
-     * ghost */
+    /* status of the current step (fitting or quantising) for each ghost */
     enum glint_status *status;
     struct glint_draft draft;
-    /* [n_ghosts]: index of each ghost's first system in the model */
+    /* index in the model of the first system of each ghost */
     int *first;
-    int *intruders; /* [n_ghosts]: number of blocked rays that the model
-                       transmits, see struct glint_bake_report */
+    /* number of rays of each ghost that the real lens blocks and the model
+     * transmits, see struct glint_bake_report */
+    int *intruders;
     int *rays;
     struct glint_effort effort; /* progress estimate; only worker 0 writes it */
     struct glint_error *error;
@@ -44,9 +44,9 @@ struct bake_run {
 
 /* --------------------------------------------------------------------- jobs */
 
-/* Allocates the visibility tables of GHOST at this zoom position and at the
- * first N neighbouring ones. The caller frees them. Returns NULL if there is no
- * memory. */
+/* Allocates tables that state from which directions GHOST is visible: one for
+ * this zoom position and one for each of the first N neighbouring positions.
+ * The caller frees them. Returns NULL if there is no memory. */
 static struct glint_visible *allocate_visibility(const struct bake_run *run,
                                                  int ghost, int n)
 {
@@ -121,8 +121,8 @@ static enum glint_status report_fit_work(void *ctx, double work, double share)
 }
 
 /* Factor on all tolerances of lenses that are not round. Light directions then
- * have two components; with the tolerances of round lenses, tenths of a pixel
- * would cost many times as many systems. */
+ * have two components. The tolerances of round lenses would then require many
+ * times as many systems to avoid errors of tenths of a pixel. */
 #define SKEW_TOLERANCE 1.5
 
 /* Factor on the energy tolerance of lenses that are not round. Smaller than
@@ -141,8 +141,9 @@ static enum glint_status fit_ghost(struct bake_run *run, int ghost,
         .faint_sensor_mm = 0.07 * t * film / 1920,
         .edge_mm = 0.04 * t * film / 1920,
         .stop = 4.5e-4 * t,
-        /* 1/16 of the max stop tolerance; less for lenses faster than
-         * GLINT_WIDE, because the model is also used for all smaller stops */
+        /* The min tolerance is 1/16 of the max tolerance .stop. It is smaller
+         * for lenses faster than GLINT_WIDE, because their model is also used
+         * for all smaller stops. */
         .stop_least = 2.7e-5 * t * fmin(1, run->lens->f_number / GLINT_WIDE),
         .barrel = 4e-4 * t,
         .escape = 1e-3 * t,
@@ -305,8 +306,9 @@ static int count_ghost_parts(const struct glint_fitted_ghost *ghost)
     return n;
 }
 
-/* Splits ghosts whose pupil consists of several parts: each further part
- * becomes a ghost of its own after all others. */
+/* Splits ghosts that enter through several separate parts of the pupil. The
+ * first part remains with the ghost. Each further part becomes a new ghost at
+ * the end of the list. */
 static enum glint_status split_ghosts_into_parts(struct bake_run *run)
 {
     struct glint_setup *s = &run->setup;

@@ -9,14 +9,15 @@
 static const double head_work[] = {32, 32, 90};
 static const double angle_work[] = {1.5, 1.5, 25};
 static const double typical_work[] = {4, 25, 110};
-/* weight of typical_work when averaged with the measured work of finished
- * ghosts, as a number of ghosts */
+/* typical_work is averaged with the measured work of the finished ghosts. It
+ * has the weight of this number of ghosts. */
 #define TRUST 3.0
-/* max estimate of the work of a ghost / typical_work */
+/* upper limit of the estimated work of a ghost, as a multiple of
+ * typical_work */
 #define MOST 10.0
-/* The work of the current ghost is extrapolated from the angles done so far and
- * blended with the mean work of other ghosts. BLUR: weight of that mean, as a
- * fraction of the ghost's angles. */
+/* The work of the current ghost is extrapolated from the fraction of its angles
+ * that are done. This value is blended with the mean work per ghost, which has
+ * the weight BLUR; the extrapolated value has the weight of the fraction. */
 #define BLUR 0.1
 
 void glint_effort_init(struct glint_effort *e, int n_ghosts, int n_workers,

@@ -3,10 +3,11 @@
  * Estimates the progress of a bake. The number of zones of a ghost is not known
  * before they are fitted.
  *
- *     glint_effort_begin_ghost(&effort, ghost);              worker 0, for each
- * of glint_effort_record_work(&effort, work, share); ...    its ghosts
- *     glint_effort_end_ghost(&effort);
- *     ... glint_effort_estimate_progress(&effort) ...
+ *     for each ghost that worker 0 fits:
+ *         glint_effort_begin_ghost(&effort, ghost);
+ *         glint_effort_record_work(&effort, work, share); ...
+ *         glint_effort_end_ghost(&effort);
+ *     glint_effort_estimate_progress(&effort) at any time
  *
  * Work is counted in fits of a zone, about 40 ms each. The total work of the
  * current ghost is extrapolated from the fraction of its angles that are done;
@@ -48,9 +49,10 @@ enum glint_effort_kind {
 void glint_effort_init(struct glint_effort *effort, int n_ghosts, int n_workers,
                        enum glint_effort_kind kind);
 
-/* Sets the estimates HEAD (work before the first ghost) and TYPICAL (mean
- * work of a ghost). Used for lenses that are not round, whose last ghosts
- * cost a hundred times as much as the first ones, because their light folds. */
+/* Sets the estimates HEAD (work before the first ghost) and TYPICAL (mean work
+ * of a ghost). Used for lenses that are not round. Their last ghosts cost a
+ * hundred times as much as the first ones, because the rays of the last ghosts
+ * form caustics. */
 void glint_effort_set_estimates(struct glint_effort *effort, double head,
                                 double typical);
 

@@ -24,8 +24,9 @@ static double draw_random_number(struct random *r)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
-/* A bundle (ghost, direction, wavelength) of the model, its exact path, and
- * the errors measured so far. */
+/* A bundle of rays: those of one ghost, direction and wavelength. Contains the
+ * model's data and the exact path of the bundle, and the errors measured so
+ * far. */
 struct meter {
     const struct glint_visible *visible;
     const struct glint_fitted_system *fitted;
@@ -33,8 +34,9 @@ struct meter {
     struct glint_path path;
     double direction[3];
     int n;
-    double *error[GLINT_OUT_KINDS]; /* [outputs][RAYS]: error of each ray */
-    double *energy;                 /* [RAYS]: exact energy of each ray */
+    /* error of each ray, for each output: [RAYS] */
+    double *error[GLINT_OUT_KINDS];
+    double *energy; /* exact energy of each ray, [RAYS] */
     int n_of[GLINT_OUT_KINDS];
     struct glint_measured *out;
 };
@@ -55,9 +57,10 @@ static void record_output_error(struct meter *b, int kind, double error)
     b->error[kind][b->n_of[kind]++] = fabs(error);
 }
 
-/* Records the errors of barrel polynomials for rays near the rim of the barrel,
- * where an error changes which rays are blocked. There the error of (1 + r^2) /
- * 2 equals that of the relative radius r. */
+/* Records the errors of the barrel polynomials, which approximate (1 + r^2) / 2
+ * (r: relative radius of the ray at the barrel). Only rays near the rim, r = 1,
+ * count, because there an error changes which rays are blocked. At the rim the
+ * error of (1 + r^2) / 2 equals the error of r. */
 static void record_barrel_errors(struct meter *b, const struct glint_outputs *o,
                                  double (*hits)[2])
 {

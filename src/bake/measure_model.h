@@ -17,8 +17,9 @@ struct glint_errors {
 struct glint_measured {
     int rays; /* number of rays that pass the real lens */
     /* number of rays that the model transmits although the real lens blocks
-     * them: they miss a surface, or lie more than 3 % outside a surface's
-     * semi-diameter or the stop's radius; not included in RAYS */
+     * them. A ray counts if it misses a surface, or if it lies more than 3 %
+     * outside a surface's semi-diameter or the stop's radius. Not included in
+     * RAYS. */
     int intruders;
     struct glint_errors of[GLINT_OUT_KINDS]; /* errors per output, in the units
                                                 of the model file */

@@ -13,16 +13,18 @@
 #include "glint/model.h"
 
 enum {
-    /* revision of the baker, part of the cache key; raised when a lens would
-     * bake to a different model, so that cached models are baked again */
+    /* Revision of the baker, part of the cache key. A change that makes lenses
+     * bake to different models raises it, so that cached models are baked
+     * again. */
     REVISION = 13,
-    /* instead of REVISION for lenses faster than GLINT_WIDE */
+    /* revision for lenses faster than GLINT_WIDE, replaces REVISION */
     WIDE_REVISION = 17,
-    SHAPED_REVISION = 1, /* for non-spherical surfaces, added to the key */
-    /* for lenses that are not round, added to the key */
+    /* added to the revision of lenses with non-spherical surfaces */
+    SHAPED_REVISION = 1,
+    /* added to the revision of lenses that are not round */
     SKEW_REVISION = 2,
-    /* for round lenses with lights beyond GLINT_FAR degrees, added to the
-     * key */
+    /* added to the revision of round lenses that are baked for lights beyond
+     * GLINT_FAR degrees */
     FAR_REVISION = 3
 };
 

@@ -169,9 +169,9 @@ static void evaluate_zone_box(const struct glint_zone *zone,
     box->y1_mm = box->y0_mm + 2 * half_y;
 }
 
-/* Finds the box of unblocked rays for direction AT and wavelength K. Searches
- * near the box found last, except for corners of the patch, then in the whole
- * pupil. WITHIN: see glint_sights_find_boxes(). */
+/* Finds the pupil box of unblocked rays for direction AT and wavelength K.
+ * Searches near the box found last, then in the whole pupil. Corners of the
+ * patch skip the first search. WITHIN: see glint_sights_find_boxes(). */
 static bool find_box_at_direction(const struct glint_visible *h,
                                   const struct place *at, int k,
                                   const struct glint_zone *within,
@@ -238,15 +238,17 @@ void glint_sights_find_boxes(const struct glint_visible *visible,
 
 enum { MOST = GLINT_PATCH_SIDE * GLINT_PATCH_SIDE * GLINT_PATCH_WAVES };
 
-/* One component (a middle or a half size, along x or y) of each box, and the
- * coordinates s, w and p of that box. */
+/* Samples for the fit of one box polynomial. VALUE is a component of each box:
+ * its middle or half size along x or y. X holds the coordinates s, w and p of
+ * each box. */
 struct sides {
     int n;
     double x[3][MOST], value[MOST];
 };
 
-/* Fits the box polynomial SIDE, of DEGREE in s and p plus a term in w, to the
- * values within TOLERANCE, or as well as possible. */
+/* Fits the box polynomial SIDE to the samples SIDES. It has DEGREE in the
+ * direction coordinates s and p, and terms linear in the wavelength coordinate
+ * w. The error may exceed TOLERANCE if no such polynomial meets it. */
 static void fit_box_polynomial(const struct sides *sides, int degree,
                                double tolerance, double side[GLINT_BOX_TERMS])
 {
@@ -277,8 +279,8 @@ static void fit_box_polynomial(const struct sides *sides, int degree,
             fit.coef[k];
 }
 
-/* Returns minus the min over ZONE, sampled, of the half-size polynomial HALF.
- * After adding it, no sampled half size is negative. */
+/* Returns the number that must be added to the half-size polynomial HALF so
+ * that none of its values, sampled over ZONE, is negative. */
 static double compute_size_deficit(const struct glint_zone *zone,
                                    const double half[GLINT_BOX_TERMS])
 {
@@ -306,8 +308,8 @@ static double compute_box_middle(const struct glint_pupil *box, bool y)
              : 0.5 * (box->x0_mm + box->x1_mm);
 }
 
-/* Sets the polynomials MIDDLE and HALF of ZONE's box along x (or along y if Y)
- * such that the box contains all boxes in SIGHTS. */
+/* Sets the polynomials MIDDLE and HALF of ZONE's box, along y if Y is true,
+ * else along x. The box then contains all boxes in SIGHTS. */
 static void fit_middle_and_half_size(const struct glint_sights *sights,
                                      int degree, bool y,
                                      const struct glint_zone *zone,
@@ -362,7 +364,7 @@ void glint_sights_fit_zone(const struct glint_sights *sights,
                            const struct glint_directions *patch,
                            struct glint_zone *zone)
 {
-    /* equal to ENOUGH_FILL and FULLER in zone.c */
+    /* These values must equal ENOUGH_FILL and FULLER in zone.c. */
     const double enough = 0.6, fuller = 1.6;
 
     *zone = (struct glint_zone){.fill = 0};

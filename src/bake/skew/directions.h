@@ -30,7 +30,9 @@ enum {
 
 /* The box of visible rays at one direction and wavelength of a patch. */
 struct glint_sight {
-    double x[GLINT_VARIABLES]; /* zone coordinates; only s, w and p are used */
+    /* zone coordinates of the box: s and p for the direction, w for the
+     * wavelength; the others are 0 */
+    double x[GLINT_VARIABLES];
     struct glint_pupil box;
 };
 

@@ -7,8 +7,8 @@
 
 /* Substitutes VARIABLE (s, p or w) in the box polynomial SIDE by AT + x / 2, so
  * that x = -1 .. 1 covers half of its range. */
-static void substitute_variable_in_polynomial(double side[GLINT_BOX_TERMS],
-                                              int variable, double at)
+static void substitute_variable(double side[GLINT_BOX_TERMS], int variable,
+                                double at)
 {
     double *const c = side;
 
@@ -34,9 +34,9 @@ static void substitute_variable_in_polynomial(double side[GLINT_BOX_TERMS],
     }
 }
 
-/* Cuts a box along one axis to the part LOW .. HIGH of its width or height,
- * where -1 .. 1 is the whole. MIDDLE, HALF: polynomials of the box's middle and
- * half size along that axis. */
+/* Cuts a box along one axis to the range LOW .. HIGH; the uncut box has the
+ * range -1 .. 1. MIDDLE, HALF: polynomials of the box's middle and half size
+ * along that axis. */
 static void cut_box_along_axis(double middle[GLINT_BOX_TERMS],
                                double half[GLINT_BOX_TERMS], double low,
                                double high)
@@ -70,7 +70,7 @@ static void reduce_piece_to_half(struct glint_skew_piece *p, int variable,
     }
     *ends[variable][side < 0] = 0.5 * (*ends[variable][0] + *ends[variable][1]);
     for (int k = 0; k < GLINT_LENS_SIDES; k++)
-        substitute_variable_in_polynomial(all[k], variable, 0.5 * side);
+        substitute_variable(all[k], variable, 0.5 * side);
 }
 
 void glint_piece_halve(const struct glint_skew_piece *p, int variable,

@@ -6,10 +6,11 @@
  *   in   a piece, and the polynomials that were fitted to it
  *   out  the variable in which to halve the piece, and its halves
  *
- * Where rays fold, polynomials in u and v need many terms; half of a box needs
- * far fewer. Where boxes move, halving directions helps. The choice depends on
- * high powers: halving reduces the error most in the variable whose high
- * powers contribute most to the polynomial.
+ * Where rays form caustics, polynomials in the pupil coordinates u and v need
+ * many terms, and half of a pupil box needs far fewer. Where the box moves
+ * quickly with the direction, halving the patch of directions helps. A piece is
+ * halved in the variable whose high powers contribute most to its polynomials,
+ * because that reduces the error most.
  */
 #ifndef GLINT_BAKE_SKEW_PIECES_H
 #define GLINT_BAKE_SKEW_PIECES_H
@@ -18,14 +19,15 @@
 #include "bake/fit/zone.h"
 
 struct glint_skew_piece {
-    /* the piece's patch of directions; its box is set if known is true or if
-     * parts > 0 */
+    /* the piece's patch of directions, and its pupil box. The box is set if
+     * known is true or if parts > 0. */
     struct glint_zone zone;
     double w0, w1; /* the piece's band, in w, -1 .. 1 */
-    /* error, in tolerances, of the piece that was halved into this one */
+    /* error, in tolerances, of the larger piece that was halved into this
+     * one */
     double before;
-    int depth;  /* number of halvings of any variable that led to this piece */
-    int parts;  /* number of those halvings that divided the box */
+    int depth; /* number of halvings, in any variable, that led to this piece */
+    int parts; /* number of halvings in u or v, which divide the pupil box */
     bool known; /* true: the box contains all light from the patch */
 };
 
@@ -39,14 +41,15 @@ void glint_piece_halve(const struct glint_skew_piece *p, int variable,
 void glint_piece_crop_box(struct glint_skew_piece *p,
                           const struct glint_visible *visible);
 
-/* Sets SHARE[variable] to the fraction of the high powers of SYSTEM's
- * polynomials that halving this variable would remove. If any polynomial misses
- * its tolerance, only polynomials that miss theirs count. */
+/* Estimates how much halving in each variable helps. SHARE[variable] is the
+ * fraction of the high powers of SYSTEM's polynomials that it would remove.
+ * Polynomials within their tolerance are ignored unless all of them are. */
 void glint_piece_compute_shares(const struct glint_fitted_system *system,
                                 double share[GLINT_VARIABLES]);
 
-/* Returns the smallest part number that no system of GHOST uses for directions
- * and wavelengths that overlap those of SYSTEM. */
+/* Returns a part number for SYSTEM: the smallest one that is free. A number is
+ * in use if another system of GHOST with that number overlaps SYSTEM in
+ * directions and wavelengths. */
 int glint_piece_choose_part_number(const struct glint_fitted_ghost *ghost,
                                    const struct glint_fitted_system *system);
 

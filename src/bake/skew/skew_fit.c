@@ -11,54 +11,58 @@
 #include "bake/skew/pieces.h"
 #include "engine/setup/degrees.h"
 
-/* max side of a patch, as a difference of sines */
+/* max width and height of a patch, as a difference of sines */
 #define MOST_SIDE 0.22
-/* patches with sides below this difference of sines are not halved */
+/* patches whose larger side is at most this difference of sines are not
+ * halved */
 #define LEAST_SIDE 0.04
-/* Patches with sides below this difference of sines are accepted if the last
- * halving did not help and their error is at most attempt.bearable. */
+/* Patches whose larger side is below this difference of sines are accepted if
+ * the last halving did not help and their error is at most attempt.bearable. */
 #define STUCK_SIDE 0.12
 /* Halving a patch did not help if a half still has more than this fraction of
  * the patch's error. */
 #define STUCK 0.75
-/* LEAST_FILL: min fraction of a box that visible light must fill. Applies to
- * patches with sides above FILL_SIDE, a difference of sines. */
+/* LEAST_FILL: min fraction of a pupil box that visible light must fill;
+ * otherwise the patch is halved. Applies only to patches whose larger side is
+ * above FILL_SIDE, a difference of sines. */
 #define LEAST_FILL 0.25
 #define FILL_SIDE  0.05
 /* Min error, in tolerances, at which the fit of a patch is abandoned. */
 #define HOPELESS 10.0
 /* Min width in w (0 .. 2) of a band that is halved. */
 #define LEAST_BAND 0.6
-/* If visible light fills at least this fraction of a patch's box, the halves of
- * the patch are searched for light only inside this box, because the grids of
- * that search then miss no light. */
+/* If visible light fills more than this fraction of a patch's pupil box, the
+ * two halves of the patch are searched for light only inside the box. The
+ * search grid is then fine enough not to miss light. */
 #define SOLID 0.08
-/* PART_LEFT: min error, in tolerances, at which a box is divided into parts
- * (see next.c). MOST_HIDDEN: max factor on it for ghosts so faint that errors
- * are invisible. */
+/* PART_LEFT: min error, in tolerances, at which a pupil box is divided into
+ * parts (see next.c). MOST_HIDDEN: upper limit of the factor that raises
+ * PART_LEFT for ghosts so faint that errors are invisible. */
 #define PART_LEFT   5.0
 #define MOST_HIDDEN 3.0
 /* A part of a box is accepted if its error is at most this fraction of
  * attempt.bearable. */
 #define PART_KEPT 0.4
-/* Min ratio of the error to attempt.bearable at which a box is divided at
- * once. */
+/* Ratio of the error to attempt.bearable above which a fit stops early and the
+ * box is divided. */
 #define PART_HOPELESS 20.0
 /* max number of halvings of a box */
 #define MOST_PARTS 5
-/* The box is divided instead of the patch if that removes at least this many
- * times as much of the error. Parts of a box cost more at run time: all parts
- * are drawn for each light, but only one patch. */
+/* The box is divided instead of the patch if dividing the box would remove at
+ * least this many times as much of the error. Parts of a box cost more at run
+ * time: each light draws all parts of a box, but uses only one patch. */
 #define RATHER 1.5
-/* Limits of a ghost's ease (factor on tolerances): below NOT_FAINT all means
- * are used to reduce errors; above FAINT any error up to attempt.bearable is
- * accepted. */
+/* Limits of a ghost's ease, the factor by which its tolerances are raised
+ * because it is faint. Below NOT_FAINT only errors within the tolerance are
+ * accepted at once; above FAINT errors up to attempt.bearable are. Between them
+ * the limit is interpolated. */
 #define NOT_FAINT 1.5
 #define FAINT     6.0
 /* Constants of the work estimate, measured with anamorphic-schneider baked up
- * to 4 and up to 8 degrees. SEEN_DEG: angle beyond which few ghosts have light.
- * HEAD: fits per ghost and direction. PER_AREA: fits per ghost, surface and
- * area of directions (in sines). */
+ * to 4 and up to 8 degrees. SEEN_DEG: angle from the axis beyond which few
+ * ghosts have light. HEAD: zone fits per ghost and direction. PER_AREA: zone
+ * fits per ghost, surface and unit of area; the area is that of all directions,
+ * in sines. */
 #define SEEN_DEG 25.0
 #define HEAD     0.16
 #define PER_AREA 175.0
@@ -76,8 +80,8 @@ struct fitter {
     struct glint_sights sights;
     glint_fit_progress_fn *progress;
     void *progress_ctx;
-    /* work and share: arguments of the callback progress(): number of
-     * fits, fraction done. area: total area of all patches. */
+    /* work: number of fits so far; share: fraction of the area that is done;
+     * both are passed to progress(). area: total area of all patches. */
     double work, share, area;
 };
 
@@ -85,8 +89,8 @@ struct fitter {
 struct attempt {
     /* errors of the fit; worst is HUGE_VAL if nothing was fitted */
     struct glint_zone_errors errors;
-    double bearable; /* min error, in tolerances, at which the box is divided */
-    /* max error, in tolerances, up to which the patch is accepted at once */
+    double bearable; /* error, in tolerances, above which the box is divided */
+    /* max error, in tolerances, with which the patch is accepted at once */
     double kept;
     bool dark;
 };
@@ -199,8 +203,8 @@ static enum glint_status fit_piece_zone(struct fitter *f,
     glint_zone_choose_barrels(&p->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
     glint_zone_trace_rays(&p->zone, band, &b->rays, &b->energies);
-    /* if light passes only at the rim of the patch, no ray shows it; its halves
-     * are then fitted instead */
+    /* If light passes only at the rim of the patch, none of the sampled rays
+     * shows it. The halves of the patch are then fitted instead. */
     if (glint_zone_rays_are_all_blocked(&b->rays))
         return GLINT_OK;
     status = copy_zone_box(system, &p->zone);
@@ -216,8 +220,8 @@ static enum glint_status fit_piece_zone(struct fitter *f,
     return status;
 }
 
-/* Sets the box of P. Returns whether P should be fitted: it has light, and
- * visible light fills enough of its box. */
+/* Sets the pupil box of P. Returns whether P should be fitted: light passes,
+ * and visible light fills enough of the box. */
 static bool find_piece_box(struct fitter *f, struct glint_skew_piece *p,
                            const struct glint_visible *band, struct attempt *a)
 {
@@ -268,9 +272,9 @@ static enum glint_status try_piece_fit(struct fitter *f,
 
 enum { KEEP = -1 };
 
-/* Returns how far the box moves and grows over one variable, relative to its
- * half sizes. FIRST, SQUARE: indices of the terms of the box polynomials that
- * are linear and quadratic in this variable. */
+/* Returns how much the pupil box moves and grows over the range of one
+ * variable, relative to its half sizes. FIRST, SQUARE: indices of the linear
+ * and the quadratic term of this variable in the box polynomials. */
 static double compute_box_motion(const struct glint_zone *z, int first,
                                  int square)
 {
@@ -309,7 +313,8 @@ static double get_position_and_outline_error(const struct attempt *a)
     return fmax(a->errors.places, a->errors.outlines);
 }
 
-/* Returns the variable in which to halve P after attempt A; KEEP: none. */
+/* Returns the variable in which to halve P after attempt A; KEEP if P should
+ * not be halved. */
 static int choose_halving_variable(const struct glint_skew_piece *p,
                                    const struct attempt *a,
                                    const struct glint_fitted_system *system)
@@ -355,7 +360,7 @@ static int choose_step_after_fit(const struct glint_skew_piece *p,
     return choose_halving_variable(p, a, system);
 }
 
-/* Fits PATCH and halves it as often as necessary. */
+/* Fits PATCH. Halves it repeatedly until each piece is accurate enough. */
 static enum glint_status fit_patch(struct fitter *f,
                                    const struct glint_directions *patch)
 {

@@ -7,8 +7,7 @@
  *
  * Method: the x and y components of directions, in the lens's own frame, are
  * divided into squares. A square from which no light passes is dropped. A
- * square whose polynomials are not accurate enough is halved, in the component
- * over which boxes move more.
+ * square whose polynomials are not accurate enough is halved in x or in y.
  */
 #ifndef GLINT_BAKE_SKEW_SKEW_FIT_H
 #define GLINT_BAKE_SKEW_SKEW_FIT_H
@@ -17,8 +16,8 @@
 
 /* Estimates the work of a bake, as a number of zone fits, from the area of
  * directions and the number of surfaces. HEAD: work before the first ghost.
- * TYPICAL: mean work per ghost. Ghosts with caustics cost ten times as much as
- * others, which the estimate does not know. */
+ * TYPICAL: mean work per ghost. Limit: ghosts with caustics cost ten times as
+ * much as the others; the estimate ignores this. */
 void glint_skew_estimate_work(const struct glint_prescription *lens,
                               int n_ghosts, double max_deg, double tolerance,
                               double *head, double *typical);
