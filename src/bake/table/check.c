@@ -10,17 +10,17 @@
 
 /* max relative error of a focal length that the table states */
 #define STATED_TOLERANCE 1e-3
-/* height at which the gap between neighbouring spheres is checked / smaller
- * semi-diameter of both */
+/* height at which the gap between neighbouring spheres is checked, as a
+ * fraction of the smaller semi-diameter of the two */
 #define CLEAR_SHARE 0.9
 #define CONTACT_MM  1e-6 /* max overlap that is attributed to rounding, mm */
 #define MIN_STOP_MM 1e-6
-/* max relative excess of the required stop radius that is attributed to
- * rounding */
+/* relative amount by which the required stop radius may exceed the opening
+ * because of rounding */
 #define STOP_SLACK 1e-9
 
-/* Numbers of heights and of azimuths at which the gap between neighbouring
- * elements is checked if one of them is not a sphere. */
+/* numbers of heights and azimuths at which the gap between neighbouring
+ * elements is checked if one of them is not a sphere */
 enum { HEIGHTS = 12, TURNS = 8 };
 /* max sag that the aspheric terms of a surface may add at its rim, in
  * semi-diameters */
@@ -28,8 +28,9 @@ enum { HEIGHTS = 12, TURNS = 8 };
 /* max ratio of the focal lengths in x and y of an anamorphic lens */
 #define MOST_SQUEEZE 16.0
 
-/* Returns the sag of element E at (X, Y) from the lens axis, mm. A tilt counts
- * only as far as it changes the sag. */
+/* Returns the sag of element E at (X, Y) from the lens axis, mm. For a tilted
+ * element this is an approximation, which ignores that the tilt also shifts the
+ * point sideways. */
 static double compute_element_sag_mm(const struct glint_prescription *lens,
                                      int e, double x, double y)
 {
@@ -55,10 +56,10 @@ static bool is_shaped_element(const struct glint_prescription *lens, int e)
     return k >= 0 && glint_surface_is_shaped(&lens->surface[k]);
 }
 
-/* Returns the min gap between element E and the next one, mm, and sets AT to
- * its distance from the axis. A stop in front of the lens may lie behind the
- * front vertex, with the glass reaching through its opening; then only its rim
- * is compared. */
+/* Returns the min gap between element E and the next one, mm. AT receives the
+ * distance from the axis at which the gap is smallest. If the stop is in front
+ * of the lens, the first surface may bulge through its opening; then only the
+ * rim of the stop is compared. */
 static double compute_min_gap_mm(const struct glint_prescription *lens, int e,
                                  double *at)
 {
@@ -128,11 +129,11 @@ static bool check_surface_profile(const struct glint_surface *s,
                                 terms);
 }
 
-/* Checks that elements do not overlap. The distance between two spheres is
- * monotone from the axis to the rim, and vertices are in order, so one height
- * is sufficient. That height is below the rim, as published semi-diameters are
- * often estimates: two surfaces of the Canon zoom touch at 0.92 of their
- * semi-diameter. Other surfaces are compared at many heights. */
+/* Checks that elements do not overlap. The gap between two spheres is compared
+ * at one height, because it changes monotonically from axis to rim. This height
+ * is below the rim, because published semi-diameters are often estimates: two
+ * surfaces of the Canon zoom touch at 0.92 of their semi-diameter. If an
+ * element is not a sphere, the gap is compared at many heights. */
 static bool check_element_gaps(const struct glint_prescription *lens,
                                const struct glint_text *text,
                                const struct glint_places *places)

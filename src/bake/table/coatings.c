@@ -74,7 +74,8 @@ static struct glint_word split_word_at_sign(struct glint_word *word, char sign)
     return rest;
 }
 
-/* Reads WORD as a number in RANGE. Reports words of length -1 as missing. */
+/* Reads WORD as a number in RANGE. A WORD of length -1 is reported as
+ * missing. */
 static bool read_number_word(const struct glint_text *text,
                              struct glint_word word,
                              const struct glint_text_range *range,
@@ -118,8 +119,9 @@ static bool read_coating_kind(const struct glint_text *text,
     return true;
 }
 
-/* Reads a word that follows the first word of COATING; AT: its number. It is
- * the design wavelength after a name, else INDEX[:QUARTERS] of a film. */
+/* Reads word number AT, counted from 0, of those that follow the first word of
+ * COATING. If IS_NAMED, it is the design wavelength, else INDEX[:QUARTERS] of
+ * film AT. */
 static bool read_coating_word(const struct glint_text *text,
                               struct glint_word word, bool is_named, int at,
                               struct glint_coating *coating)
@@ -142,7 +144,8 @@ static bool read_coating_word(const struct glint_text *text,
 struct word_source {
     struct glint_text *text;
     bool in_word;
-    struct glint_word rest; /* unread rest of that word */
+    /* unread rest of the word whose values are separated by slashes */
+    struct glint_word rest;
 };
 
 static struct glint_word read_next_coating_word(struct word_source *word_source)
@@ -262,8 +265,8 @@ glint_coatings_parse(struct glint_coating coatings[GLINT_MAX_COATINGS], int *n,
 
 int glint_coatings_mixed(struct glint_coating coatings[GLINT_MAX_COATINGS])
 {
-    /* 1080 nm: this quarter wave is a half wave at 540 nm, mid band, and
-     * reflects green */
+    /* A quarter wave at 1080 nm is a half wave at 540 nm, in the middle of the
+     * visible band, so that it reflects green. */
     static const double nm[] = {450, 620, 1080, 520, 680, 490, 560};
     enum { N = sizeof nm / sizeof *nm };
 

@@ -19,8 +19,7 @@ void glint_coating_set_single_layer(struct glint_coating *coating, double nm);
  * of TEXT and returns false. */
 bool glint_coating_read(struct glint_text *text, struct glint_coating *coating);
 
-/* Reads all words up to the end of the line as coatings, one word each, at
- * least one. */
+/* Reads all remaining words of the line, at least one, as one coating each. */
 bool glint_coatings_read(struct glint_text *text,
                          struct glint_coating coatings[GLINT_MAX_COATINGS],
                          int *n);

@@ -12,7 +12,8 @@
 
 #include "base/blob.h"
 
-/* Owns data, which is allocated with malloc(). Initialise it with zeros. */
+/* A file under construction. Must be initialised with zeros. Owns DATA, a block
+ * from malloc(). */
 struct glint_draft {
     unsigned char *data;
     size_t bytes, capacity;
@@ -28,9 +29,9 @@ uint32_t glint_draft_append(struct glint_draft *draft, const void *data,
 void glint_draft_overwrite(struct glint_draft *draft, uint32_t where,
                            const void *data, size_t bytes);
 
-/* Sets the members with which the header of every baked file begins, except
- * size and checksum. The file's name is made of the characters a-z, A-Z, 0-9,
- * '-' and '_' of NAME, at most 63; if it has none, of those of INSTEAD. */
+/* Sets the common members at the start of the header of a baked file, except
+ * size and checksum. The name consists of those characters of NAME that are
+ * a-z, A-Z, 0-9, '-' or '_', at most 63. If there are none, INSTEAD is used. */
 void glint_draft_begin_header(void *header, const struct glint_blob_kind *kind,
                               uint32_t variant, uint64_t key, const char *name,
                               const char *instead);

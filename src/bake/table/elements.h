@@ -15,14 +15,14 @@ static inline int count_elements(const struct glint_prescription *lens)
     return lens->n_surfaces + 1;
 }
 
-/* Returns the index of the surface that is element E; -1 for the stop. */
+/* Returns the index of the surface at element E; -1 if E is the stop. */
 static inline int get_element_surface(const struct glint_prescription *lens,
                                       int e)
 {
     return e == lens->stop_after ? -1 : e - (e > lens->stop_after);
 }
 
-/* Returns the index of the element that is surface K. */
+/* Returns the index of the element at which surface K is. */
 static inline int get_surface_element(const struct glint_prescription *lens,
                                       int k)
 {
@@ -66,8 +66,8 @@ static inline double *glint_gap_get_pointer(struct glint_prescription *lens,
     return k < 0 ? &lens->stop_thickness_mm : &lens->surface[k].thickness_mm;
 }
 
-/* Returns the distance of the paraxial image behind the last surface, mm, for a
- * point on the axis OBJECT_MM in front of the lens. */
+/* Returns the distance behind the last surface, mm, of the paraxial image of a
+ * point. The point lies on the axis, OBJECT_MM in front of the lens. */
 double glint_image_compute_distance_mm(const struct glint_prescription *lens,
                                        double object_mm);
 

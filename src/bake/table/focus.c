@@ -16,8 +16,9 @@
 #define STEP 2e-3
 enum { STEPS = 2000, HALVINGS = 60 };
 
-/* Input of the search: the lens; the distance of the object from the sensor;
- * the distance of the sensor behind the paraxial focus at infinity. */
+/* Input of the search. object_mm: distance of the object from the sensor.
+ * defocus_mm: distance of the sensor behind the paraxial focus of the lens when
+ * it is focused at infinity. */
 struct search {
     const struct glint_prescription *lens;
     double object_mm, defocus_mm;
@@ -39,8 +40,8 @@ static void move_focusing_group(struct glint_prescription *lens, double d)
     *glint_gap_get_pointer(lens, first + n - 1) += d;
 }
 
-/* Returns the distance of the image behind the sensor, mm, after moving the
- * group by D; NaN if elements would overlap. */
+/* Returns the distance, mm, by which the image lies behind the sensor after the
+ * focusing group was moved by D; NaN if elements would overlap. */
 static double compute_defocus(const struct search *s, double d)
 {
     struct glint_prescription lens = *s->lens;

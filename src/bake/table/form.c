@@ -6,15 +6,15 @@
 
 #include "engine/setup/degrees.h"
 
-/* Height, in semi-diameters, up to which a profile follows the table; it is
- * continued smoothly beyond. */
+/* Max height, in semi-diameters, at which the sag is computed by the lens
+ * table's formula. At larger heights the sag is a smooth continuation. */
 #define GLASS_ENDS 1.1
-/* Beyond the squared height end2, the end of the table's profile, the curvature
- * decreases to 0 over this fraction of end2. */
+/* The table's formula ends at the squared height end2. Beyond, the curvature
+ * decreases to 0 over about this fraction of end2. */
 #define FADES 0.25
 
-/* Factor on the max squared slope of the samples, because slopes between
- * samples may be larger. */
+/* Factor by which the max squared slope of the samples is raised, because
+ * slopes between samples may be larger. */
 #define STEEPER 1.1
 
 enum { MOST_STEPS = 80, MOST_HALVINGS = 60, SLOPES = 64 };
@@ -46,8 +46,8 @@ bool glint_prescription_is_round(const struct glint_prescription *lens)
 
 /* --------------------------------------------------------------------- sag */
 
-/* Sets AT to the value of the table's profile at squared height H2, and to its
- * first and second derivative by H2. */
+/* Sets AT to the profile (sag as a function of the squared height) by the lens
+ * table's formula at H2, and to its first and second derivative by H2. */
 static void evaluate_table_profile(const struct glint_form *f, double h2,
                                    double at[3])
 {
@@ -66,8 +66,8 @@ static void evaluate_table_profile(const struct glint_form *f, double h2,
             h2 * (4.0 * p[1] + h2 * p[2]);
 }
 
-/* Returns the profile at squared height H2, continued smoothly beyond end2.
- * SLOPE receives its derivative by H2. */
+/* Returns the profile (sag) at squared height H2, with its smooth continuation
+ * beyond end2. SLOPE receives the derivative by H2. */
 static double evaluate_continued_profile(const struct glint_form *f, double h2,
                                          double *slope)
 {
@@ -100,8 +100,9 @@ double glint_form_compute_sag(const struct glint_form *f, double x, double y,
         slope[1] = 2.0 * y * by_h2;
         return q;
     }
-    /* toric: solves (R - z)^2 + aside^2 = (R - q)^2 for z without dividing by 1
-     * / R */
+    /* Toric: solves (R - z)^2 + aside^2 = (R - q)^2 for the sag z. R is the
+     * radius across the axis, q the sag of the profile along the axis. Only 1 /
+     * R occurs in the solution, so that R may be infinite. */
     q = evaluate_continued_profile(f, along * along, &by_h2);
     free = 1.0 - f->across * q;
     root = free * free - f->across * f->across * aside * aside;
@@ -120,8 +121,8 @@ struct line {
     const double *at, *direction;
 };
 
-/* Returns the height z - sag above the form of the point at parameter T of the
- * ray. RATE receives its derivative by T. */
+/* Returns the height z - sag above the form, at parameter T of the ray LINE.
+ * RATE receives the derivative of the height by T. */
 static double compute_height_above_form(const struct glint_form *f,
                                         const struct line *line, double t,
                                         double *rate, double slope[2])
@@ -253,21 +254,22 @@ void glint_form_leave_frame(const struct glint_form *f, double at[3],
     }
 }
 
-/* Returns the squared height up to which the profile follows the table. */
+/* Returns end2, the squared height up to which the sag follows the lens table's
+ * formula. */
 static double compute_profile_end(const struct glint_form *f)
 {
     const double c = f->curvature, a = (1.0 + f->conic) * c * c;
     const double semi2 = f->semi_mm * f->semi_mm;
     const double end2 = GLASS_ENDS * GLASS_ENDS * semi2;
 
-    /* a conic has infinite slope at its equator, so the profile must end
-     * before */
+    /* A conic has infinite slope at its equator, so the formula must end before
+     * the equator. */
     return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
 }
 
-/* Sets the transform from the light's frame to the surface's own: rotation of
- * the light's plane to x-z, shift, and tilts about x and then y at the
- * pivot. */
+/* Sets the transform from the light's frame to the surface's own frame. The
+ * transform rotates the light's plane to x-z, shifts by the decentre, and tilts
+ * about x and then y around the pivot. */
 static void set_light_to_form_transform(struct glint_form *f,
                                         const struct glint_shape *s,
                                         double phi_deg)
@@ -277,8 +279,8 @@ static void set_light_to_form_transform(struct glint_form *f,
     const double cy = glint_cos_deg(s->tilt_deg[1]);
     const double sy = glint_sin_deg(s->tilt_deg[1]);
     const double cp = glint_cos_deg(phi_deg), sp = glint_sin_deg(phi_deg);
-    /* rows are the axes of the surface in the lens's frame: (Ry Rx)
-     * transposed */
+    /* The rows are the axes of the surface in the lens's frame. Ry and Rx are
+     * the rotations about y and x; the matrix is the transpose of Ry Rx. */
     const double lens[3][3] = {
         {cy, 0, -sy}, {sx * sy, cx, sx * cy}, {cx * sy, -sx, cx * cy}};
     const double from[3] = {-s->decentre_mm[0], -s->decentre_mm[1],

@@ -8,10 +8,11 @@
  *
  * A ray meets a form where z - sag changes its sign. Growing steps from the
  * vertex plane bracket the intersection; Newton's method, with bisection where
- * it would leave the bracket, finds it to the last bits. Of several
- * intersections the nearest is found, unless two lie within one step, as where
- * a ray grazes a ripple. Limit: rays that cross the vertex plane of a cylinder
- * or toric farther from its axis than its radius miss it.
+ * it would leave the bracket, finds it to the last bits. If a ray meets the
+ * form several times, the nearest intersection is found, unless two lie within
+ * one step, for example where a ray grazes a ripple. Limit: a ray misses a
+ * cylinder or toric if it crosses the vertex plane farther from the axis than
+ * the radius.
  */
 #ifndef GLINT_BAKE_TABLE_FORM_H
 #define GLINT_BAKE_TABLE_FORM_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Lists the ghosts of a lens: pairs of reflecting surfaces on the same side of
- * the stop. Light reflected by a pair on both sides would cross the stop three
- * times, and hardly any of it would reach the sensor.
+ * the stop. If the two surfaces were on different sides of the stop, light
+ * would cross the stop three times, and hardly any would reach the sensor.
  */
 #include "glint/prescription.h"
 

@@ -66,9 +66,9 @@ double glint_image_compute_distance_mm(const struct glint_prescription *lens,
     return -ray.y_mm / ray.nu;
 }
 
-/* Returns the focal length that maps angles to the sensor, mm: distance from
- * the axis at which light through the centre of the entrance pupil hits the
- * sensor, divided by the tangent of the light's angle. */
+/* Returns the focal length that maps angles to the sensor, mm. It is y / tan(a)
+ * for a chief ray, which passes the centre of the entrance pupil: a is the
+ * ray's angle to the axis, y the height at which it hits the sensor. */
 static double compute_chief_ray_scale(const struct glint_prescription *lens,
                                       const struct glint_optics *optics)
 {
@@ -103,9 +103,9 @@ void glint_optics_of(const struct glint_prescription *lens,
     optics->stop_radius_mm = optics->entrance_radius_mm * to_stop.y_mm;
     if (optics->stop_radius_mm < 0.0)
         optics->stop_radius_mm = -optics->stop_radius_mm;
-    /* A ray of height h and slope u crosses the axis at -h / u. It reaches the
-     * stop at the height h to_stop.y + u slanted.y, which is 0 for the chief
-     * ray. */
+    /* A ray that starts with height h and slope u reaches the stop at the
+     * height h * to_stop.y + u * slanted.y. This is 0 for the chief ray, which
+     * crosses the axis at -h / u. */
     optics->entrance_z_mm = slanted.y_mm / to_stop.y_mm;
     optics->length_mm = 0.0;
     for (int e = lens->stop_after == 0; e < count_elements(lens); e++)

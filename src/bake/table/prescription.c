@@ -67,8 +67,8 @@ static bool reject_repeated_shape_item(struct glint_text *text,
                                 glint_word_quote(word, quote));
 }
 
-/* Reads the axis of a cylinder or toric, x or y, and, unless CYLINDER, the
- * radius across it. */
+/* Reads the axis of a cylinder or toric, x or y. For a toric (CYLINDER is
+ * false), also reads the radius across the axis. */
 static bool read_cylinder_or_toric_axis(struct glint_text *text,
                                         struct glint_shape *shape,
                                         bool cylinder)
@@ -110,8 +110,9 @@ static bool read_shape_item(struct glint_text *text, struct glint_shape *shape,
 }
 
 /* Reads the rest of a line "shape [conic K] [A4 V] .. [A20 V] [cylinder AXIS |
- * toric AXIS RADIUS]" into SHAPE; members without an item do not change. Sets
- * the error of TEXT and returns false on mistakes, such as repeated items. */
+ * toric AXIS RADIUS]" into SHAPE. Members of SHAPE that the line does not set
+ * keep their values. On mistakes, such as repeated items, sets the error of
+ * TEXT and returns false. */
 static bool read_shape_words(struct glint_text *text, struct glint_shape *shape)
 {
     struct glint_word word = glint_text_next_word(text);
@@ -179,8 +180,8 @@ static int count_slashes(const struct glint_word *word)
     return n;
 }
 
-/* Reads a column as read_zoom_columns() does and sets N to the count of its
- * numbers. */
+/* Does the work of read_zoom_columns(), and sets N to the count of numbers in
+ * the word. */
 static bool read_and_count_columns(struct glint_text *text,
                                    const struct glint_text_range *range,
                                    struct glint_zoom *zoom,
@@ -213,10 +214,10 @@ static bool read_and_count_columns(struct glint_text *text,
     return true;
 }
 
-/* Reads the next word into COLUMN: a number in RANGE, or one per zoom position,
- * separated by slashes; a single number holds for all positions. PLACE receives
- * the word's position. Returns false, with the error set, if a number is
- * invalid or if their count differs from that of earlier lines. */
+/* Reads the next word into COLUMN: one number per zoom position, separated by
+ * slashes, or a single number for all positions. PLACE receives the word's
+ * position. Returns false, with the error set, if a number is not in RANGE or
+ * if their count differs from that of earlier lines. */
 static bool read_zoom_columns(struct glint_text *text,
                               const struct glint_text_range *range,
                               struct glint_zoom *zoom,
@@ -373,14 +374,16 @@ enum field {
 struct parser {
     struct glint_text text;
     struct glint_prescription lens;
-    /* position of the last line of each type; line 0: no such line */
+    /* position of the last line of each type; its line is 0 if the type has not
+     * occurred */
     struct glint_text_place word[N_FIELDS];
     struct glint_places places;
     /* coating of surfaces whose line in the table states none */
     struct glint_coating coating;
     bool has_coating[GLINT_MAX_SURFACES];
     int n_elements;
-    /* true: the parser is within a group, whose position is in group */
+    /* true: the parser is within a group, whose decentre and tilt are in
+     * GROUP */
     bool in_group;
     bool in_focus; /* true: the parser is within the focusing group */
     /* true: the last element is a surface; false: it is the stop */
@@ -610,8 +613,8 @@ static bool read_gap_and_semi_diameter(struct parser *p,
            glint_text_read_value(&p->text, &semi_range, semi_mm, semi);
 }
 
-/* Reads the coating of surface K, if the line states one. CEMENTED: both sides
- * are glass. */
+/* Reads the coating of surface K, if the line states one. CEMENTED: the media
+ * in front of and behind the surface are glass. */
 static bool read_surface_coating(struct parser *p, int k, bool cemented)
 {
     struct glint_surface *s = &p->lens.surface[k];

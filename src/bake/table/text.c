@@ -308,9 +308,9 @@ static double compute_power_of_ten(int n)
     return power;
 }
 
-/* Splits WORD into DIGITS and an exponent of ten. Their product is the number
- * if it has at most GLINT_NUMBER_DIGITS digits. Returns false if WORD is not a
- * number. */
+/* Splits WORD into DIGITS and EXPONENT, a power of ten, and sets NEGATIVE to
+ * its sign. The magnitude is digits.value * 10^EXPONENT if WORD has at most
+ * GLINT_NUMBER_DIGITS digits. Returns false if WORD is not a number. */
 static bool split_decimal_number(const struct glint_word *word,
                                  struct digits *digits, bool *negative,
                                  int *exponent)
@@ -364,12 +364,14 @@ const char *glint_word_parse_number(const struct glint_word *word,
     more = digits.significant > GLINT_NUMBER_DIGITS
                ? digits.significant - GLINT_NUMBER_DIGITS
                : 0;
-    /* the limits include coefficients of h^20 such as 1e-25, which add 0.1 mm
-     * at h = 14 mm */
+    /* The limits are wide enough for coefficients of aspheric surfaces. For
+     * example, the coefficient 1e-25 of the term h^20 adds 0.1 mm at h = 14
+     * mm. */
     if (exponent + more < -60 || exponent + more > 22)
         return "is too large or too small";
-    /* With at most 15 digits and 10^22 both operands are exact, so rounding
-     * once gives the nearest double. */
+    /* Integers of at most 15 digits and powers up to 10^22 are exact as
+     * doubles. Their product or quotient is rounded once, so that it is the
+     * nearest double. */
     magnitude = more > 0 || exponent < -22 ? find_nearest_double(word, exponent)
                 : exponent < 0
                     ? (double)digits.value / compute_power_of_ten(-exponent)

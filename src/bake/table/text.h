@@ -29,13 +29,13 @@
 #define GLINT_NUMBER_DIGITS 15
 
 struct glint_text_place {
-    /* counted from 1, columns in bytes; line 0: no position */
+    /* Line and column (in bytes), both counted from 1. Line 0: no position. */
     int line, column;
 };
 
 struct glint_word {
-    const char *start; /* not terminated by 0 */
-    /* number of bytes; 0: the line has ended, at the position place */
+    const char *start; /* the word's bytes, without a terminating 0 */
+    /* number of bytes; 0 at the end of the line, which is then at PLACE */
     int length;
     struct glint_text_place place;
 };
@@ -44,7 +44,7 @@ struct glint_text {
     const char *file_name;
     struct glint_error *error;
     const char *next, *end; /* start and end of the unread lines */
-    /* current line; at .. stop: its unread part */
+    /* start of the current line; start and end of its unread part */
     const char *line, *at, *stop;
     int line_number;
 };
@@ -66,8 +66,8 @@ bool glint_text_next_line(struct glint_text *text);
 /* Returns the next word of the line. */
 struct glint_word glint_text_next_word(struct glint_text *text);
 
-/* Reads an optional word, which must be ONLY, from the line into WORD; its
- * length is 0 if the line has ended. Rejects any other word. */
+/* Reads the next word of the line, if any, into WORD. At the end of the line
+ * the length of WORD is 0. Rejects a word that differs from ONLY. */
 bool glint_text_read_optional_word(struct glint_text *text, const char *only,
                                    struct glint_word *word);
 
@@ -89,8 +89,7 @@ struct glint_text_range {
 };
 
 /* Reads WORD as a number of any magnitude. NAME names the number in error
- * texts. This function and the next three set the error and return false if
- * WORD is not a number or out of range. */
+ * texts. Sets the error of TEXT and returns false if WORD is not a number. */
 bool glint_text_parse_number(const struct glint_text *text,
                              const struct glint_word *word, const char *name,
                              double *value);
@@ -99,14 +98,15 @@ bool glint_text_check_range(const struct glint_text *text,
                             struct glint_text_place place,
                             const struct glint_text_range *range, double value);
 
-/* Reads WORD as a number in RANGE. */
+/* Reads WORD as a number in RANGE. Sets the error of TEXT and returns false if
+ * it is not. */
 bool glint_text_parse_value(const struct glint_text *text,
                             const struct glint_word *word,
                             const struct glint_text_range *range,
                             double *value);
 
-/* Reads the next word as a number in RANGE. PLACE, unless NULL, receives the
- * word's position. */
+/* Reads the next word as a number in RANGE; errors as above. PLACE, unless
+ * NULL, receives the word's position. */
 bool glint_text_read_value(struct glint_text *text,
                            const struct glint_text_range *range, double *value,
                            struct glint_text_place *place);
@@ -119,8 +119,9 @@ bool glint_word_equals(const struct glint_word *word, const char *string);
 const char *glint_word_quote(const struct glint_word *word,
                              char quote[GLINT_QUOTE_BYTES]);
 
-/* Parses WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL, or an
- * error text that continues the quoted word; VALUE is then unchanged. */
+/* Parses WORD as [+-] digits [. digits] [e [+-] digits]. Returns NULL on
+ * success, otherwise the end of an error text that begins with the quoted word,
+ * such as "is not a number"; VALUE is then unchanged. */
 const char *glint_word_parse_number(const struct glint_word *word,
                                     double *value);
 

@@ -4,8 +4,8 @@
 
 #include "bake/table/elements.h"
 
-/* Max relative distance of a requested focal length from the zoom range. It is
- * accepted because lens barrels state rounded values. */
+/* max distance of a requested focal length from the zoom range, as a fraction
+ * of the focal length; allowed because lens barrels state rounded values */
 #define BEYOND 2e-3
 
 /* ---------------------------------------------------------------- cubic */
@@ -31,8 +31,9 @@ static double compute_monotone_slope(const struct glint_zoom *z,
                    : 3.0 * (h0 + h1) /
                          ((2.0 * h1 + h0) / d0 + (h1 + 2.0 * h0) / d1);
     }
-    /* At an end: slope of the parabola through three positions, limited such
-     * that the curve does not overshoot. */
+    /* At the first and last position: the slope of the parabola through the
+     * three nearest positions, limited such that the curve does not
+     * overshoot. */
     h0 = k ? x[last] - x[last - 1] : x[1] - x[0];
     h1 = k ? x[last - 1] - x[last - 2] : x[2] - x[1];
     d0 = (k ? value[last] - value[last - 1] : value[1] - value[0]) / h0;
@@ -55,7 +56,6 @@ static double interpolate_zoom_column(const struct glint_zoom *z,
         k++;
     h = z->along[k + 1] - z->along[k];
     t = (along - z->along[k]) / h;
-    /* returns the table's value exactly at a position */
     if (t <= 0.0 || t >= 1.0)
         return value[t <= 0.0 ? k : k + 1];
     a = h * compute_monotone_slope(z, value, k);
