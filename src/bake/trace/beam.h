@@ -21,22 +21,22 @@
 enum { LANES = 8 };
 
 struct beam {
-    /* position, mm, relative to the vertex of the event's surface */
+    /* position, mm, relative to the vertex of the current surface */
     double x[LANES], y[LANES], z[LANES];
     double l[LANES], m[LANES], n[LANES]; /* direction, a unit vector */
     double cosine[LANES];    /* cosine between ray and normal at the surface */
     double normal[3][LANES]; /* unit normal; non-spherical surfaces only */
     double energy[LANES];
-    /* squared height and squared semi-diameter at that event where height /
-     * semi-diameter has been largest so far */
+    /* squared height and squared semi-diameter at the event where the ray came
+     * closest to the rim or exceeded it most (max height / semi-diameter) */
     double height2[LANES], semi2[LANES];
     double stop_x[LANES], stop_y[LANES];
     /* status of each ray, enum glint_ray_status as a double */
     double status[LANES];
 };
 
-/* Returns the new status of a ray: SO_FAR if the ray is invalid already; else
- * GLINT_RAY_OK if FINE, else STATUS. */
+/* Returns the new status of a ray: SO_FAR if the ray is already invalid.
+ * Otherwise returns GLINT_RAY_OK if FINE is true, else STATUS. */
 static WHOLLY_INLINE double update_ray_status(double so_far, bool fine,
                                               enum glint_ray_status status)
 {
@@ -45,9 +45,9 @@ static WHOLLY_INLINE double update_ray_status(double so_far, bool fine,
     return so_far > GLINT_RAY_OK ? so_far : now;
 }
 
-/* Moves N rays from the vertex plane to FORM. Also transforms them to the
- * form's own frame, unless FORM is level: a round form or a cylinder on the
- * axis. N: LANES or 1. */
+/* Moves N rays (LANES or 1) from the vertex plane to FORM. Also transforms them
+ * to the form's own frame, unless FORM is level: round or a cylinder, without
+ * decentre and tilt. */
 void glint_beam_move_to_form(struct beam *b, int n,
                              const struct glint_form *form);
 

@@ -147,8 +147,9 @@ void glint_cells_trace_row(const struct glint_cells *cells, int row)
 
 /* --------------------------------------------------------------------- clip */
 
-/* A triangle, and the polygon that clipping leaves of it, in barycentric
- * coordinates (weights of the second and the third corner). */
+/* A triangle of the grid, and the polygon UV[N] that remains of it after
+ * clipping. UV are barycentric coordinates: the weights of the second and the
+ * third corner. */
 struct shape {
     const double *corner[3];
     int n;
@@ -164,15 +165,16 @@ static double interpolate_node_channel(const struct shape *s, int index,
            (s->corner[2][index] - a) * uv[1];
 }
 
-/* A clip boundary in the channels c = (first, first + 1): the half plane n . c
- * <= limit, or the disc |scale c + middle| <= 1. */
+/* A clip boundary in the plane c of two channels, first and first + 1. The
+ * visible side is the half plane normal . c <= limit or, if disc is true, the
+ * disc |scale c + middle| <= 1. */
 struct cut {
     int first;
     bool disc;
     double normal[2], limit, scale, middle[2];
 };
 
-/* Sets AT to the point UV (barycentric) mapped such that the disc of CUT
+/* Sets AT to the point UV of the triangle, mapped such that the disc of CUT
  * becomes the unit disc. */
 static void map_point_to_cut_disc(const struct shape *s, const struct cut *cut,
                                   const double uv[2], double at[2])
@@ -213,7 +215,7 @@ static double find_cut_crossing(const struct shape *s, const struct cut *cut,
     dy = to[1] - from[1];
     qa = dx * dx + dy * dy;
     qb = from[0] * dx + from[1] * dy;
-    root = sqrt(fmax(0, qb * qb + qa * fa)); /* fa = 1 - |a|^2 */
+    root = sqrt(fmax(0, qb * qb + qa * fa)); /* fa = 1 - |from|^2 */
     t = fa > 0 ? (root - qb) / qa : (-root - qb) / qa;
     return fmin(1, fmax(0, t));
 }

@@ -18,11 +18,12 @@
 
 enum { GLINT_MAX_CUTS = 48, GLINT_MAX_PIECE = 192 };
 
-/* Channels of a node. From NODE_CUT on: x and y at each barrel that may block
+/* Channels: indices of the numbers that each node (ray) of the grid stores.
+ * NODE_CUT and all later channels hold x and y at the barrels that may block
  * rays, in semi-diameters. */
 enum {
-    /* 0: invalid ray; 1: traced; 2: traced, and inside the stop and all
-     * barrels */
+    /* state of the ray: 0: invalid; 1: blocked by the stop or a barrel; 2:
+     * passes the stop and all barrels */
     NODE_STATE,
     /* position on the sensor, mm in the camera's frame; callers may convert it
      * to other units */

@@ -70,9 +70,11 @@ void glint_stack_compute_reflectance_sp(double n1, double c1, double n2,
         const double sine = inside < 0.0 ? sinh(fmin(half, 30.0)) : sin(half);
         const double cosine = inside < 0.0 ? cosh(fmin(half, 30.0)) : cos(half);
 
-        /* the admittance f is nf cos(t) for s and nf / cos(t) for p. If cos(t)
-         * is imaginary, i size, these become i nf size and -i nf / size, and
-         * sin D becomes i sinh |D|. */
+        /* The admittance of a film is nf cos(t) for s and nf / cos(t) for p
+         * polarisation, where t is the angle inside the film. Beyond the
+         * critical angle, cos(t) is the imaginary number i size. The
+         * admittances become i nf size and -i nf / size, and sin D becomes i
+         * sinh |D|, where D is half the phase. */
         multiply_by_film(&s_all, cosine, sine, nf * size, sign);
         multiply_by_film(&p_all, cosine, sign * sine, nf / size, sign);
     }

@@ -24,8 +24,8 @@
 
 #include "glint/trace.h"
 
-/* Returns the mean of the ratios s / s_all and p / p_all, at most 1, with one
- * division. */
+/* Returns the mean of S / S_ALL and P / P_ALL, at most 1. Uses a single
+ * division, because divisions are slow. */
 static inline double compute_mean_ratio(double s, double s_all, double p,
                                         double p_all)
 {
@@ -76,8 +76,9 @@ static inline double compute_film_reflectance(double n1, double c1, double n2,
 {
     const double size = fabs(inside), sign = inside < 0.0 ? -1.0 : 1.0;
     const double cos2 = 1.0 - sign * sin2;
-    /* terms of s are multiplied by f, those of p by f cos(t1) cos(t2); f^2
-     * includes SIGN */
+    /* To avoid divisions, the terms of the formula above are multiplied by f
+     * for s polarisation, and by f * size * c1 * c2 for p. The sign of f^2 is
+     * kept in SIGN. */
     const double f2_s = nf * nf * size, f2_p = nf * nf;
     const double a_s = n1 * c1, b_s = n2 * c2;
     /* admittances n / c of polarisation p, multiplied by c1 c2 */

@@ -2,11 +2,12 @@
  *
  * Traces rays at surfaces that are not centred spheres.
  *
- * For round forms and cylinders on the axis, Newton's method starts at the
- * vertex plane, for all lanes at once, where it is certain to find the nearest
- * intersection: if the ray is steeper than the profile anywhere on the glass,
- * and stays over the glass, z - sag is monotone along the ray. All other rays
- * are intersected one by one (bake/table/form.h).
+ * A form is such a surface, prepared for tracing (bake/table/form.h). At round
+ * forms and at cylinders on the axis, Newton's method runs for all lanes at
+ * once and starts at the vertex plane. It is certain to find the nearest
+ * intersection if the ray stays within the glass and is steeper than the
+ * profile at every point, because z - sag is then monotone along the ray. All
+ * other rays are intersected one by one.
  */
 #include "bake/trace/beam.h"
 
@@ -18,7 +19,8 @@ enum { MOST_STEPS = 10 };
 /* Max relative length of the last Newton step; the remaining error is about its
  * square. */
 #define LAST_STEP 1e-7
-/* number of aspheric terms of a short profile, up to A14 */
+/* max number of aspheric terms (A4 .. A14) of profiles that a faster loop
+ * handles */
 #define SHORT 6
 
 static void set_beam_ray(struct beam *b, int k, const double at[3],
@@ -32,7 +34,8 @@ static void set_beam_ray(struct beam *b, int k, const double at[3],
     b->n[k] = way[2];
 }
 
-/* Squared heights along rays: q0 + 2 q1 T + q2 T^2 at parameter T of a ray. */
+/* Squared heights of rays above the axis, as polynomials of the ray parameter
+ * T: q0 + 2 q1 T + q2 T^2. */
 struct heights {
     double q0[LANES], q1[LANES], q2[LANES];
 };
@@ -56,9 +59,9 @@ static WHOLLY_INLINE void compute_height_polynomials(const struct beam *b,
     }
 }
 
-/* Sets SAG to the table's profile of F at the squared heights Q, and SLOPE to
- * its derivative by Q. TERMS: a constant, at least the number of terms of F, so
- * that a ray's sums stay in registers. */
+/* Sets SAG to the sags of form F at the squared heights Q, by the lens table's
+ * formula, and SLOPE to the derivatives by Q. TERMS: a compile-time constant,
+ * at least the number of terms of F, so that a ray's sums stay in registers. */
 static WHOLLY_INLINE void evaluate_profiles_of_terms(const struct glint_form *f,
                                                      int n, int terms,
                                                      const double *q,

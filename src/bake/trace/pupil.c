@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
  * Finds the region of the entrance pupil through which a ghost's visible rays
- * pass. A grid over the front element keeps the cells that may contain a
- * visible ray, judged by the bounding box of the corners' stop positions and
- * relative radii, with a margin for curvature between corners. Finer grids
- * then cover these cells until the region no longer shrinks. If no cell is
- * found, a spot is searched for in the light's plane.
+ * pass. A grid of rays covers the front element. A cell is marked if a visible
+ * ray may pass inside it. The test uses the bounding box of the stop positions
+ * and relative radii of its corners, enlarged by a margin because rays bend
+ * between corners. Finer grids then cover the marked cells until the region no
+ * longer shrinks. If no cell is marked, the light's plane is searched for a
+ * small spot (spot.h).
  *
- * Limit: a visible region smaller than 1/64 of the front element, around which
- * rays bend by more than the margin, can be missed if it is elongated or lies
- * off that plane.
+ * Limit: a visible region smaller than 1/64 of the front element can be missed.
+ * This happens if rays around it bend by more than the margin, and if it is
+ * elongated or lies off the light's plane.
  */
 #include "glint/trace.h"
 
@@ -25,14 +26,14 @@ enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 /* numbers of cells in later rounds, which cover a smaller region */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
 
-/* Fraction of its size by which a pupil is enlarged on each side, so that it
+/* A pupil is enlarged on each side by this fraction of its size, so that it
  * contains the pupils of nearby wavelengths and directions. */
 #define EXTEND 0.125
 
 struct search {
-    /* openings that rays must pass; openings.path points to places */
+    /* openings that visible rays must pass; its path is the member places */
     struct glint_openings openings;
-    /* the path, for tracing positions without energies */
+    /* copy of path with places_only set, for tracing without energies */
     struct glint_path places;
     const struct glint_path *path;
     int across, down; /* numbers of cells across and down in this round */
@@ -40,7 +41,7 @@ struct search {
     enum glint_ray_status status[DOWN + 1][ACROSS + 1];
     /* region that the grid of this round covers */
     struct glint_pupil grid;
-    /* true: corner of a cell that may contain a visible ray */
+    /* true: the ray is a corner of a marked cell, in which light may pass */
     bool kept[DOWN + 1][ACROSS + 1];
 };
 
@@ -72,8 +73,8 @@ static void trace_grid_row(struct search *s, const struct glint_pupil *p,
 
 struct bounds {
     int n;
-    /* min and max over rays of stop x, stop y, relative radius, sensor x and
-     * sensor y */
+    /* min and max, over rays, of these values: stop x, stop y, relative radius,
+     * sensor x, sensor y */
     double low[5], high[5];
 };
 
@@ -94,8 +95,8 @@ static double compute_distance_to_zero(double low, double high)
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns whether a cell may contain an unblocked ray. A cell with invalid
- * corners is judged by its other corners, with twice the margin. */
+/* Returns whether an unblocked ray may pass within a cell. B: bounds of the
+ * valid rays at its corners. The margin is doubled if a corner is invalid. */
 static bool can_cell_pass_light(const struct search *s, const struct bounds *b)
 {
     const double more = b->n == 4 ? 0.5 : 1;
@@ -118,8 +119,8 @@ static bool can_cell_pass_light(const struct search *s, const struct bounds *b)
                s->openings.field_mm;
 }
 
-/* Marks the corners of cell (I, J), extends BOX by the cell, and extends the
- * sensor range of FOUND by the sensor positions CELL of the cell's rays. */
+/* Marks the corners of cell (I, J) and extends BOX by the cell. CELL: bounds of
+ * the rays at its corners, by which the sensor range of FOUND is extended. */
 static void mark_visible_cell(struct search *s, int i, int j,
                               const struct bounds *cell, struct bounds *box,
                               struct glint_pupil *found)
@@ -256,8 +257,8 @@ static double compute_box_area(const struct glint_pupil *p)
     return (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm);
 }
 
-/* Returns BOX enlarged on each side by PART of its size and by a fraction of
- * the front element, as boxes may be very thin. */
+/* Returns BOX enlarged on each side by the fraction PART of its size. A
+ * fraction of the size of FRONT is added, because boxes may be very thin. */
 static struct glint_pupil enlarge_pupil_box(const struct glint_pupil *box,
                                             double part,
                                             const struct glint_pupil *front)
@@ -299,7 +300,7 @@ static bool shrink_pupil_in_rounds(struct search *s, struct glint_pupil *p,
     return found;
 }
 
-/* Finds a visible spot that is smaller than a cell of the first grid, in the
+/* Finds a visible region that all rays of the first grid missed. Searches the
  * light's plane through the middle of the front element. */
 static bool find_visible_spot(struct search *s, const struct glint_pupil *front,
                               struct glint_pupil *p)
@@ -317,8 +318,9 @@ static bool find_visible_spot(struct search *s, const struct glint_pupil *front,
     return shrink_pupil_in_rounds(s, p, NEXT_ACROSS, NEXT_DOWN);
 }
 
-/* Finds the visible region within P; if there is none, searches FRONT for a
- * small spot. NEAR: P is an estimate of the region, so coarse grids suffice. */
+/* Finds the visible region within P and sets P to it. If no ray within P
+ * passes, searches the front element FRONT for a small spot. NEAR: P is an
+ * estimate of the region, so that coarse grids suffice. */
 static bool find_visible_region(struct search *s,
                                 const struct glint_pupil *front,
                                 struct glint_pupil *p, bool near)
@@ -328,7 +330,7 @@ static bool find_visible_region(struct search *s,
     if (!shrink_pupil_in_rounds(s, p, near ? NEXT_ACROSS : ACROSS,
                                 near ? NEXT_DOWN : DOWN))
         return find_visible_spot(s, front, p);
-    /* Where rays bend by more than the margin, some visible ones enter outside
+    /* Where rays bend by more than the margin, some visible rays enter outside
      * the marked cells. */
     wider = *p;
     if (glint_spot_grow_pupil(&s->openings, &wider) &&
@@ -401,7 +403,7 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
     return found;
 }
 
-/* Returns whether A touches a side of B that is not a side of FRONT. */
+/* Returns whether A reaches a side of B at which B ends inside FRONT. */
 static bool is_box_side_reached(const struct glint_pupil *a,
                                 const struct glint_pupil *b,
                                 const struct glint_pupil *front)

@@ -7,8 +7,8 @@
 /* number of rays per call of the tracer */
 enum { SOME = 8 };
 
-/* Weight of a pair of rays that proves that a barrel blocks light; pairs that
- * only suggest it have weight 1. */
+/* Weight that a pair of rays adds to a barrel if it proves that the barrel
+ * blocks light. A pair that only suggests it adds 1. */
 enum { SHOWN = 1000 };
 
 /* one ray of the sparse grid */
@@ -73,12 +73,11 @@ static void trace_probe_row(struct probe *row, const struct glint_path *path,
     }
 }
 
-/* If a single barrel blocks ray P, adds weight to it, with a margin for the
- * gaps between rays. If several barrels block a ray that passes the stop, which
- * occurs beyond a fold, the barrel with the largest relative radius gets the
- * weight. */
-static void add_weight_to_blocking_barrel(const struct probe *p, int n,
-                                          int *weight)
+/* Adds weight to the barrel that blocks ray P, if only one barrel does; the
+ * test has a margin for the gaps between rays. If several barrels block a ray
+ * that passes the stop, as beyond a caustic, adds weight to the one with the
+ * largest relative radius. */
+static void weight_blocking_barrel(const struct probe *p, int n, int *weight)
 {
     const double margin = 1.1;
     double worst = p->traced ? p->stop_r2 : 0, second = 0;
@@ -100,20 +99,21 @@ static void add_weight_to_blocking_barrel(const struct probe *p, int n,
         weight[at]++;
 }
 
-/* Returns the fraction of the way from a ray with the value IN, below 1, to a
- * ray with the value OUT at which the interpolated value is 1 (the rim of a
- * barrel); 2 if OUT is at most 1. */
+/* Returns where the rim of an opening lies between two rays, as a fraction of
+ * the distance from the first ray. IN and OUT: the rays' squared relative
+ * radii, interpolated linearly; the rim is at 1. IN is at most 1. Returns 2 if
+ * OUT is at most 1, too. */
 static double compute_rim_crossing_fraction(double in, double out)
 {
     return out > 1 ? (1 - in) / (out - in) : 2;
 }
 
-/* Adds weight to the barrel whose rim is crossed first on the way from a
- * visible to a blocked ray, and a small weight to barrels crossed soon
+/* Adds weight to the barrel at whose rim the light between the visible ray and
+ * the blocked ray ends. Adds a small weight to barrels whose rim follows soon
  * after. */
-static void add_weight_to_first_crossed_barrel(const struct probe *a,
-                                               const struct probe *b, int n,
-                                               int *weight)
+static void weight_first_crossed_barrel(const struct probe *a,
+                                        const struct probe *b, int n,
+                                        int *weight)
 {
     const struct probe *in = a, *out = b;
     double first;
@@ -150,13 +150,13 @@ struct bend {
     int n;
     struct change sensor; /* mm */
     struct change stop;
-    /* [barrels]: differences of r^2 / 2, r: relative radius */
+    /* differences of r^2 / 2 at each event, where r is the relative radius */
     struct change barrel[GLINT_MAX_EVENTS + 1];
-    /* numbers of cells whose image is mirrored and not mirrored */
+    /* numbers of cells whose image on the sensor is upright and mirrored */
     int up, down;
     int n_steps;
-    /* sum over pairs of neighbouring rays of 1 / their distance in the stop,
-     * stop radii */
+    /* sum of 1 / d over pairs of neighbouring rays; d: their distance in the
+     * stop, in stop radii */
     double thick;
 };
 
@@ -185,8 +185,8 @@ static void add_ray_differences(struct bend *bend, const struct probe *a,
     bend->n++;
 }
 
-/* Returns the RMS second difference per grid step of CUT (values at the stop or
- * at a barrel), converted to mm on the sensor. */
+/* Returns the RMS second difference of CUT per grid step, converted to mm on
+ * the sensor. CUT: differences of the position at the stop or at a barrel. */
 static double convert_bend_to_sensor_mm(const struct bend *bend,
                                         const struct change *cut)
 {
@@ -207,10 +207,9 @@ static double compute_outline_bend_mm(const struct bend *bend,
     return most;
 }
 
-/* Adds the distance in the stop between rays A and B if the stop's opening may
- * lie between them, that is, both are at most this distance away from it.
- * Averages rays per stop radius instead of its inverse, because more light
- * passes where rays are dense. */
+/* Adds the distance d in the stop between rays A and B if the stop's opening
+ * may lie between them: one of them is at most d outside it. Sums 1 / d, the
+ * density of rays, because more light passes where rays are dense. */
 static void add_distance_in_stop(struct bend *bend, const struct probe *a,
                                  const struct probe *b)
 {
@@ -225,8 +224,8 @@ static void add_distance_in_stop(struct bend *bend, const struct probe *a,
     bend->thick += 1 / step;
 }
 
-/* Counts the orientation of the cell with the corners A, B next to it and C
- * below it. */
+/* Counts whether the image of a cell is mirrored. A: a corner of the cell; B:
+ * the corner beside it; C: the corner below it. */
 static void count_cell_orientation(struct bend *bend, const struct probe *a,
                                    const struct probe *b, const struct probe *c)
 {
@@ -254,13 +253,13 @@ static void add_grid_ray_to_sums(const struct rows *r, int i, int j,
     const struct probe *here = &r->row[j % 3][i];
     const struct probe *above = &r->row[(j + 2) % 3][i];
 
-    add_weight_to_blocking_barrel(here, n_events, weight);
+    weight_blocking_barrel(here, n_events, weight);
     if (i > 0) {
-        add_weight_to_first_crossed_barrel(here - 1, here, n_events, weight);
+        weight_first_crossed_barrel(here - 1, here, n_events, weight);
         add_distance_in_stop(bend, here - 1, here);
     }
     if (j > 0) {
-        add_weight_to_first_crossed_barrel(above, here, n_events, weight);
+        weight_first_crossed_barrel(above, here, n_events, weight);
         add_distance_in_stop(bend, above, here);
     }
     if (i > 1)
@@ -301,9 +300,10 @@ void glint_sampling_trace_grid(struct glint_sampling *sampling,
         sampling->outline_mm =
             compute_outline_bend_mm(&bend, weight, path->n_events) * side *
             side;
-        /* At the stop's outline the first difference of r^2 / 2 equals that of
-         * the stop position s; its second difference is the square of the
-         * derivative of s. */
+        /* On the stop's outline the relative radius r is 1, so the first
+         * difference of r^2 / 2 equals the first difference of the stop
+         * position s. The second difference is the square of the derivative of
+         * s. */
         sampling->round_mm =
             sqrt(bend.stop.first * bend.sensor.first) / bend.n * side * side;
     }

@@ -4,7 +4,7 @@
  *
  *   in   a path, a light in the x-z plane, the visible region of the pupil
  *   out  the barrels that block rays, the nonlinearity of positions, whether
- *        light folds
+ *        some of the light arrives mirrored and some does not
  *
  * Most surfaces are wider than the beam through the stop: of dozens of
  * surfaces, only a few vignette the beam. A barrel counts if it is the first
@@ -29,17 +29,18 @@ struct glint_sampling {
      * visible rays, mm. A grid of n cells per side has the error bend_mm / (8
      * n^2). */
     double bend_mm;
-    /* max of the second differences of the stop position and of the radii at
-     * the barrels that block rays, converted to mm on the sensor */
+    /* Nonlinearity of the ghost's outline, mm on the sensor: the max of the
+     * second differences of the stop position and of the radii at those barrels
+     * that block rays. */
     double outline_mm;
     /* second difference of the outline of a circular stop, mm on the sensor */
     double round_mm;
-    /* number of visible rays that have both neighbours along a grid line,
-     * counted once per direction of the line */
+    /* number of differences averaged in bend_mm: a visible ray counts once for
+     * each of its two grid lines on which both neighbours are valid */
     int n_inside;
-    /* Distance in the stop, stop radii, that rays span over the pupil box:
-     * harmonic mean over neighbouring rays between which the opening may
-     * lie. */
+    /* Size of the pupil box when it is projected to the stop, in stop radii.
+     * Extrapolated from the harmonic mean distance of neighbouring rays between
+     * which the opening may lie. */
     double step;
     bool folds; /* true: some of the light arrives mirrored and some does not */
 };

@@ -11,22 +11,23 @@ enum {
     /* number of times that a segment is searched, each time over a narrower
      * range */
     CLOSER = 6,
-    /* number of cells along a border of a box that is parallel to the rows */
+    /* number of cells along the borders of a box that are parallel to x */
     BORDER = 64,
-    SHORT = 32, /* number of cells along a border across the rows */
+    SHORT = 32, /* number of cells along the other two borders */
     /* max number of times that a side of a box is moved outwards */
     GROWTHS = 12
 };
 
-/* Margin around the interval between the values of two neighbouring rays, as a
- * fraction of their difference. */
+/* The positions of rays between two neighbouring rays are assumed to lie in the
+ * interval between the neighbours' positions. A margin of this fraction of its
+ * length is added at each end, because rays bend. */
 #define BENDS 0.5
-/* If one of two rays is invalid, rays between them may pass if both are at
- * least this far apart, in semi-diameters, at the last event that both
- * reached. */
+/* If one of two neighbouring rays is invalid, rays between them are assumed to
+ * pass if the two are more than this distance apart. It is measured in
+ * semi-diameters at the last event that both reached. */
 #define APART 0.25
-/* Fraction of its size by which a box grows on one side per step. Parts of the
- * visible region that extend less than this beyond the box are found. */
+/* A box grows on one side by this fraction of its size per step. Parts of the
+ * visible region are found if they extend less than this beyond the box. */
 #define STEP 0.125
 
 /* a segment of neighbouring rays in the light's plane */
@@ -61,8 +62,8 @@ static void trace_line_segment(const struct glint_openings *o, double x0_mm,
     glint_trace_row(o->path, &row, line->ray, line->status, line->hits);
 }
 
-/* Returns the distance from 0 to the interval between A and B, extended by the
- * margin BENDS. */
+/* Returns the distance from 0 to the interval A .. B, extended by the margin
+ * BENDS; 0 if it contains 0. */
 static double compute_distance_to_zero(double a, double b)
 {
     const double more = BENDS * fabs(a - b);
@@ -71,8 +72,8 @@ static double compute_distance_to_zero(double a, double b)
     return low > 0 ? low : high < 0 ? -high : 0;
 }
 
-/* Returns the number of events, from the first on, that ray I of LINE
- * reached. */
+/* Returns the number of events that ray I of LINE reached before it became
+ * invalid. */
 static int count_reached_events(const struct line *line, int i, int n_events)
 {
     int n = 0;
@@ -82,8 +83,8 @@ static int count_reached_events(const struct line *line, int i, int n_events)
     return n;
 }
 
-/* Returns whether any ray between rays I and I + 1 may pass. An invalid ray
- * often lies next to a spot from which light fans out. */
+/* Returns whether any ray between rays I and I + 1 may pass. Invalid rays are
+ * included, because light often fans out from a spot next to an invalid ray. */
 static bool can_any_ray_pass_between(const struct glint_openings *o,
                                      const struct line *line, int i)
 {
@@ -111,8 +112,8 @@ static bool can_any_ray_pass_between(const struct glint_openings *o,
            o->field_mm;
 }
 
-/* Sets X_MM to the range of rays of LINE that pass, and their neighbours.
- * Returns whether any ray passes. */
+/* Sets X_MM to the range of the rays of LINE that pass, extended by one ray on
+ * each side. Returns whether any ray passes. */
 static bool find_range_of_passing_rays(const struct glint_openings *o,
                                        const struct line *line, double x_mm[2])
 {
@@ -129,7 +130,7 @@ static bool find_range_of_passing_rays(const struct glint_openings *o,
     return seen;
 }
 
-/* Shrinks the range X_MM, in which rays may pass, to the rays that do. Returns
+/* Shrinks X_MM, a range in which rays may pass, to the rays that pass. Returns
  * whether any ray passes. */
 static bool refine_range_of_passing_rays(const struct glint_openings *o,
                                          double x_mm[2])
@@ -155,8 +156,8 @@ static bool refine_range_of_passing_rays(const struct glint_openings *o,
     return false;
 }
 
-/* Searches each run of cells of LINE in which rays may pass. Sets X_MM to the
- * widest range of rays that pass, if it is wider than X_MM. */
+/* Searches each run of adjacent cells of LINE in which rays may pass. Sets X_MM
+ * to the widest range of passing rays found, if it is wider than X_MM. */
 static void refine_runs_of_passing_rays(const struct glint_openings *o,
                                         const struct line *line, double x_mm[2])
 {

@@ -6,12 +6,13 @@
  *   out  the range in this plane where rays pass, however small
  *
  * Example: a lens of 180 degrees has a front of 80 mm, and ghosts that enter
- * through a spot of 1/20 mm; no ray of a grid over the front hits it. But
- * between a ray that passes a barrel far on one side of its axis and a ray far
- * on the other side, there is one through the barrel's centre. So pairs of
- * neighbouring rays are refined where this may be true for the stop and all
- * barrels, until a ray passes. Limits: misses spots off the light's plane, and
- * spots within 1/256 of the front from another one.
+ * through a spot of 1/20 mm; no ray of a grid over the front hits it. But if
+ * one ray meets the plane of a barrel far to the left of the barrel's axis, and
+ * its neighbour far to the right, a ray between them meets the centre. The
+ * interval between two such neighbours is therefore searched again with more
+ * rays, until a ray passes, if the same may hold for the stop and all barrels.
+ * Limits: misses spots off the light's plane, and spots closer to another one
+ * than 1/256 of the front.
  */
 #ifndef GLINT_BAKE_TRACE_SPOT_H
 #define GLINT_BAKE_TRACE_SPOT_H
@@ -26,14 +27,14 @@ struct glint_openings {
     double stop_mm, field_mm;
 };
 
-/* Sets X_MM to the widest range, with a margin, of the line across FRONT in
- * which rays pass. Returns false if no ray passes. */
+/* Sets X_MM to the widest range in which rays pass, with a margin. Searches the
+ * line across FRONT in the light's plane. Returns false if no ray passes. */
 bool glint_spot_find_passing_range(const struct glint_openings *o,
                                    const struct glint_pupil *front,
                                    double x_mm[2]);
 
-/* Moves each side of P outwards until no ray passes on it. Returns whether a
- * side was moved. */
+/* Moves each side of P outwards until no ray that starts on this side passes.
+ * Returns whether a side was moved. */
 bool glint_spot_grow_pupil(const struct glint_openings *o,
                            struct glint_pupil *p);
 

@@ -196,8 +196,8 @@ static WHOLLY_INLINE void deflect_ray_at_sphere(struct beam *b, int k, double c,
 }
 
 /* Sets PART[N] to the reflectances for N rays at the surface of event E, coated
- * with FILM. OUT[N]: cosines of the refracted rays; 0: total reflection, for
- * which PART is 1. */
+ * with FILM. OUT[N]: cosines of the refracted rays; where it is 0 (total
+ * reflection), PART is 1. */
 static WHOLLY_INLINE void compute_reflectances(const struct beam *b, int n,
                                                const struct glint_event *e,
                                                const struct glint_film_at *film,
