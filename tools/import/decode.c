@@ -37,8 +37,9 @@ const struct import_format *import_find_format(const char *name)
     return NULL;
 }
 
-/* Converts the UTF-16 units of DATA from AT on to one byte each, '?' for
- * characters other than ASCII. HIGH: index of a unit's high byte, 0 or 1. */
+/* Converts DATA from byte AT on from UTF-16 to one byte per unit. Characters
+ * other than ASCII become '?'. HIGH: position of the high byte in a unit, 0 or
+ * 1. */
 static void convert_utf16_to_bytes(uint8_t *data, size_t *bytes, size_t at,
                                    int high)
 {

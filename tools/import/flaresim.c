@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads FlareSim's .lens files: "name:", "focal_length:", then "surfaces:" and
- * rows of radius or "stop", thickness, index, Abbe number, semi-diameter,
- * coating, and cyl_x or cyl_y for a cylinder whose axis is x or y.
+ * Reads FlareSim's .lens files. They have lines "name:" and "focal_length:",
+ * then "surfaces:" and one row per surface. Its columns are: radius or "stop",
+ * thickness, index, Abbe number, semi-diameter, coating. A row of a cylinder
+ * ends with cyl_x or cyl_y, the direction of the axis.
  */
 #include <math.h>
 #include <stdio.h>
@@ -44,8 +45,8 @@ static bool parse_surface_row(struct imported *lens, const struct lines *l)
     return parse_surface_kind(lens, l, s);
 }
 
-/* Returns whether the semi-diameter of surface K is larger than its sphere, or
- * than the radius at which it crosses the next surface. */
+/* Returns whether surface K extends too far: its semi-diameter exceeds the
+ * radius of its sphere, or its rim crosses the next surface. */
 static bool is_semi_diameter_too_large(const struct imported *lens, int k)
 {
     const struct imported_surface *s = &lens->surface[k];
@@ -57,8 +58,8 @@ static bool is_semi_diameter_too_large(const struct imported *lens, int k)
                s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) < 0;
 }
 
-/* Halves all semi-diameters if the surfaces fit only then: some files were made
- * from tables of diameters. */
+/* Halves all semi-diameters if they are too large and half of them fits better.
+ * Some files were made from tables of diameters. */
 static bool halve_diameters(struct imported *lens)
 {
     int at = -1, whole = 0, halved = 0;

@@ -82,8 +82,8 @@ bool imported_add_note(struct imported *lens, int line, const char *format, ...)
     return true;
 }
 
-/* Adds a note about an input that does not affect the lens, so that STRICT
- * accepts it. */
+/* Adds a note about an input that does not affect the lens. STRICT accepts
+ * lenses with such notes. */
 static void add_harmless_note(struct imported *lens, int line,
                               const char *format, ...)
 {
@@ -125,7 +125,8 @@ bool imported_set_unit(struct imported *lens, int line, double mm)
 void imported_set_image_surface(struct imported *lens, int line, double radius,
                                 double defocus)
 {
-    /* Some programs write planes with a radius that is too large for tables. */
+    /* Some programs write a very large radius for a plane, which lens tables do
+     * not allow. Such an image surface is plane. */
     if (radius != 0 && fabs(radius) * lens->unit_mm < 1e9)
         imported_add_note(lens, line,
                           "the image surface is curved, radius %.6g mm; a flat "
@@ -191,8 +192,9 @@ struct imported_surface *imported_add_surface(struct imported *lens, int line)
 
 /* -------------------------------------------------------------------- glass */
 
-/* Sets NAME to the glass of S in capitals. If a maker known to the catalogue
- * follows the last '_', cuts it off and returns it; else returns "". */
+/* Sets NAME to the glass name of S, in capitals. If the name ends with '_' and
+ * a maker that occurs in the catalogue, removes this suffix from NAME and
+ * returns the maker; else returns "". */
 static const char *strip_glass_maker(const struct imported_surface *s,
                                      char name[32])
 {
@@ -223,11 +225,11 @@ static bool equals_without_hyphens(const char *a, const char *b)
     return true;
 }
 
-/* Returns the glass NAME of the catalogue, hyphens ignored. If there is
- * none, returns the glass N-NAME, its lead-free successor, and sets
- * *SUCCEEDS; else NULL. Considers only glasses of MAKER, unless that is "". */
+/* Returns the glass NAME of the catalogue; hyphens are ignored. If there is
+ * none, returns its lead-free successor "N-NAME" and sets *SUCCEEDS, or returns
+ * NULL. Considers only glasses of MAKER, unless MAKER is "". */
 static const struct glint_glass *
-catalogue_glass(const char *name, const char *maker, bool *succeeds)
+find_catalogue_glass(const char *name, const char *maker, bool *succeeds)
 {
     const struct glint_glass *glass, *successor = NULL;
 
@@ -262,9 +264,9 @@ static double compute_abbe_number(const struct glint_glass *glass)
             compute_refractive_index(glass, LINE_C_NM));
 }
 
-/* Guesses the Abbe number of S from its index: from the glass of the catalogue
- * whose index agrees to the fifth decimal, else from the line of normal
- * glasses. */
+/* Guesses the Abbe number of S from its index. Uses a glass of the catalogue
+ * whose index agrees to the fifth decimal; if there is none, the typical Abbe
+ * number of glasses of this index. */
 static double guess_abbe_number(struct imported *lens,
                                 const struct imported_surface *s)
 {
@@ -283,7 +285,8 @@ static double guess_abbe_number(struct imported *lens,
             s->nd, vd, glass->name);
         return vd;
     }
-    /* Schott's line of normal glasses, from K7 to F2. */
+    /* the straight line through the glasses K7 and F2, by which Schott defines
+     * normal dispersion */
     vd = 60.5 - 24.2 * (s->nd - 1.511) / 0.109;
     vd = vd > 70 ? 70 : vd < 22 ? 22 : vd;
     imported_add_note(
@@ -342,7 +345,7 @@ static bool set_surface_medium(struct imported *lens,
     if (!s->glass[0])
         return s->nd == 1 || set_medium_by_numbers(lens, s);
     maker = strip_glass_maker(s, name);
-    glass = catalogue_glass(name, maker, &succeeds);
+    glass = find_catalogue_glass(name, maker, &succeeds);
     if ((!glass || succeeds) && has_numbers)
         return set_medium_by_numbers(lens, s);
     if (!glass) {
@@ -382,8 +385,8 @@ static bool set_all_media(struct imported *lens)
 
 /* A paraxial ray and its height at each surface */
 struct thin_ray {
-    /* height and slope before the first surface; after trace_paraxial_ray(),
-     * behind the last */
+    /* height and slope before the first surface; trace_paraxial_ray() replaces
+     * them by those behind the last surface */
     double y, u;
     double height[IMPORT_SURFACES]; /* height at each surface, in the file's
                                        unit */
@@ -483,9 +486,9 @@ static bool insert_stop_surface(struct imported *lens, int k)
     return true;
 }
 
-/* Moves the stop from surface K, a glass surface, into the adjacent air: to
- * the axial position of the surface's rim or vertex, whichever is farther
- * from the glass. */
+/* Moves the stop from the glass surface K into the adjacent air. Its new
+ * position on the axis is that of the surface's rim or of its vertex, whichever
+ * is farther from the glass. */
 static bool move_stop_to_air(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
@@ -539,8 +542,8 @@ static bool separate_stop_from_glass(struct imported *lens)
     return is_dummy_surface(lens, at) || move_stop_to_air(lens, at);
 }
 
-/* Finds the stop and separates it from a glass surface. If its semi-diameter
- * is not stated, the separation is done later, as it needs the surface's
+/* Finds the stop, and moves it into the air if it is on a glass surface. A stop
+ * without a semi-diameter is moved later, because the move needs the surface's
  * rim. */
 static bool place_stop_surface(struct imported *lens)
 {
@@ -635,8 +638,9 @@ static bool set_pupil_and_f_number(struct imported *lens, double focal_units)
     return true;
 }
 
-/* Sets missing semi-diameters to the heights of two paraxial rays: from the
- * pupil's rim, and from the edge of the field. */
+/* Sets missing semi-diameters by two paraxial rays: the ray through the rim of
+ * the pupil, and the chief ray from the edge of the field. Semi-diameters are
+ * 1.05 times the sum of the two heights. */
 static void set_missing_semi_diameters(struct imported *lens)
 {
     const int stop = find_stop_surface(lens);
@@ -647,8 +651,8 @@ static void set_missing_semi_diameters(struct imported *lens)
 
     trace_paraxial_ray(lens, &rim);
     trace_paraxial_ray(lens, &slant);
-    /* The chief ray is the combination of both rays with height 0 at the
-     * stop. */
+    /* The chief ray has height 0 at the stop. It is a linear combination of the
+     * rays rim and slant. */
     start = rim.height[stop] != 0
                 ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
                 : 0;
@@ -706,8 +710,8 @@ double imported_compute_gap_at_height(const struct imported_surface *s,
            compute_surface_sag(s, h);
 }
 
-/* Reduces semi-diameters where neighbouring surfaces cross, as those of thin
- * lenses may do with estimated semi-diameters. */
+/* Reduces semi-diameters where neighbouring surfaces cross. This happens at
+ * thin lenses if semi-diameters are estimates. */
 static bool separate_surface_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
@@ -779,8 +783,8 @@ static void note_object_and_image(struct imported *lens)
                 : "");
 }
 
-/* Rejects negative thicknesses, except behind a stop at the front, which may
- * lie behind the next vertex, as in phone lenses. */
+/* Rejects negative thicknesses. An exception is a stop in front of the lens,
+ * which may lie behind the vertex of the first surface, as in phone lenses. */
 static bool check_thicknesses(struct imported *lens)
 {
     for (int k = 0; k < lens->n; k++)
@@ -804,9 +808,9 @@ static bool check_last_surface(struct imported *lens)
                "missing, as the sensor is in air");
 }
 
-/* Rejects an f-number set by the user whose beam does not fit through the
- * front surface. The file's f-number is not checked, as stops of published
- * lenses are often slightly wider than their fronts. */
+/* Rejects an f-number set by the user if its beam is wider than the front
+ * surface. The f-number of the file is not checked, because published lenses
+ * often have a stop that is slightly too wide for the front. */
 static bool check_front_aperture(struct imported *lens, double focal_units)
 {
     const double slack = 1.01; /* tolerance, as semi-diameters are rounded */
@@ -861,8 +865,8 @@ static bool complete_lens(struct imported *lens)
     return separate_surface_rims(lens) && set_focus_distance(lens);
 }
 
-/* Writes conic, aspheric terms and bend of SHAPE, four values per line, as
- * the lines of lens tables are short. */
+/* Writes the lines "shape" for the bend, conic and aspheric terms of SHAPE. A
+ * line has at most four values, because lines of lens tables are short. */
 static void write_surface_shape(FILE *file, const struct glint_shape *shape,
                                 double unit_mm)
 {

@@ -7,10 +7,11 @@
  *     format = import_find_format("x.zmx");
  *     text = import_parse_file(&lens, format, data, &bytes);
  *
- * Readers store the file's values in its own units; imported_write_table()
- * completes them and writes a .lens table. Everything guessed or left out is
- * reported by a note with its line number. STRICT rejects a lens with guesses,
- * but only at the end, so that one run reports all of them.
+ * Readers store the values in the units of the file. imported_write_table()
+ * adds missing values and writes a .lens table. A note with a line number
+ * reports each value that is guessed and each input that is ignored. STRICT
+ * rejects a lens with guesses. It does so only at the end, so that one run
+ * reports all guesses.
  */
 #ifndef GLINT_TOOLS_IMPORT_IMPORTED_H
 #define GLINT_TOOLS_IMPORT_IMPORTED_H
@@ -23,7 +24,7 @@ enum { IMPORT_SURFACES = 128, IMPORT_NOTES = 256, IMPORT_TEXT = 240 };
 
 struct imported_surface {
     int line;         /* number of the surface's line in the file */
-    double radius;    /* in the file's unit; 0: plane */
+    double radius;    /* radius of curvature, in the file's unit; 0: plane */
     double thickness; /* distance to the next surface, in the file's unit */
     double semi;      /* semi-diameter; 0: not stated */
     /* name of the glass behind the surface; "": nd and vd define it */
@@ -33,16 +34,17 @@ struct imported_surface {
     bool stop;
     struct glint_shape shape; /* shape of the surface; its member group is not
                                * used */
-    /* medium behind the surface in the syntax of lens tables; set when the
-     * lens is completed */
+    /* medium behind the surface, in the syntax of lens tables;
+     * imported_write_table() sets it */
     char medium[48];
     double index; /* refractive index of medium */
 };
 
 struct imported_note {
-    int line;   /* 0: the note concerns the whole file */
-    bool guess; /* whether the note is about a guess, for which STRICT rejects
-                   the lens */
+    int line; /* line number; 0: the whole file */
+    /* true: the note reports a guess, because of which STRICT rejects the
+     * lens */
+    bool guess;
     char text[IMPORT_TEXT];
 };
 
@@ -52,11 +54,12 @@ struct imported {
     char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
     double unit_mm;    /* unit of lengths, mm */
     bool unit_said;    /* whether the file states the unit */
-    bool stop_guessed; /* whether the file has no stop */
-    /* the object is not at infinity; glint assumes infinity */
+    bool stop_guessed; /* true: the file has no stop, so the front is assumed */
+    /* true: the file states an object that is not at infinity, which glint
+     * ignores */
     bool object_near;
     int object_line;
-    double object;          /* distance of the object, in the file's unit */
+    double object;          /* distance of this object, in the file's unit */
     double f_number_given;  /* f-number set by the user, which overrides the
                                file's; 0: not set */
     double f_number, pupil; /* f-number; diameter of the entrance pupil, in the
@@ -68,7 +71,7 @@ struct imported {
     double nominal;    /* nominal focal length, as in the product's name, mm; 0:
                           none */
     int position;      /* zoom position, from 1, set by the user; 0: not set */
-    bool chosen;       /* whether the file has zoom positions */
+    bool chosen;       /* whether a zoom position of the file was selected */
     /* key of the lens that the user selects in a file of many lenses, or
      * NULL */
     const char *key;
@@ -81,8 +84,8 @@ struct imported {
     struct imported_note note[IMPORT_NOTES];
 };
 
-/* Neighbouring surfaces of a table must not cross within this fraction of their
- * semi-diameters. */
+/* Neighbouring surfaces must not cross at heights up to this fraction of the
+ * smaller of their semi-diameters. */
 #define IMPORT_FREE 0.9
 
 /* Reads TEXT[BYTES] into LENS, in the file's own units. Returns false after an
@@ -116,11 +119,11 @@ bool imported_add_note(struct imported *lens, int line, const char *format,
 bool imported_note_unread_word(struct imported *lens, int line,
                                const char *word);
 
-/* Sets the distance of the object. If it is neither infinite nor nearly so,
- * light from infinity counts as a guess. */
+/* Sets the distance of the object. If it is not (almost) infinite, the light
+ * from infinity that glint assumes counts as a guess. */
 void imported_set_object(struct imported *lens, int line, double distance);
 
-/* Sets the unit of lengths to MM millimetres, as LINE states. */
+/* Sets the unit of lengths to MM millimetres, as stated on line LINE. */
 bool imported_set_unit(struct imported *lens, int line, double mm);
 
 /* Sets the image plane of line LINE. If RADIUS is not 0, adds a note that
@@ -133,8 +136,9 @@ void imported_set_image_surface(struct imported *lens, int line, double radius,
  * has set the unit. */
 bool imported_note_missing_unit(struct imported *lens, const char *word);
 
-/* Sets AT to the index, from 0, of the zoom position to read, of N. Returns
- * false with the error set if the requested one does not exist. */
+/* Sets AT to the index, from 0, of the zoom position to read. N: number of
+ * positions in the file. Returns false with the error set if the requested
+ * position does not exist. */
 bool imported_choose_position(struct imported *lens, int line, int n, int *at);
 
 /* Adds a plane with air behind it. Returns NULL, with the error set, if there

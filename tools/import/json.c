@@ -20,7 +20,7 @@
 
 struct json_lens {
     struct imported *lens;
-    /* the file's text from the last element found to its end */
+    /* the part of the file's text after the last element that was found */
     const char *text, *end;
     int line; /* number of the line at which text begins */
 };
@@ -41,8 +41,8 @@ static bool skip_past_word(struct json_lens *j, const char *word)
     return false;
 }
 
-/* Returns the line of the next element's "radius", found in the text, as
- * jansson does not store line numbers. */
+/* Returns the line number of the next element. Searches the text for its
+ * "radius", because jansson does not store line numbers. */
 static int find_next_element_line(struct json_lens *j)
 {
     return skip_past_word(j, "\"radius\"") ? j->line : 0;
@@ -78,7 +78,7 @@ static void note_unread_keys(struct json_lens *j, json_t *element, int line,
     }
 }
 
-/* Parses TEXT as JSON and calls TAKE with the root object, which fills LENS. */
+/* Parses TEXT as JSON and passes the root object to TAKE, which fills LENS. */
 static bool read_json_text(struct imported *lens, const char *text,
                            size_t bytes,
                            bool (*take)(struct json_lens *j, json_t *root))

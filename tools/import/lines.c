@@ -30,7 +30,7 @@ static const char *find_closing_quote(const char *at, const char *end)
  * too long. */
 static bool copy_line_without_comment(struct lines *l, char comment)
 {
-    /* position of the closing quote, while inside quotes */
+    /* position of the closing quote; NULL outside quotes */
     const char *quoted = NULL;
     size_t n = 0;
     bool said = false, fits = true;
@@ -61,7 +61,7 @@ static bool copy_line_without_comment(struct lines *l, char comment)
     return fits;
 }
 
-/* Splits the line at each tab. Single words may be empty, but not all. */
+/* Splits the line at each tab. Words may be empty, unless the line is. */
 static void split_at_tabs(struct lines *l)
 {
     const bool said = *l->text != '\0';

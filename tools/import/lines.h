@@ -16,9 +16,9 @@ struct lines {
     const char *at, *end;
     int number;   /* line number, from 1 */
     bool tabs;    /* whether only tabs separate words */
-    char divider; /* character that also ends a line, or '\0' */
-    /* whether the divider ended the last line, so that the line number does not
-     * advance */
+    char divider; /* character that ends a line like '\n'; '\0': none */
+    /* true: the divider ended the last line, so that the line number does not
+     * change */
     bool within;
     char text[LINE_CHARS]; /* the line, split into its words */
     char rest[LINE_CHARS]; /* the line without its first word */
@@ -29,11 +29,11 @@ struct lines {
 void lines_init(struct lines *lines, struct imported *lens, const char *text,
                 size_t bytes);
 
-/* Reads the next line that is not blank, and splits it at blanks and tabs.
- * Quoted words count as one; a quote must begin a word and be closed on its
- * line, so that apostrophes and inches are not quotes. Text after the
- * character COMMENT is dropped; '\0': no comments. Returns false at the end
- * of the text, or with the error set if the line is too long. */
+/* Reads the next line that is not blank, and splits it at blanks and tabs. Text
+ * in quotes is one word. A quote must be at the start of a word and be closed
+ * on the same line; other quotes are apostrophes or inches. Text after the
+ * character COMMENT is ignored; '\0': no comments. Returns false at the end of
+ * the text, or with the error set if the line is too long. */
 bool lines_read_next(struct lines *lines, char comment);
 
 /* Sets VALUE to word K. If there is no such word or it is not a number, sets an
@@ -44,7 +44,8 @@ bool lines_parse_number(const struct lines *lines, int k, const char *what,
 /* Returns whether the first word is WORD. */
 bool lines_first_word_is(const struct lines *lines, const char *word);
 
-/* Sets RADIUS to 1 / the curvature in word K, or to 0 for a plane. */
+/* Sets RADIUS to 1 / c, where c is the curvature in word K. Sets it to 0
+ * (plane) if c is 0. */
 bool lines_parse_curvature(const struct lines *lines, int k, double *radius);
 
 /* Sets MOST to the max of MOST and the absolute values of all numbers after the

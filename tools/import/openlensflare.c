@@ -27,7 +27,8 @@ struct reader {
     XML_Parser parser;
     int depth;       /* number of open XML elements */
     bool in_element; /* whether the parser is inside <element> */
-    /* whether a coating has been read, and whether the sensor has */
+    /* coated: whether a coating has been read; ended: whether the sensor has
+     * been read */
     bool coated, ended;
     int line; /* line number of <element> */
     char kind[24], text[IMPORT_TEXT];

@@ -3,13 +3,13 @@
  * Reads tables of PhotonsToPhotos' Optical Bench: sections of tab-separated
  * values.
  *
- * A row of [lens data] is a number, radius, thickness, index, diameter and Abbe
- * number; radius "AS" is the stop, "CG" a cover glass, "FS" another diaphragm.
- * A thickness may be the name of a row of [variable distances], which has a
- * column per zoom position. The angle of view is the full angle, the image
- * height a diameter. [aspherical data] has number, radius, conic and the terms
- * from h^4 on. Index and Abbe number define a glass; names of similar glasses
- * are ignored.
+ * A row of [lens data] has the columns number, radius, thickness, index,
+ * diameter and Abbe number. A radius "AS" marks the stop, "CG" a cover glass,
+ * "FS" another diaphragm. A thickness may be the name of a row of [variable
+ * distances], which has one column per zoom position. The angle of view is the
+ * full angle; the image height is the diameter of the image. [aspherical data]
+ * has the columns number, radius, conic, and the aspheric terms from h^4 on.
+ * Index and Abbe number define a glass; names of similar glasses are ignored.
  */
 #include <math.h>
 #include <string.h>
@@ -36,8 +36,9 @@ struct optical_bench {
     int n_variables;
     struct variable variable[VARIABLES];
     char id[IMPORT_SURFACES][ID_BYTES];
-    double odd, a2; /* values of the columns for odd aspheric terms and for
-                       h^2 */
+    /* values of aspheric terms that glint does not support: odd powers, and
+     * h^2 */
+    double odd, a2;
 };
 
 static const char *get_word_or_empty(const struct optical_bench *b, int k)
@@ -274,8 +275,8 @@ static bool parse_section_line(struct optical_bench *b)
     return true;
 }
 
-/* Sets VALUE to SHARE times the variable NAME; leaves it unchanged if NAME
- * is not stated. */
+/* Sets VALUE to SHARE times the variable NAME. Does not change VALUE if the
+ * file does not state the variable. */
 static void set_from_variable(const struct optical_bench *b, const char *name,
                               double share, double *value)
 {
@@ -287,7 +288,8 @@ static void set_from_variable(const struct optical_bench *b, const char *name,
 
 bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
 {
-    static struct optical_bench b; /* static, as it is large */
+    /* static because it is too large for the stack */
+    static struct optical_bench b;
     double object = (double)INFINITY;
 
     b = (struct optical_bench){.lens = lens, .at = -1};

@@ -43,8 +43,8 @@ static bool parse_glass(struct oslo *o)
     return true;
 }
 
-/* Handles an unsupported keyword: rejects those that change the lens, adds a
- * note about others. */
+/* Handles an unsupported keyword: an error if it changes the lens, else a
+ * note. */
 static bool reject_or_note_keyword(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",

@@ -3,9 +3,9 @@
  * Reads lens tables of pbrt: radius, distance, index and diameter of each
  * surface, in mm. A surface with radius 0 and index 0 is the stop.
  *
- * Distances lead to the next surface. In the older tables, of 100 mm lenses,
- * they lead to the previous surface, so that the first distance is 0 and the
- * last is not.
+ * A distance is measured to the next surface. The older tables, of 100 mm
+ * lenses, measure it to the previous surface instead. They are recognised
+ * because their first distance is 0 and their last is not.
  */
 #include "import/lines.h"
 

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads .fx tables of polyflare and of polynomial optics: radius, thickness,
- * medium, for a glass its index and Abbe number, then the semi-diameter.
+ * Reads .fx tables of polyflare and of polynomial optics. The columns are
+ * radius, thickness, medium, and semi-diameter. Index and Abbe number follow
+ * the medium if it is a glass.
  *
- * The medium is "air", "iris" or a glass, which its numbers define; the prefix
- * "cx_" makes a cylinder that is curved in x. A thickness "a/b/c" has a value
- * per zoom position, as do "#EFL" and "#FOV", the diagonal field in degrees.
- * "#!scale" multiplies all lengths; "#!aspheric=" after a row has the conic and
- * the terms of h^4 to h^10. "//" begins a comment, and so does '#' at the start
- * of a line.
+ * The medium is "air", "iris" or the name of a glass, which is ignored. The
+ * prefix "cx_" makes a cylinder that is curved in x. A thickness "a/b/c" has
+ * one value per zoom position. The lines "#EFL" (focal length) and "#FOV"
+ * (diagonal field, degrees) also have one value per zoom position. "#!scale"
+ * multiplies all lengths. "#!aspheric=" at the end of a row states the conic
+ * and the terms of h^4 to h^10. "//" begins a comment, and so does '#' at the
+ * start of a line.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -19,7 +21,9 @@
 #include "import/lines.h"
 #include "options/tool.h"
 
-#define PLANE 1e4 /* files write planes with this radius or a larger one */
+/* min radius of surfaces that count as planes, because these files write planes
+ * with a large radius */
+#define PLANE 1e4
 
 enum { POSITIONS = 8 };
 
@@ -53,7 +57,7 @@ static bool report_too_many_words(struct polyflare *p)
         "more than %d zoom positions are not supported", POSITIONS);
 }
 
-/* Parses "#EFL" and similar lines; other lines that begin with '#' are
+/* Parses "#EFL" and similar lines. All other lines that begin with '#' are
  * comments. */
 static bool parse_header_line(struct polyflare *p)
 {
@@ -88,7 +92,8 @@ static bool parse_thickness(struct polyflare *p, struct imported_surface *s)
     const char *at = l->n > 1 ? l->word[1] : "";
     int n = 0;
 
-    /* the back focal distance is ignored and computed */
+    /* "BFL", the back focal distance, is ignored here because it is computed
+     * later. */
     if (strcmp(at, "BFL") == 0)
         return true;
     for (bool more = true; more; n++) {
@@ -158,8 +163,8 @@ static bool parse_medium(struct polyflare *p, struct imported_surface *s)
         medium += 3;
     }
     s->stop = strcasecmp(medium, "iris") == 0;
-    /* A plane iris lies within the medium before it; a curved iris ends that
-     * medium. */
+    /* A plane iris lies inside the medium in front of it. A curved iris is a
+     * surface at which this medium ends. */
     if (s->stop && before && fabs(s->radius) >= PLANE) {
         s->nd = before->nd;
         s->vd = before->vd;
@@ -186,7 +191,7 @@ static bool parse_surface_row(struct polyflare *p)
            parse_thickness(p, s) && parse_medium(p, s);
 }
 
-/* Uses a plane in the air as the stop if the file has no iris. */
+/* If the file has no iris, uses the only plane in the air as the stop. */
 static bool choose_plane_as_stop(struct imported *lens)
 {
     int at = -1;

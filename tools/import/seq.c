@@ -5,8 +5,8 @@
  * Commands are separated by ';' or line ends. "S r t glass", "SO" and "SI"
  * begin the next surface, the object and the image; later commands apply to
  * that surface, or to surface K if their second word is "SK". Case is ignored.
- * Radii are curvatures unless "RDM" precedes. A glass of six digits or nnn.vvv
- * states (nd - 1) and Vd.
+ * Radii are stated as curvatures unless the command "RDM" precedes them. A
+ * glass that is a number (six digits, or nnn.vvv) states nd - 1 and Vd.
  */
 #include <math.h>
 #include <stdio.h>
@@ -191,7 +191,7 @@ static bool parse_surface_command(struct seq *q)
 static bool parse_dimension_command(struct seq *q)
 {
     const char *word = q->lines.n > 1 ? q->lines.word[1] : "";
-    /* first letter of the unit, in upper case */
+    /* first letter of the unit's name, in upper case */
     const char unit = (char)(*word & ~0x20);
 
     if (unit != 'I' && unit != 'C' && unit != 'M')

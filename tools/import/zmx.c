@@ -52,7 +52,8 @@ static bool parse_glass(struct zmx *z)
         return false;
     if (strncmp(l->word[1], "___", 3) != 0) {
         snprintf(z->s->glass, sizeof z->s->glass, "%s", l->word[1]);
-        /* Older versions of Zemax write these values for any glass. */
+        /* Older versions of Zemax write these two values for every named glass,
+         * so they are ignored. */
         if (nd == 1.5 && vd == 40)
             nd = vd = 0;
     }
@@ -162,9 +163,9 @@ static bool parse_header_keyword(struct zmx *z)
            lines_parse_fields(l, &z->field);
 }
 
-/* Begins a surface; the first, the object, is not added to the lens. Rejects
- * numbers that are not consecutive, as a surface is then missing or
- * duplicate. */
+/* Begins a surface. The first one is the object and is not added to the lens.
+ * Rejects surface numbers that are not consecutive, because a surface is then
+ * missing or duplicate. */
 static bool start_surface(struct zmx *z)
 {
     double number;
@@ -186,12 +187,12 @@ static bool start_surface(struct zmx *z)
     }
     z->s = imported_add_surface(z->lens, z->lines.number);
     if (z->s)
-        z->s->thickness = (double)NAN; /* NAN: not stated yet */
+        z->s->thickness = (double)NAN; /* NAN marks a missing DISZ line */
     return z->s != NULL;
 }
 
-/* Removes the last surface, the image. Rejects an image with glass behind
- * it, as the file is then truncated. */
+/* Removes the last surface, which is the image. Rejects an image with glass
+ * behind it, because the file is then truncated. */
 static bool remove_image_surface(struct imported *lens)
 {
     const struct imported_surface *image = &lens->surface[--lens->n];
