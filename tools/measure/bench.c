@@ -66,8 +66,9 @@ static int run_timed_rounds(struct bench *b)
     enum glint_status status = GLINT_OK;
 
     tool_progress_start(&progress, b->tool, "bench");
-    /* Rounds below 0 warm up the caches and are not recorded: one, or one per
-     * position of a moving light. */
+    /* Rounds with a negative number warm up the caches and are not recorded. A
+     * moving light needs one such round per position, else one is
+     * sufficient. */
     for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
         const int at = round < 0 ? round + warm : round;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bench: draws several cases in turns and measures the time of the stages
- * of each frame. A case draws flares (bench_flare.c) or a scene
+ * glint bench: draws frames of several cases alternately and measures the time
+ * of each stage of a frame. A case draws flares (bench_flare.c) or a scene
  * (bench_scene.c).
  */
 #ifndef GLINT_TOOLS_LAB_BENCH_H
@@ -10,8 +10,8 @@
 #include "measure/canvas.h"
 
 enum {
-    BENCH_CASES = 256, /* max number of cases, more than 16 lenses have with
-                        * --all */
+    /* max number of cases; --all with 16 lenses makes fewer */
+    BENCH_CASES = 256,
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
     BENCH_CANVASES = 8,
@@ -28,8 +28,8 @@ struct bench_case {
     double ms[BENCH_STAGES][BENCH_ROUNDS];
 };
 
-/* Difference of a case from the plain case; members that are 0 or NULL do not
- * differ */
+/* Differences between a case and the default case. A member that is 0 or NULL
+ * has its default value. */
 struct bench_variation {
     int width, height;
     bool two_threads;
@@ -41,7 +41,8 @@ struct bench_variation {
     /* angle between the light and the optical axis, degrees; 0: default of
      * 12 */
     double angle;
-    /* above 0: draws only starbursts, of lamps this many stops above white */
+    /* brightness of lamps of which only the starburst is drawn, stops above
+     * white; 0: whole flares are drawn */
     double star_stops;
 };
 
@@ -59,8 +60,9 @@ struct bench_subject {
     /* Names of the stages; the last stage is the whole frame. */
     int n_stages;
     const char *stage[BENCH_STAGES];
-    const char *heads; /* headings of the columns before and after the times, in
-                          print_case()'s order */
+    /* headings of the columns that print_case() prints, in front of the
+     * times */
+    const char *heads;
     const char *tail;
     size_t case_bytes;
 
@@ -72,7 +74,8 @@ struct bench_subject {
     int (*open)(struct bench *bench, int n, const char *const *name);
     enum glint_status (*draw)(struct bench *bench, struct bench_case *c,
                               int round);
-    /* Print the columns of C before and after the times. */
+    /* print_case() prints the columns of C in front of the times,
+     * print_result() those behind the times. */
     void (*print_case)(const struct bench *bench, const struct bench_case *c);
     void (*print_result)(const struct bench *bench, const struct bench_case *c);
     /* Writes all members of C's JSON object except the name, using
@@ -88,10 +91,10 @@ struct bench {
     const struct bench_subject *subject;
     struct tool *tool;
     struct settings base; /* settings from the command line */
-    /* word: index in bench_format, the pixel format */
+    /* word: index of the pixel format in bench_format */
     int width, height, rounds, word;
     bool all;
-    bool moving;               /* The first light moves from round to round. */
+    bool moving; /* true: the first light is at another angle in each round */
     struct glint_workers *two; /* pool of two threads */
     struct canvas canvas[BENCH_CANVASES];
     int n_canvases;
@@ -128,7 +131,7 @@ void bench_write_json_times(struct json_writer *json, const struct bench *bench,
 double bench_compute_median_ms(const struct bench *bench,
                                const struct bench_case *c, int stage);
 
-/* Code of the first option that only one subject has */
+/* code of the first option that is specific to one subject (flare or scene) */
 enum { BENCH_OWN = 'A' };
 #define BENCH_OPTIONS                                                        \
     {"all", no_argument, NULL, 'a'}, {"size", required_argument, NULL, 's'}, \

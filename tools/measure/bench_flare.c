@@ -89,8 +89,9 @@ static const struct bench_variation all[] = {
                                  * baked models */
 };
 
-/* Sets the exposure of T by the flare of lights 12 degrees off the axis, even
- * if the lights of the case are elsewhere, for example far off-screen. */
+/* Sets the exposure of T such that lights 12 degrees off the axis have a well
+ * exposed flare. Other cases of the lens, such as lights far off-screen, get
+ * the same exposure. */
 static enum glint_status set_exposure(struct flare_case *t,
                                       const struct bench_variation *v)
 {
@@ -155,7 +156,7 @@ static int add_supported_variations(struct bench *b,
 
 /* ------------------------------------------------------------------ rounds */
 
-/* tools/measure/budget recognises timed frames by this name. */
+/* tools/measure/budget finds the timed frames by the name of this function. */
 static enum glint_status bench_run(struct bench *b, struct bench_case *c,
                                    int round)
 {

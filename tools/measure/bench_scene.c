@@ -41,8 +41,8 @@ enum { PREPARE, AROUND, DRAW, SHADOWS, LIGHTS, WHOLE };
 
 struct opened {
     const char *file;
-    struct baked_scene scene, bare; /* bare: the scene without shadows, if it
-                                       has shadows */
+    /* bare: copy of the scene without shadows; only set if it has shadows */
+    struct baked_scene scene, bare;
     int counter; /* descriptor of the instruction counter; -1: not available */
 };
 
@@ -72,8 +72,8 @@ static const struct bench_variation all[] = {
     {.width = 3840, .height = 2160},
 };
 
-/* Reassigns the first object's position, so that the shadow lists are
- * rebuilt as if the object had moved. */
+/* Sets the first object to its current position. This invalidates the shadow
+ * lists, so that each frame rebuilds them, as for a moving object. */
 static void invalidate_shadows(void *ctx, struct glint_scene *scene)
 {
     const struct scene_frame *const frame = ctx;
@@ -98,8 +98,8 @@ static int open_bench_frame(struct scene_case *t, struct scene_frame *frame,
                            : code;
 }
 
-/* Sets DIALS to the quality parameters of the command line plus the option of
- * V. Returns false if V changes nothing. */
+/* Sets DIALS to the quality parameters of the command line, changed by
+ * variation V. Returns false if V changes none of them. */
 static bool set_quality_parameters(const struct bench *b,
                                    const struct bench_variation *v,
                                    struct scene_dials *dials)

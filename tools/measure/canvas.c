@@ -157,7 +157,8 @@ draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
         status = glint_setup_init(setup, &lens->table, camera.n_blades,
                                   camera.blade_rotation_deg, s->wavelength_nm,
                                   s->n_wavelengths, &error);
-    camera.waves.kind = GLINT_WAVES_LIST; /* every ghost gets all wavelengths */
+    /* The exact image uses all wavelengths for every ghost. */
+    camera.waves.kind = GLINT_WAVES_LIST;
     if (status == GLINT_OK)
         status = glint_engine_setup(setup, NULL, &camera, &dirt, &error);
     if (status == GLINT_OK)

@@ -9,10 +9,11 @@
 #include "formats/pnm.h"
 #include "model/opened_lens.h"
 
-enum { CANVAS_MAX = 1000 }; /* max rounds, and max values of a median */
+/* max number of rounds, and of values of which a median is computed */
+enum { CANVAS_MAX = 1000 };
 
-/* Image to draw on; mem: its pixels; fresh: copy of the background, to restore
- * them */
+/* An image to draw on. mem: its pixels; fresh: a copy of the background, from
+ * which they are restored. */
 struct canvas {
     struct glint_image image; /* the image; its planes point into mem */
     uint8_t *fresh, *mem;
@@ -42,9 +43,9 @@ void canvas_time_memory_floor(struct canvas *canvas, int round);
  * lamp k = 1 .. N has power 1 / k. */
 void canvas_set_lamps(struct glint_lamp *lamp, int n, double angle);
 
-/* Sets CFG to the configuration of an engine for WIDTH x HEIGHT pixels with the
- * settings ASKED that draws given lamps (glint_engine_draw_at()) without
- * detection. LENS must outlive the engine. */
+/* Sets CFG to the configuration of an engine that draws the flare of given
+ * lamps (glint_engine_draw_at()), without detection of lamps. The image has
+ * WIDTH x HEIGHT pixels; ASKED: the settings. LENS must outlive the engine. */
 void canvas_open_engine(const struct tool *tool, const struct opened_lens *lens,
                         const struct settings *asked, int width, int height,
                         struct glint_engine_config *cfg);
@@ -65,9 +66,9 @@ enum glint_status canvas_draw_exact(const struct tool *tool,
                                     const struct glint_lamp *lamp, int n_lamps,
                                     int grid, struct glint_float_image *to);
 
-/* Draws only the flare, scaled by EXPOSURE, on black to sRGB codes
- * CODES[height][width][3], with the plan for 8-bit codes, which is cheaper than
- * that for linear light. */
+/* Draws the flare alone, on black, scaled by EXPOSURE, to the sRGB codes
+ * CODES[height][width][3]. Uses the engine's plan for 8-bit codes, because it
+ * is cheaper than the plan for linear light. */
 enum glint_status canvas_draw_flare_codes(struct glint_engine *engine,
                                           const struct glint_lamp *lamp,
                                           int n_lamps, double exposure,

@@ -7,12 +7,12 @@
  *         ./insncount.so,frame=F,idle=G,skip=N,at=H:NAME,at=... -d plugin \
  *         PROGRAM
  *
- * A frame begins when function F is entered after G has run. Within it, each
- * function H begins the stage NAME, and F begins stage 0, "rest". Functions not
- * listed belong to the stage that calls them; so a function that continues
- * after calling a stage must be listed, too. The mean over all frames but the
- * first N is printed. The program must have one thread. A block of instructions
- * counts for the function in which it begins.
+ * A frame begins when function F is entered after G has run. Within a frame,
+ * entering function H begins the stage NAME, and F itself is stage 0, "rest". A
+ * function that is not listed belongs to the stage that calls it. A function
+ * that continues after it has called a stage must therefore be listed, too. The
+ * mean over all frames but the first N is printed. The program must have one
+ * thread. A block of instructions counts for the function in which it begins.
  *
  * QEMU ships no header for plug-ins; the part of its interface that is used is
  * declared here.
@@ -130,8 +130,8 @@ static void parse_stage_mark(char *text)
 static void instrument_block(uint64_t id, struct qemu_plugin_tb *tb)
 {
     const char *name = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
-    struct block *b = malloc(sizeof *b); /* never freed, as QEMU may run the
-                                            code at any time */
+    /* never freed because QEMU may run the code at any time */
+    struct block *b = malloc(sizeof *b);
 
     (void)id;
     if (!b)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep: measures frames with each quality parameter changed alone, with
- * several changed together, and along --quality. A case is a lens, an image
- * size and some lights.
+ * glint sweep: measures the time and error of frames at many settings of the
+ * quality parameters: with one parameter changed, with several changed, and
+ * with --quality at several values. A case is a combination of lens, image size
+ * and lights.
  */
 #ifndef GLINT_TOOLS_LAB_SWEEP_H
 #define GLINT_TOOLS_LAB_SWEEP_H
@@ -126,9 +127,9 @@ void sweep_mark_fronts(struct sweep *s);
 int sweep_find_front(const double *cost, const double *quality, int n,
                      int *front);
 
-/* Means of a setting over all cases with combined parameters: cost divided by
- * the default setting's cost in the same case, geometric mean; PSNR, dB, mean
- * and min; max absolute flux error */
+/* Results of a setting over all cases with combined parameters. cost: geometric
+ * mean of its cost / cost of the default setting in the same case. psnr_db,
+ * least_db: mean and min PSNR. flux_error: max absolute flux error. */
 struct sweep_mean {
     const struct sweep_setting *set;
     double cost, psnr_db, least_db, flux_error;
@@ -143,9 +144,9 @@ struct sweep_mean *sweep_compute_means(const struct sweep *s, int *n);
 /* Sorts MEAN[N] by rising cost. */
 void sweep_sort_means(struct sweep_mean *mean, int n);
 
-/* Returns how far, dB, MEAN[I] lies above the best PSNR that --quality reaches
- * at up to 1.02 times its cost (2 % is measurement noise). MEAN[N] must be
- * sorted by cost. PSNR is interpolated between neighbouring settings of
+/* Returns PSNR gain, dB: PSNR of MEAN[I] minus the best PSNR that --quality
+ * reaches at 1.02 times the same cost (2 % is measurement noise). MEAN[N] must
+ * be sorted by cost. PSNR is interpolated between neighbouring settings of
  * --quality that draw the same number of pixels. */
 double sweep_compute_gain_above_front(const struct sweep_mean *mean, int n,
                                       int i);
@@ -156,8 +157,8 @@ double sweep_compute_gain_above_front(const struct sweep_mean *mean, int n,
  * default, such as "grid 32, quantum 2", or "default". */
 void sweep_describe_setting(const struct sweep_setting *set, char text[160]);
 
-/* Returns the index of the named quality of P, or -1 if its quality has no
- * name. */
+/* Returns the index of the name of P's --quality value (such as "draft"), or -1
+ * if that value has no name. */
 int sweep_find_quality_name_index(const struct sweep_point *p);
 
 void sweep_write_csv(const struct sweep *s, FILE *file);
@@ -166,8 +167,8 @@ void sweep_write_front_svg(const struct sweep *s, FILE *file);
 void sweep_write_dials_svg(const struct sweep *s, FILE *file);
 void sweep_write_page(const struct sweep *s, FILE *file);
 
-/* Prints a Markdown table of named qualities, and the settings of a single
- * parameter that lie above --quality. */
+/* Prints a Markdown table of the named qualities. Also prints settings of a
+ * single parameter that have a better PSNR than --quality at the same cost. */
 void sweep_write_name_table(const struct sweep *s, FILE *file);
 
 #endif

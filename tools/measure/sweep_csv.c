@@ -16,7 +16,7 @@ static const char *const metrics[SWEEP_METRICS] = {
     "model_bytes", "psnr_db",  "ssim",  "p99",          "flux_error",
     "ghosts",      "bundles",  "edges", "tiles"};
 
-/* Prints a comma, followed by X if X is finite. */
+/* Prints a comma, and then X unless it is infinite or NAN. */
 static void print_csv_number(FILE *file, double x)
 {
     fputc(',', file);
@@ -76,8 +76,8 @@ void sweep_write_json(const struct sweep *s, FILE *file)
     json_write(&json, "\n]}\n");
 }
 
-/* Prints the settings of a single parameter that lie at least 0.1 dB above
- * --quality. */
+/* Prints the settings of a single parameter whose PSNR is at least 0.1 dB
+ * better than that of --quality at the same cost. */
 static void print_settings_above_front(const struct sweep *s, FILE *file)
 {
     int n, n_alone = 0, n_above = 0;

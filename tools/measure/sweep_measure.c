@@ -8,7 +8,7 @@
 #include "measure/sweep.h"
 #include "options/timed_text.h"
 
-/* Time, ms, after which a point gets no further rounds */
+/* max time that is spent on a point, ms; further rounds skip the point */
 #define MAX_POINT_MS 4000.0
 
 enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
@@ -52,9 +52,9 @@ static bool has_same_exact_image(const struct settings *a,
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns the lens opened with the options of SET, shared by all settings with
- * the same ones. On failure prints the error, sets *CODE to the exit code and
- * returns NULL. */
+/* Returns the lens opened with the options of SET. Settings that do not differ
+ * in these options use the same opened lens. On failure prints the error, sets
+ * *CODE to the exit code and returns NULL. */
 static const struct sweep_lens *
 find_lens(struct bay *b, const struct sweep_setting *set, int *code)
 {
@@ -160,8 +160,8 @@ static enum glint_status draw_and_time_run(struct bay *b, struct run *r,
     return status;
 }
 
-/* Measures the times of all points and of the memory floor in turns. The
- * progress rises from FROM to TO, 0 .. 1. */
+/* Measures the times of all points and of the memory floor; each round measures
+ * every point once. The progress rises from FROM to TO, 0 .. 1. */
 static enum glint_status time_all_points(struct bay *b,
                                          struct tool_progress *progress,
                                          double from, double to)
@@ -205,8 +205,9 @@ static double sum_pixel_light(const struct glint_float_image *image)
     return sum;
 }
 
-/* Sets flux_error of R to (total light of its flare / light of the exact image)
- * - 1. The flare is planned for 8-bit codes but drawn in linear light. */
+/* Sets the metric SWEEP_FLUX_ERROR of R to (total light of its flare / total
+ * light of the exact image) - 1. The flare is planned for 8-bit codes, like the
+ * timed frames, but drawn in linear light. */
 static enum glint_status measure_flux_error(struct bay *b, struct run *r)
 {
     const size_t n = 3 * (size_t)b->c->width * (size_t)b->c->height;

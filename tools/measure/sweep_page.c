@@ -48,7 +48,7 @@ static void write_quality_names_table(const struct sweep *s, FILE *file)
     fputs("</table>\n", file);
 }
 
-/* Prints the Pareto front of the means, which --quality should follow. */
+/* Prints the settings on the Pareto front, which --quality should follow. */
 static void write_front_table(const struct sweep *s, FILE *file)
 {
     int n;
@@ -95,7 +95,8 @@ static void write_svg_figure(const struct sweep *s, FILE *file,
     fputs("</figcaption></figure>\n", file);
 }
 
-/* Writes a picture of grey plus 16 times the difference of Q and EXACT. */
+/* Writes a picture of the difference between Q and EXACT, multiplied by 16 and
+ * added to grey. */
 static void write_difference_picture(const struct sweep *s, FILE *file,
                                      const struct sweep_picture *q,
                                      const struct sweep_picture *exact)

@@ -7,17 +7,17 @@
 
 enum { QUALITY_STEPS = 8 };
 
-/* Values of --quality between its QUALITY_STEPS steps: half resolution with
- * finer grids, and the default with a finer model. */
+/* Additional values of --quality, between its QUALITY_STEPS steps. 0.0625: half
+ * resolution with finer grids; 0.505: the default with a finer model. */
 static const double between_steps[] = {0.0625, 0.505};
 
 enum { GRID, QUANTUM, CULL, DIM, WHOLE, HALF, TOLERANCE };
 
-/* The last list of each parameter has the values for combinations. Not combined
- * are apart and max_lights, which lose more than they save; wavelengths, which
- * lose colour; the tolerance, as each value needs a bake; and tile, which does
- * not change the image. A single wavelength is the middle one, drawn in
- * grey. */
+/* The last list of values of each parameter is used for combinations. Some
+ * parameters are not combined: apart and max_lights lose more accuracy than
+ * they save time; wavelengths loses colour; each value of the tolerance needs a
+ * bake; tile does not change the image. A single wavelength is the middle one,
+ * drawn in grey. */
 /* clang-format off */
 const struct sweep_parameter sweep_parameter[] = {
     [GRID] = {"grid", "grid", 64, false, false, 9, 5,
@@ -63,7 +63,7 @@ static void set_parameter_value(struct settings *s,
 void sweep_apply_setting(struct settings *s, const struct sweep_setting *set,
                          bool opening)
 {
-    /* A limit of work would coarsen the grids. */
+    /* Removes the limit of work, which would make the grids coarser. */
     settings_set_number(s, "work", 0);
     if (!opening && set->quality >= 0)
         settings_set_quality(s, set->quality);
@@ -77,8 +77,7 @@ void sweep_apply_setting(struct settings *s, const struct sweep_setting *set,
     s->tolerance = set->value[TOLERANCE];
 }
 
-/* Sets the parameters in VALUE that --quality determines to their values in
- * S. */
+/* Copies those parameters that --quality determines from S to VALUE. */
 static void read_quality_parameters(const struct settings *s, double *value)
 {
     value[GRID] = s->dials.fineness;

@@ -31,7 +31,8 @@ static void draw_setting_dots(const struct plot *p,
 {
     for (int pass = 0; pass < 2; pass++)
         for (int i = 0; i < n; i++) {
-            static const char mark[] = "so.D"; /* marks by kind of setting */
+            /* mark of each kind of setting, by enum sweep_kind */
+            static const char mark[] = "so.D";
             const struct sweep_setting *set = dot[i].set;
             char words[160], tip[240];
 
@@ -49,8 +50,8 @@ static void draw_setting_dots(const struct plot *p,
         }
 }
 
-/* Plots DOT[N], sorted by cost, without settings with a large flux error, and a
- * line along their Pareto front. */
+/* Plots DOT[N], which must be sorted by cost, and a line along their Pareto
+ * front. Leaves out settings with a large flux error. */
 static void draw_front_panel(struct plot *p, const struct sweep_mean *dot,
                              int n)
 {

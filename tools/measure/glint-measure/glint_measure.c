@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint-measure FIGURE [PARAMETER=VALUE...] - measures the rows of a figure of
- * tools/measure/recipes, and prints its table; rows of its file in
- * tests/figures that are not measured are copied. A PARAMETER=VALUE that some
- * rows have selects these rows; any other is set in all rows.
+ * glint-measure FIGURE [PARAMETER=VALUE...] - measures rows of the figure
+ * FIGURE, which tools/measure/recipes defines, and prints its table. Rows that
+ * are not measured are copied from its file in tests/figures. If some rows have
+ * PARAMETER=VALUE, only these rows are measured; otherwise it is set in all
+ * rows.
  *
- * glint-measure --quick - measures the rows that recipes list for it, and fails
- * if a number differs from the table's by more than its tolerance.
+ * glint-measure --quick - measures those rows that the recipes mark as quick.
+ * Fails if a number differs from the number in the table by more than its
+ * tolerance.
  *
  * glint-measure --row metrics=NAME,... lens=LENS PARAMETER=VALUE... - measures
  * one row and prints its metrics as JSON.
@@ -79,7 +81,7 @@ static int run_row_in_child(const struct recipe *r,
                                      row->set[i]);
     if (counted && used < sizeof line)
         snprintf(line + used, sizeof line - used, " 2>&1");
-    pipe = popen(line, "r"); /* NOLINT: built from our own recipes */
+    pipe = popen(line, "r"); /* NOLINT: made of glint's own recipes */
     if (!pipe)
         return EXIT_RUNTIME;
     bytes = fread(text, 1, TEXT - 1, pipe);
@@ -140,7 +142,7 @@ static int measure_row_to_json(const struct recipe *r,
 
 static void read_first_line_of_file(const char *command, char text[128])
 {
-    FILE *const pipe = popen(command, "r"); /* NOLINT: our own command */
+    FILE *const pipe = popen(command, "r"); /* NOLINT: a fixed command */
 
     text[0] = '\0';
     if (pipe && fgets(text, 128, pipe))
@@ -224,7 +226,7 @@ static bool write_metric_value(const char *at, const struct recipe_row *row,
     }
 }
 
-/* Writes the cell of COLUMN to TO, or an empty text if a metric is missing. */
+/* Writes the cell of COLUMN to TO. The cell is empty if a metric is missing. */
 static void write_table_cell(const struct recipe_column *column,
                              const struct recipe_row *row, const char *json,
                              char *to, size_t bytes)
@@ -248,9 +250,9 @@ static void write_table_cell(const struct recipe_column *column,
     }
 }
 
-/* Returns ROW as a line of the table, which the caller frees; NULL if it has no
- * metric, such as the projection of an anamorphic lens. OVER: the row exceeded
- * its CPU limit. */
+/* Returns ROW as a line of the table, which the caller frees. Returns NULL if
+ * the row has none of the metrics; for example, an anamorphic lens has no
+ * projection. OVER: the row exceeded its CPU limit. */
 static char *make_table_line(const struct recipe *r,
                              const struct recipe_row *row, const char *json,
                              bool over)
@@ -355,8 +357,8 @@ static void replace_or_append_line(const struct recipe *r, struct table *t,
 
 /* ------------------------------------------------------------------- quick */
 
-/* Compares the numbers in CELL with the row's metrics that have a tolerance.
- * Returns whether all differences are within it. */
+/* Compares the numbers in CELL with those metrics of the row that have a
+ * tolerance. Returns whether all differences are within tolerance. */
 static bool compare_cell_numbers(const struct recipe *r,
                                  const struct recipe_column *column,
                                  const char *cell, const char *json)

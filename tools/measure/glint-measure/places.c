@@ -23,7 +23,8 @@ struct places {
     double field_mm;
 };
 
-/* mean position of a ghost's rays on the sensor, mm, and their light */
+/* x_mm: mean position of a ghost's rays on the sensor, mm; light: their
+ * energy */
 struct ghost {
     double x_mm, light;
 };
@@ -65,8 +66,8 @@ static struct ghost find_ghost_position(const struct figure_row *row,
     return sum;
 }
 
-/* Writes the metrics with the prefix WHERE for a light whose image is MM from
- * the axis. */
+/* Writes the metrics for a light whose image is MM millimetres from the axis.
+ * WHERE: prefix of their names. */
 static void write_ghost_position(struct figure_row *row, const struct places *r,
                                  const char *where, double mm)
 {

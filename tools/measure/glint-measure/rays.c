@@ -31,8 +31,9 @@ enum {
 /* Histogram of errors; bin K begins at 1e-5 * 10^(K / BINS_A_DECADE) */
 struct tally {
     double rays, lost;
-    double light, light_lost; /* light of all rays and of rays outside the
-                                 model: energy * mm^2 of pupil */
+    /* light of all rays, and of the rays that the model does not cover: energy
+     * * mm^2 of pupil */
+    double light, light_lost;
     double sensor[BINS], energy[BINS];
     /* sum of squared errors of each output; errors of energy are weighted by
      * the ray's light */
@@ -102,7 +103,7 @@ static void merge_tally(struct tally *t, const struct tally *from,
 
 /* Returns the 99th percentile of the N errors counted in BIN, rounded up to the
  * end of its bin. */
-static double compute_99th_percentile(const double bin[BINS], double n)
+static double compute_p99(const double bin[BINS], double n)
 {
     double above = 0;
     int k = BINS;
@@ -112,9 +113,9 @@ static double compute_99th_percentile(const double bin[BINS], double n)
     return n > 0 ? 1e-5 * pow(10, (double)k / BINS_A_DECADE) : 0;
 }
 
-static double compute_sensor_99th_percentile_px(const struct tally *t)
+static double compute_sensor_p99_px(const struct tally *t)
 {
-    return compute_99th_percentile(t->sensor, t->rays);
+    return compute_p99(t->sensor, t->rays);
 }
 
 static double compute_rms(const struct tally *t, int kind)
@@ -133,7 +134,7 @@ static double compute_stop_rms(const struct tally *t)
 
 static bool does_tally_miss_target(const struct tally *t)
 {
-    return compute_sensor_99th_percentile_px(t) > SENSOR_PX ||
+    return compute_sensor_p99_px(t) > SENSOR_PX ||
            compute_stop_rms(t) > STOP_RMS;
 }
 
@@ -258,8 +259,9 @@ struct light {
 };
 
 /* Compares all rays of GHOST with the model. Adds their errors to SUM and their
- * light to LIGHT. Adds to ANGLES the number of angles at which the ghost is
- * visible, and at which it misses the target. */
+ * light to LIGHT. Adds to ANGLES[0] the number of angles at which the ghost is
+ * visible, and to ANGLES[1] the number at which its error exceeds the
+ * target. */
 static void compare_ghost_rays(const struct task *t, int ghost,
                                struct tally *sum, int angles[2],
                                struct light *light)
@@ -292,8 +294,9 @@ static void compare_all_ghosts(struct figure_row *row, const struct task *t)
 {
     static struct tally all, equally;
     static struct light light[MOST_ANGLES];
-    double lost = 0; /* fraction of light that the model does not cover at the
-                        worst angle, 0 .. 1 */
+    /* max over angles of the fraction of light that the model does not cover, 0
+     * .. 1 */
+    double lost = 0;
     int ghosts = 0, missing = 0, angles[2] = {0, 0};
 
     for (int g = 0; g < t->n_ghosts; g++) {
@@ -315,11 +318,10 @@ static void compare_all_ghosts(struct figure_row *row, const struct task *t)
                "energy_p99_ghosts: %.6g, lost: %.6g, lost_light: %.6g, "
                "ghosts_seen: %d, ghosts_miss: %d, angles_seen: %d, "
                "angles_miss: %d",
-               all.rays, compute_sensor_99th_percentile_px(&all),
-               compute_sensor_99th_percentile_px(&equally),
-               compute_stop_rms(&all), compute_stop_rms(&equally),
-               compute_99th_percentile(all.energy, all.rays),
-               compute_99th_percentile(equally.energy, equally.rays),
+               all.rays, compute_sensor_p99_px(&all),
+               compute_sensor_p99_px(&equally), compute_stop_rms(&all),
+               compute_stop_rms(&equally), compute_p99(all.energy, all.rays),
+               compute_p99(equally.energy, equally.rays),
                all.lost / fmax(1, all.rays), lost, ghosts, missing, angles[0],
                angles[1]);
     write_rms_metric(row, &all);

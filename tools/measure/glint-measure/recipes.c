@@ -14,7 +14,7 @@ struct recipe_lines {
     int n_set;
 };
 
-/* memory for the texts of the recipe read last */
+/* memory for the texts of the recipe that was read last */
 static char pool[1 << 18];
 static size_t pooled;
 
@@ -77,8 +77,8 @@ bool recipe_row_has_parameter(const struct recipe_row *row, const char *words)
 
 /* -------------------------------------------------------------------- rows */
 
-/* Replaces each of the N rows from FIRST on by one row per value in VARY, "NAME
- * VALUE VALUE...". */
+/* Replaces each row by one row per value in VARY, a text "NAME VALUE VALUE...".
+ * The new rows have the parameter NAME=VALUE. */
 static void multiply_rows_by_values(struct recipe *r, const char *vary)
 {
     const int n = r->n_rows;
@@ -102,7 +102,8 @@ static void multiply_rows_by_values(struct recipe *r, const char *vary)
     r->n_rows -= n;
 }
 
-/* Replaces each row by one row per label of a line "LABEL: NAME=VALUE ...". */
+/* Replaces each row by one row per line "LABEL: NAME=VALUE ..." of the recipe.
+ * The new rows have the label and the parameters of this line. */
 static void multiply_rows_by_labels(struct recipe *r,
                                     const struct recipe_lines *l)
 {
@@ -126,8 +127,8 @@ static void multiply_rows_by_labels(struct recipe *r,
     }
 }
 
-/* Adds a row for each file that matches PATTERN, a name or glob pattern, with
- * the values for all rows and those of LINE. */
+/* Adds a row for each lens file that matches PATTERN, a name or glob pattern.
+ * The row has the parameters of all rows and those in LINE. */
 static void add_rows_of_files(struct recipe *r, const struct recipe_lines *l,
                               const char *pattern, const char *line)
 {
@@ -148,8 +149,8 @@ static void add_rows_of_files(struct recipe *r, const struct recipe_lines *l,
     globfree(&files);
 }
 
-/* Adds a row for each lens in LINE, followed by PARAMETER=VALUE words for these
- * rows. */
+/* Adds a row for each lens at the start of LINE. The PARAMETER=VALUE words
+ * after the lenses apply to these rows. */
 static void add_rows_of_lenses(struct recipe *r, const struct recipe_lines *l,
                                const char *line)
 {
@@ -174,8 +175,8 @@ static void make_recipe_rows(struct recipe *r, const struct recipe_lines *l)
 
 /* ------------------------------------------------------------------ reading */
 
-/* Adds the metrics of column C to the recipe; marks a column without metrics as
- * a key. */
+/* Adds the metrics in column C to the recipe. A column without metrics is
+ * marked as a key. */
 static void collect_column_metrics(struct recipe *r, struct recipe_column *c)
 {
     c->is_key = true;
@@ -253,8 +254,8 @@ char *recipe_parse(struct recipe *r, char *text, const char *name)
             continue;
         if (*line != ' ') {
             if (is_it && (l.n_lenses || name)) {
-                line[strlen(line)] = '\n'; /* restores the line end, as the text
-                                              is parsed again */
+                /* restores the line end because the text is parsed again */
+                line[strlen(line)] = '\n';
                 break;
             }
             line[strcspn(line, " ")] = '\0';

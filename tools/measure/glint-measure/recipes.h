@@ -11,7 +11,8 @@
 
 enum { RECIPE_LINES = 128, RECIPE_ROWS = 512, ROW_PARAMETERS = 32 };
 
-/* A row: PARAMETER=VALUE texts; the last text of a parameter applies */
+/* A row: texts PARAMETER=VALUE. If a parameter occurs several times, the last
+ * value applies. */
 struct recipe_row {
     const char *set[ROW_PARAMETERS];
     int n;
@@ -21,7 +22,7 @@ struct recipe_row {
  * {METRIC%FORMAT} or {METRIC%FORMAT~TOLERANCE}. */
 struct recipe_column {
     const char *title, *cell;
-    /* whether the column has no metric and so identifies the row */
+    /* true: the column has no metrics; such columns identify the row */
     bool is_key;
 };
 
@@ -43,12 +44,12 @@ struct recipe {
  * recipe, or NULL if NAME does not exist. */
 char *recipe_parse(struct recipe *recipe, char *text, const char *name);
 
-/* Returns the value of PARAMETER in ROW, for a lens its name, or NULL if it is
- * not set. */
+/* Returns the value of PARAMETER in ROW, or NULL if it is not set. The value of
+ * the parameter "lens" is the lens's name. */
 const char *recipe_find_value(const struct recipe_row *row,
                               const char *parameter);
 
-/* Returns whether ROW has all of WORDS. */
+/* Returns whether ROW has all PARAMETER=VALUE words in WORDS. */
 bool recipe_row_has_parameter(const struct recipe_row *row, const char *words);
 
 #endif

@@ -19,8 +19,8 @@
     "edges,refs,bundles,ghosts,arena_kib,arena_mib,plan_ms,bin_ms,draw_ms," \
     "cpu_ms,minsn"
 
-/* Has external linkage and is not inlined, so that callgrind can count the
- * instructions of the last frame only. */
+/* Not static and never inlined, because callgrind finds the last frame by the
+ * name of this function and counts its instructions. */
 enum glint_status measured_frame(struct glint_engine *engine,
                                  const struct glint_lamp *lamps, int n,
                                  double scale, const struct glint_image *image,
@@ -274,7 +274,7 @@ static enum glint_status create_row_engine(struct figure_row *r,
 
     canvas_open_engine(r->tool, &r->opened, &r->settings, r->width, r->height,
                        &cfg);
-    cfg.workers = NULL; /* no thread pool: one thread */
+    cfg.workers = NULL; /* without a pool the engine uses one thread */
     if (r->settings.options.starburst > 0)
         cfg.drawing.parts |= GLINT_ENGINE_CORES;
     if (r->dust_log2)
@@ -361,8 +361,8 @@ static void free_row_frame(struct frame *f)
     free(f->codes);
 }
 
-/* Draws the reference image: the same row with the parameters of
- * r->reference. */
+/* Draws the reference image: the image of the same row after the parameters in
+ * r->reference are set. */
 static enum glint_status draw_reference_image(struct figure_row *r,
                                               struct frame *f)
 {
@@ -398,8 +398,8 @@ static enum glint_status draw_reference_image(struct figure_row *r,
     return status;
 }
 
-/* Sets the exposure and draws the reference image: that of the reference row,
- * or exact rays. */
+/* Sets the exposure and draws the reference image. This is the image of the
+ * reference row, if there is one, else an image by exact rays. */
 static enum glint_status set_exposure(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;

@@ -19,42 +19,47 @@ struct figure_row {
     const char *lens;    /* path of a lens table or model */
     struct settings settings;
     struct opened_lens opened;
-    /* the lens table; for a model only its name is set */
+    /* the lens table; only its name is set if the lens is a model */
     struct glint_prescription table;
     int width, height, n_lights;
     double theta, phi; /* direction of the first light, degrees */
     /* power of all lights, stops above white at exposure 1; NAN: the exposure
-     * is computed by the brightness of the flare */
+     * is computed from the brightness of the flare instead */
     double stops;
-    int dust_log2; /* log2 of the cells per side of dust tables; 0: set by the
-                      quality */
-    int grid;      /* cells per side of the exact picture's rays */
-    int rounds;    /* number of frames drawn; times are the minimum over them */
-    /* linear: the flare in linear light; codes: in sRGB codes on black; frame:
-     * drawn in place onto a dim YUYV frame, as glint bench does. */
+    /* log2 of the number of cells per side of dust tables; 0: the quality
+     * determines it */
+    int dust_log2;
+    int grid;   /* cells per side of the grid of rays for the exact image */
+    int rounds; /* number of frames drawn; the min of their times is reported */
+    /* Type of the image. "linear": the flare in linear light; "codes": the
+     * flare in sRGB codes on black; "frame": the flare drawn in place onto a
+     * dim YUYV frame, as in glint bench. */
     const char *picture;
-    /* "PARAMETER=VALUE;...": pictures in codes are compared with the same row
-     * with these parameters; NULL: with exact rays */
+    /* Parameters "PARAMETER=VALUE;..." of the reference image with which images
+     * of type "codes" are compared. NULL: the reference image has exact
+     * rays. */
     const char *reference;
-    double bake_stop; /* f-number to bake a model for; tables with a narrower
-                         stop use their own. Below 0: use the cached model. */
-    double nm[GLINT_MAX_WAVELENGTHS]; /* wavelengths of the ray metrics */
+    /* f-number to bake a model for; tables with a smaller max aperture use
+     * their own f-number. Below 0: use the cached model. */
+    double bake_stop;
+    /* wavelengths at which model and exact rays are compared, nm */
+    double nm[GLINT_MAX_WAVELENGTHS];
     int n_nm;
-    double step_deg; /* step between angles of the ray metrics */
+    double step_deg; /* step between angles of this comparison */
 };
 
-/* Sets ROW to the defaults, then by N texts PARAMETER=VALUE: members above by
- * name, or options of the engine. ASSIGNMENT must outlive ROW. Returns an exit
- * code. */
+/* Sets ROW to the defaults, then applies the N texts PARAMETER=VALUE in
+ * ASSIGNMENT. A parameter is the name of a member above or of an engine option.
+ * ASSIGNMENT must outlive ROW. Returns an exit code. */
 int row_parse(struct figure_row *row, struct tool *tool, int n,
               char **assignment);
 
 /* Measures ROW and prints a JSON object. Returns an exit code. */
 int row_measure(struct figure_row *row);
 
-/* Write the errors of the model against exact rays (rays.c), and the positions
- * of lights and ghosts by the lens's projection (places.c). Return an exit
- * code. */
+/* row_measure_ray_errors() (rays.c) writes the errors of the model against
+ * exact rays. row_measure_ghost_positions() (places.c) writes the positions of
+ * lights and ghosts by the lens's projection. Both return an exit code. */
 #define ROW_RAYS                                                             \
     "rays,sensor_p99,sensor_p99_ghosts,stop_rms,stop_rms_ghosts,energy_p99," \
     "energy_p99_ghosts,lost,lost_light,ghosts_seen,ghosts_miss,angles_seen," \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Plots as SVG: panels with two axes, marks and lines. HTML pages with tables
- * (html.c) and pictures (png.c).
+ * Writes plots as SVG: panels with two axes, marks and lines. Writes HTML pages
+ * with tables (html.c) and pictures (png.c).
  */
 #ifndef GLINT_TOOLS_LAB_PLOTS_PLOT_H
 #define GLINT_TOOLS_LAB_PLOTS_PLOT_H

@@ -103,8 +103,8 @@ static void write_base64(FILE *file, const uint8_t *data, size_t n)
     }
 }
 
-/* Returns an uncompressed PNG file, which the caller frees; its member at is
- * NULL if there is no memory. */
+/* Returns an uncompressed PNG file, which the caller frees. If there is no
+ * memory, its member at is NULL. */
 static struct bytes make_uncompressed_png(const uint8_t *rgb, int width,
                                           int height)
 {
@@ -126,8 +126,9 @@ static struct bytes make_uncompressed_png(const uint8_t *rgb, int width,
     start = begin_png_chunk(&b, "IHDR");
     append_be32(&b, (uint32_t)width);
     append_be32(&b, (uint32_t)height);
-    append_bytes(&b, "\x08\x02\0\0", 5); /* 8 bits, RGB, no filter and
-                                   interlace; the last 0 is the string's */
+    /* 8 bits, RGB, default compression and filter, no interlace; the fifth byte
+     * is the 0 that ends the C string */
+    append_bytes(&b, "\x08\x02\0\0", 5);
     end_png_chunk(&b, start);
     start = begin_png_chunk(&b, "IDAT");
     append_pixel_rows(&b, rows, n);
