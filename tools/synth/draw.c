@@ -179,9 +179,8 @@ static void interpolate_light(const struct glint_float_image *from, double x,
     }
 }
 
-/* Resamples the crop of FROM that ITEM defines to RGB. A pixel is the mean
- * of N x N points, where N is the number of pixels of FROM per pixel of RGB,
- * in one direction. */
+/* Resamples the crop of FROM, which ITEM defines, to RGB. A pixel of RGB is the
+ * mean of N x N points, where N is the ratio of the pixel sizes. */
 static void resample_cropped_background(const struct glint_float_image *from,
                                         const struct synth_item *item,
                                         float *rgb)
@@ -213,8 +212,8 @@ static void resample_cropped_background(const struct glint_float_image *from,
         }
 }
 
-/* Scales RGB so that its mean light is LEVEL, by SYNTH_LEAST_EV to
- * SYNTH_MOST_EV stops. Returns the stops. */
+/* Scales RGB such that its mean light is LEVEL. The factor, in stops, is
+ * limited to SYNTH_LEAST_EV .. SYNTH_MOST_EV. Returns it. */
 static double scale_to_mean_level(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
@@ -341,7 +340,8 @@ int synth_lens_open(const struct tool *tool, struct synth_lenses *lenses,
     *lens = calloc(1, sizeof **lens);
     if (!*lens)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    /* the lens is listed even if opening fails, so that it is closed later */
+    /* The lens is added to the list even if opening fails, so that it is closed
+     * later. */
     lenses->lens[lenses->n++] = *lens;
     return open_lens_by_name(tool, *lens, item);
 }
@@ -354,7 +354,8 @@ void synth_lenses_close(struct synth_lenses *lenses)
     }
 }
 
-/* Sets the stop of LENS and the dirt on its front element by ITEM. */
+/* Sets the stop of LENS, and the dirt on its front element, to the values in
+ * ITEM. */
 static int set_lens_stop_and_dirt(const struct tool *tool,
                                   struct synth_lens *lens,
                                   const struct synth_item *item,
@@ -375,8 +376,8 @@ static int set_lens_stop_and_dirt(const struct tool *tool,
     camera->front_dirt.dust = item->front_dust;
     camera->front_dirt.dust_seed = (int)item->front_dust_seed;
     result->f_number = lens->widest * exp2(item->stops_down / 2);
-    /* 0 stops down requests no f-number, as rounding might make it wider
-     * than the model's stop. */
+    /* If stops_down is 0, the f-number is not set. Rounding might make it wider
+     * than the stop of the model. */
     s->options.f_number = item->stops_down > 0 ? result->f_number : 0;
     status = opened_lens_set_stop(&lens->opened, s, &error);
     if (status != GLINT_OK)
@@ -455,7 +456,8 @@ static void draw_light_discs(const struct synth_item *item,
         const double y = item->light[i].y * item->height;
 
         result->power[i] = lamp[i].power;
-        /* Lights that cause flare are at least twice as bright as white. */
+        /* A light that causes flare is drawn at least twice as bright as
+         * white. */
         result->white[i] =
             fmax(result->power[i] / (GLINT_PI * radius * radius), 2);
         for (int row = 0; row < d->height; row++)
@@ -507,13 +509,12 @@ static int draw_flare_part(const struct tool *tool,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Returns the power of the lights. IMAGE shows their ghosts at power 1. The
- * brightest 0.1 % of the pixels get the light LEVEL, but the mean is at most
- * SYNTH_MOST_MEAN times LEVEL, as wide ghosts that fill the image would hide
- * everything else. */
-static double
-compute_light_power_for_ghost_level(const struct glint_float_image *image,
-                                    double level)
+/* Returns the power of the lights at which the brightest 0.1 % of the ghosts'
+ * pixels have the light LEVEL. IMAGE shows the ghosts at power 1. The power is
+ * reduced if the mean light would exceed SYNTH_MOST_MEAN times LEVEL, because
+ * wide ghosts that fill the image would hide everything else. */
+static double compute_light_power(const struct glint_float_image *image,
+                                  double level)
 {
     const size_t n = 3 * (size_t)image->width * (size_t)image->height;
     const double by_peak = level * glint_measure_exposure(image);
@@ -538,7 +539,8 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     const size_t n = 3 * (size_t)d->width * (size_t)d->height;
     float *const ghosts = d->layer[SYNTH_GHOSTS];
     float *const glare = d->layer[SYNTH_GLARE];
-    /* scratch memory, as the sources are drawn last */
+    /* The layer of the sources serves as scratch memory, because it is drawn
+     * last. */
     float *const spare = d->layer[SYNTH_SOURCE];
     struct glint_float_image image = wrap_pixels_as_image(d, ghosts);
     struct glint_lamp lamp[SYNTH_MAX_LIGHTS] = {{.power = 0}};
@@ -549,7 +551,7 @@ static int draw_flare(const struct tool *tool, const struct synth_lens *lens,
     code = draw_flare_part(tool, lens, item, lamp, GLINT_ENGINE_GHOSTS, ghosts);
     if (code != EXIT_OK)
         return code;
-    power = compute_light_power_for_ghost_level(&image, item->ghost_level);
+    power = compute_light_power(&image, item->ghost_level);
     scale_pixels(ghosts, n, power);
     /* Haze is quantised to 1e-6 of white, so lamps must have their final
      * power. */

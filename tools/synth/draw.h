@@ -3,9 +3,10 @@
  * draw.h - draws the layers of an item of a data set, in linear light, and
  * simulates a sensor's image of them.
  *
- * ghost_level sets the brightness of the ghosts. The power of the lights
- * follows from it, and from that the brightness of the lights, the starburst
- * and the haze; item->star scales the starburst.
+ * The item's ghost_level sets the brightness of the ghosts. The power of the
+ * lights follows from this brightness. The power determines the brightness of
+ * the lights' discs, the starburst and the haze. The item's star scales the
+ * starburst.
  */
 #ifndef GLINT_TOOLS_SYNTH_DRAW_H
 #define GLINT_TOOLS_SYNTH_DRAW_H
@@ -31,11 +32,11 @@ struct synth_drawing {
     int width, height;
     float *layer[SYNTH_LAYERS]; /* linear light of each layer,
                                    [height][width][3] */
-    /* [height][width][3], fraction of the pixel covered by lights, 0 .. 1 */
+    /* fraction of each pixel that lights cover, 0 .. 1, [height][width][3] */
     float *cover;
 };
 
-/* Max mean light of ghosts at a ghost_level of 1, 1 = white */
+/* max mean light of the ghosts if ghost_level is 1, where 1 is white */
 #define SYNTH_MOST_MEAN 0.2
 
 enum { SYNTH_MAX_LENSES = 64 };

@@ -7,9 +7,10 @@
  *     synth_item_format_json(&text, &item, &result);  as a line of a manifest
  *     synth_item_parse_json(&item, line, &error);  reads that line
  *
- * Each number depends only on the seed, the item's number and its own name, so
- * adding a member changes no other. Numbers are rounded to 1e-6, which the line
- * stores exactly, so the line reproduces the item.
+ * Each random number depends only on the seed, the item's number and the name
+ * of the member. A new member therefore does not change the values of other
+ * members. Numbers are rounded to 1e-6 and stored exactly, so that a line of
+ * the manifest reproduces the item.
  */
 #ifndef GLINT_TOOLS_SYNTH_ITEM_H
 #define GLINT_TOOLS_SYNTH_ITEM_H
@@ -24,10 +25,12 @@
 enum { SYNTH_MAX_LIGHTS = 4, SYNTH_NAME_BYTES = 256 };
 
 struct synth_light {
-    /* position from the top left, fractions of the picture's sides */
+    /* position of the light, from the top left, as fractions of the picture's
+     * width and height */
     double x, y;
     double radius; /* radius of the disc, fraction of the picture's height */
-    double power;  /* power relative to the first light, before ghost_level */
+    /* power relative to the first light; ghost_level scales all lights */
+    double power;
     double kelvin; /* colour temperature of a black body */
 };
 
@@ -40,10 +43,10 @@ struct synth_item {
     char lens[64], coating[64];
     double quality;
 
-    /* The crop of the background: its size, as a fraction of the largest
-     * crop of that shape; its position, 0 .. 1; whether it is mirrored; and
-     * the mean light to which it is scaled (1 = white), by SYNTH_LEAST_EV to
-     * SYNTH_MOST_EV stops. */
+    /* The crop of the background. crop: its size, as a fraction of the largest
+     * crop of that shape. crop_x, crop_y: its position, 0 .. 1. mirrored: 1 if
+     * it is mirrored. level: mean light to which it is scaled (1 = white), by
+     * SYNTH_LEAST_EV to SYNTH_MOST_EV stops. */
     double crop, crop_x, crop_y, mirrored, level;
 
     /* The aperture stop: stops below the widest opening, and members of struct
@@ -51,10 +54,10 @@ struct synth_item {
     double stops_down, blades, rotation, roundness, softness;
     double dust, dust_seed, front_dust, front_dust_seed, haze;
 
-    /* ghost_level: light of the brightest 0.1 % of the ghosts' pixels, which
-     * determines the power of the lights; reduced if the mean would exceed
-     * SYNTH_MOST_MEAN times ghost_level. star: factor on the starburst of
-     * these lights. */
+    /* ghost_level: light of the brightest 0.1 % of the ghosts' pixels, from
+     * which the power of the lights follows. The power is reduced if the mean
+     * light of the ghosts would exceed SYNTH_MOST_MEAN times ghost_level. star:
+     * factor on the brightness of the starburst. */
     double ghost_level, star;
 
     double read_noise, full_well; /* read noise, fraction of white; full well,
@@ -69,8 +72,9 @@ enum { SYNTH_LEAST_EV = -7, SYNTH_MOST_EV = 1 };
 /* Results for readers of a manifest; drawing does not use them. */
 struct synth_result {
     double background_ev, f_number, focal_mm, sensor_width_mm;
-    /* per light: power, display white x pixels; light of its disc, 1 =
-     * white; angle off the axis and azimuth, degrees; linear colour */
+    /* Values per light. power: in units of white x pixels; white: light of its
+     * disc, 1 = white; theta_deg, phi_deg: angle off the axis and azimuth; rgb:
+     * linear colour. */
     double power[SYNTH_MAX_LIGHTS], white[SYNTH_MAX_LIGHTS],
         theta_deg[SYNTH_MAX_LIGHTS], phi_deg[SYNTH_MAX_LIGHTS],
         rgb[SYNTH_MAX_LIGHTS][3];
@@ -111,8 +115,8 @@ int synth_item_draw_random_index(const struct synth_item *item,
                                  const char *what, int n);
 
 /* synth_item_init_random_state() returns the initial state of a random
- * generator for WHAT of ITEM; synth_draw_random_bits() returns its next 64 bits
- * [Steele14]. */
+ * generator for the purpose WHAT of ITEM. synth_draw_random_bits() advances the
+ * state and returns the next 64 bits [Steele14]. */
 uint64_t synth_item_init_random_state(const struct synth_item *item,
                                       const char *what);
 uint64_t synth_draw_random_bits(uint64_t *state);
