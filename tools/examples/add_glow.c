@@ -13,8 +13,8 @@ static uint16_t square_q16(uint16_t x_q16)
     return (uint16_t)((uint32_t)x_q16 * x_q16 >> 16);
 }
 
-/* Sets RGB to a glow around (X0, Y0), white at the centre and redder further
- * out. Red falls to a quarter at RADIUS pixels. */
+/* Sets RGB to a glow around (X0, Y0), which is white at the centre and redder
+ * at larger distances. Red falls to a quarter at RADIUS pixels. */
 static void compute_glow_rgb(uint16_t *const rgb[3], int width, int height,
                              int x0, int y0, int radius)
 {

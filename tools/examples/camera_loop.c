@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - draws the flare of the lamps
- * in each frame of a camera, with one thread per processor. Frames are 640x480,
- * read by read(), which the simplest cameras support. DEVICE may be a file of
- * such frames.
+ * in each frame of a camera, with one thread per processor. Frames have 640x480
+ * pixels. They are read by read(), which the simplest cameras support. DEVICE
+ * may also be a file of such frames.
  */
 #include <fcntl.h>
 #include <stdio.h>
@@ -20,8 +20,8 @@ enum { WIDTH = 640, HEIGHT = 480, BYTES = 2 * WIDTH * HEIGHT, US = 33333 };
 
 static unsigned char frame[BYTES], model[8 << 20];
 
-/* Requests 640x480 YUYV from CAMERA. Returns true also if CAMERA is not a
- * device, as a file has a fixed format. */
+/* Requests 640x480 YUYV from CAMERA. Also returns true if CAMERA is a file,
+ * whose format is fixed. */
 static int request_camera_format(int camera)
 {
     struct v4l2_capability can;

@@ -2,8 +2,8 @@
  *
  * draw_flare MODEL IN.ppm X Y STOPS >OUT.ppm - draws the ghosts of a white lamp
  * at a pixel, STOPS stops brighter than white. Written for an embedded board:
- * no malloc and no floating point (make lint checks that), all memory is
- * static, and it links only the edge renderer for 8-bit pictures.
+ * it uses no malloc and no floating point (make lint checks this). All memory
+ * is static. It links only the renderer of 8-bit pictures.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,7 +37,8 @@ static size_t load_file(const char *path, void *block, size_t room)
     return bytes;
 }
 
-/* Parses the number at *AT, after one white space, and moves *AT past it. */
+/* Skips one white-space character at *AT, parses the number behind it, and
+ * moves *AT past the number. */
 static int parse_number(const uint8_t **at)
 {
     int n = 0;

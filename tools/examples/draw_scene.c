@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * draw_scene SCENE IN.ppm >OUT.ppm - draws balls and planes of a baked scene
- * onto a picture. It does not refer to other scene modules, so it links no
- * meshes, textures, reflections, lens or flare; scenes that have these are
- * rejected.
+ * onto a picture. The program contains no code for meshes, textures,
+ * reflections, lenses or flares, because it does not refer to these modules. It
+ * rejects scenes that need them.
  */
 #include "glint/kernels.h"
 #include "glint/scene/scene.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * embed LENS IN.ppm >OUT.ppm - adds the flare of the lamps in a picture, the
- * same as glint overlay --stop polygon:8 --coating table. LENS is a baked model
- * or, unless EMBED_MODELS is defined, a lens table.
+ * embed LENS IN.ppm >OUT.ppm - adds the flare of the lamps in a picture. The
+ * result equals that of glint overlay --stop polygon:8 --coating table. LENS is
+ * a baked model; without EMBED_MODELS it may also be a lens table.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws a baked scene over a picture,
- * then the flare of its lamps and of the picture's lamps that stay visible, the
- * same as glint overlay --scene --stop polygon:8. LENS is baked, too.
+ * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws a baked scene over a picture.
+ * Then draws the flare of the scene's lamps and of those lamps in the picture
+ * that the scene does not cover. The result equals that of glint overlay
+ * --scene --stop polygon:8. LENS is a baked model.
  */
 #include "glint/engine.h"
 #include "glint/kernels.h"

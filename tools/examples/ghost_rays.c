@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ghost_rays MODEL GHOST SINE - prints where a fan of a ghost's rays meets the
- * sensor, for a light at the angle off the axis with sine SINE. Links only
- * glint's transfer polynomials.
+ * ghost_rays MODEL GHOST SINE - prints the points at which a fan of rays of a
+ * ghost meets the sensor. SINE is the sine of the angle between the light and
+ * the axis. Links only glint's transfer polynomials.
  */
 #include <math.h>
 

@@ -10,8 +10,8 @@
 
 #include "glint/model.h"
 
-/* Returns the content of the file PATH, which the caller frees, and sets
- * *BYTES; NULL if it cannot be read. */
+/* Returns the content of the file PATH and sets *BYTES to its size. The caller
+ * frees it. Returns NULL if the file cannot be read. */
 static inline void *read_all(const char *path, size_t *bytes)
 {
     FILE *file = fopen(path, "rb");
@@ -32,8 +32,9 @@ static inline void *read_all(const char *path, size_t *bytes)
     return data;
 }
 
-/* Opens the model in the file PATH. Returns its memory, which the caller frees,
- * or NULL after printing why it is not a model. */
+/* Opens the model in the file PATH as LENS. Returns its memory, which the
+ * caller frees. If the file is not a model, prints the reason and returns
+ * NULL. */
 static inline void *model_read(const char *path, struct glint_lens *lens)
 {
     const char *reason = "cannot be read";

@@ -65,8 +65,9 @@ void filter_set_live_values(struct filter *f,
 void filter_set_values(struct filter *f, const struct filter_values *values)
 {
     if (!filter_values_same_except_live(&f->values, values)) {
-        close_filter_drawing(f); /* close the drawing first: its options point
-                                    to texts of the old values */
+        /* The drawing is closed first, because its options point to the texts
+         * of the old values. */
+        close_filter_drawing(f);
         filter_values_free(&f->values);
         filter_values_copy(&f->values, values);
         f->failed = false;

@@ -21,14 +21,15 @@ enum { FILTER_MAX = 16 }; /* max number of parameters */
 
 enum filter_type { FILTER_NUMBER, FILTER_SWITCH, FILTER_TEXT };
 
-/* A parameter shown by hosts: an engine option with this name, or auto, x
- * and y, which place a lamp manually. */
+/* A parameter that hosts show. It is an engine option of this name, or one of
+ * auto, x and y, which place a lamp manually. */
 struct filter_parameter {
     const char *name, *label, *help;
     enum filter_type type;
-    double low, high, initial; /* in the option's unit; for a switch 0 or 1 */
-    bool is_live;              /* true: a change takes effect with the next
-                                  picture, without opening the lens again */
+    /* range and default, in the option's unit; for a switch 0 or 1 */
+    double low, high, initial;
+    bool is_live; /* true: a change takes effect with the next
+                     picture, without opening the lens again */
 };
 
 /* Sets PARAMETER to parameter INDEX, counted from 0. Returns false if there is
@@ -37,17 +38,19 @@ bool filter_get_parameter(int index, struct filter_parameter *parameter);
 
 /* Values of all parameters */
 struct filter_values {
-    double number[FILTER_MAX]; /* a number's value; 0 or 1 for a switch */
-    char *text[FILTER_MAX];    /* owned, or NULL for "" */
+    double number[FILTER_MAX]; /* value of each number; 0 or 1 for a switch */
+    /* value of each text, owned by the struct; NULL means "" */
+    char *text[FILTER_MAX];
 };
 
 /* Sets VALUES to the defaults; frees its texts. */
 void filter_values_init(struct filter_values *values);
 void filter_values_free(struct filter_values *values);
 
-/* Set the parameter INDEX. A number is clamped to its range; if it is not
- * finite, the default is set. A number at its default, or an empty text, has no
- * effect on the value that the style sets. A TEXT of NULL is "". */
+/* filter_set_number() and filter_set_text() set the parameter INDEX. NUMBER is
+ * clamped to its range; if it is not finite, the default is set. A number that
+ * equals its default, and an empty text, leave the value to the style. A TEXT
+ * of NULL means "". */
 void filter_set_number(struct filter_values *values, int index, double number);
 void filter_set_text(struct filter_values *values, int index, const char *text);
 
@@ -67,9 +70,9 @@ void filter_set_values(struct filter *filter,
 void filter_set_live_values(struct filter *filter,
                             const struct filter_values *values);
 
-/* filter_has_size() returns whether FILTER draws pictures of WIDTH x HEIGHT,
- * filter_is_reusable() also whether it can draw with VALUES without opening its
- * lens again. */
+/* filter_has_size() returns whether FILTER draws pictures of WIDTH x HEIGHT.
+ * filter_is_reusable() returns whether it also can draw with VALUES without
+ * opening its lens again. */
 bool filter_has_size(const struct filter *filter, int width, int height);
 bool filter_is_reusable(const struct filter *filter,
                         const struct filter_values *values, int width,
@@ -80,14 +83,14 @@ bool filter_is_reusable(const struct filter *filter,
 bool filter_open_lens(struct filter *filter);
 
 /* Returns the cause of the last failure of filter_draw_flare() or
- * filter_open_lens(), or
- * "" if it was only printed to standard error. */
+ * filter_open_lens(). Returns "" if the cause was only printed to standard
+ * error. */
 const char *filter_error_text(const struct filter *filter);
 
-/* Draws the flare onto IMAGE, ELAPSED_US microseconds after the previous
- * picture; 0: a still image. On failure prints the cause to standard error,
- * once, and returns false; pictures then remain unchanged until a parameter
- * that is not live changes. */
+/* Draws the flare onto IMAGE. ELAPSED_US: microseconds since the previous
+ * picture; 0: a still image. On the first failure prints the cause to standard
+ * error. Returns false on failure; pictures then remain unchanged until a
+ * parameter that is not live changes. */
 bool filter_draw_flare(struct filter *filter, const struct glint_image *image,
                        int32_t elapsed_us);
 

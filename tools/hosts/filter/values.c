@@ -10,14 +10,14 @@
 /* A parameter. Range, default and help are those of the option NAME. */
 struct row {
     const char *name;
-    /* upper end of the range in hosts, where frei0r's value is 1; 0: that of
-     * the option */
+    /* upper end of the range that hosts show, which is the value 1 of frei0r;
+     * 0: upper end of the option's range */
     double high;
     const char *label; /* label; NULL: same as NAME */
 };
 
-/* In the order in which ffmpeg passes parameters to frei0r, so new rows must
- * be appended. Only the name is required. */
+/* ffmpeg passes parameters to frei0r in this order, so new rows must be
+ * appended. Only the name is required. */
 static const struct row rows[FILTER_MAX] = {
     {"lens", 0, "Lens: name or file"},
     {"strength", 1, "Strength"},
@@ -31,8 +31,8 @@ static const struct row rows[FILTER_MAX] = {
     {"style", 0, "Style"},
 };
 
-/* Returns the type in hosts. A number without a default, such as the
- * f-number, is a text: "" means the lens's value. */
+/* Returns the type that hosts show for OPTION. A number without a default, such
+ * as the f-number, is shown as a text; "" means the value of the lens. */
 static enum filter_type find_parameter_type(const struct glint_option *option)
 {
     if (option->type == GLINT_OPTION_FLAG)

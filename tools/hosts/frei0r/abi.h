@@ -3,10 +3,10 @@
  * abi.h - the binary interface of frei0r 1, version 1.2, rewritten: the
  * functions that hosts call in a plug-in, with their structs and constants.
  *
- * A host calls f0r_init() once, then makes instances. Different instances may
- * be called at the same time from different threads, one instance from one
- * thread at a time. Pictures have 4 bytes per pixel and rows without padding,
- * the top row first.
+ * A host calls f0r_init() once, then makes instances. Several threads may call
+ * different instances at the same time, but only one thread at a time calls a
+ * given instance. Pictures have 4 bytes per pixel and no padding; the top row
+ * comes first.
  */
 #ifndef GLINT_TOOLS_FREI0R_ABI_H
 #define GLINT_TOOLS_FREI0R_ABI_H
@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 enum { F0R_MAJOR = 1 };
-/* types of plug-in; filter: one picture in, one out */
+/* type of plug-in: a filter, which makes one picture from one */
 enum { F0R_FILTER = 0 };
 enum { F0R_BGRA = 0 }; /* colour models: bytes B, G, R, A */
 enum f0r_type {
@@ -40,7 +40,8 @@ struct f0r_param {
 
 #define F0R_EXPORT __attribute__((visibility("default")))
 
-/* Called when the host loads the plug-in (returns 1) and unloads it. */
+/* The host calls f0r_init() after it has loaded the plug-in, and f0r_deinit()
+ * before it unloads it. f0r_init() returns 1. */
 F0R_EXPORT int f0r_init(void);
 F0R_EXPORT void f0r_deinit(void);
 
@@ -51,8 +52,8 @@ F0R_EXPORT void f0r_get_param_info(struct f0r_param *info, int index);
 F0R_EXPORT void *f0r_construct(unsigned width, unsigned height);
 F0R_EXPORT void f0r_destruct(void *instance);
 
-/* VALUE points to a double or a char *. Set copies strings; strings that get
- * returns belong to the instance. */
+/* VALUE points to a double or a char *. f0r_set_param_value() copies strings.
+ * Strings that f0r_get_param_value() returns belong to the instance. */
 F0R_EXPORT void f0r_set_param_value(void *instance, void *value, int index);
 F0R_EXPORT void f0r_get_param_value(void *instance, void *value, int index);
 

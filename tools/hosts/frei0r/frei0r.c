@@ -26,7 +26,7 @@ struct instance {
     double seconds; /* time of the last picture; NAN: none yet */
 };
 
-/* Numeric parameters of frei0r are 0 .. 1. */
+/* All numeric parameters of frei0r have the range 0 .. 1. */
 int f0r_init(void)
 {
     struct filter_parameter p;
@@ -81,8 +81,8 @@ static bool stop_at_first_lens(void *ctx, const char *name)
     return false;
 }
 
-/* Returns whether any lens is installed. It is checked when an instance is
- * created, as frei0r cannot report later failures. */
+/* Returns whether any lens is installed. This is checked when an instance is
+ * created, because frei0r cannot report failures later. */
 static bool has_installed_lenses(void)
 {
     if (lens_files_visit_all(stop_at_first_lens, NULL) > 0)
@@ -150,10 +150,10 @@ void f0r_get_param_value(void *instance, void *value, int index)
         *(double *)value = (values->number[index] - p.low) / (p.high - p.low);
 }
 
-/* Returns the microseconds since the last picture. For the first picture,
- * and after a jump back, returns those of 25 pictures per second. Ten
- * seconds and more are read as milliseconds, as ffmpeg 5.1 passes the time
- * times 1000. */
+/* Returns the microseconds since the last picture. For the first picture, and
+ * after a jump back, returns the duration of a frame at 25 pictures per second.
+ * A difference of ten seconds or more is taken as milliseconds, because ffmpeg
+ * 5.1 passes the time times 1000. */
 static int32_t compute_elapsed_us(const struct instance *i, double seconds)
 {
     const double us = 1e6 * (seconds - i->seconds);

@@ -20,8 +20,9 @@ G_DECLARE_FINAL_TYPE(GlintFlareElement, glint_flare_element, GLINT, FLARE,
 
 struct _GlintFlareElement {
     GstVideoFilter parent;
-    /* values of the properties, guarded by the object's lock; copied before
-     * each frame to the filter, which only the streaming thread uses */
+    /* Values of the properties, guarded by the object's lock. They are copied
+     * to FILTER before each frame, because only the streaming thread uses
+     * FILTER. */
     struct filter_values values;
     struct filter *filter;
     struct glint_image image; /* format, size and colours of frames */
@@ -116,8 +117,8 @@ static gboolean find_pixel_format(GstVideoFormat from,
     return FALSE;
 }
 
-/* Returns the transfer curve of the frames: that of the caps, or the usual one
- * for RGB or luma. */
+/* Returns the transfer curve of the frames: the curve that the caps state,
+ * otherwise the usual one for RGB or for luma. */
 static enum glint_tone find_transfer_curve(const GstVideoInfo *info)
 {
     switch (info->colorimetry.transfer) {
@@ -163,8 +164,9 @@ static gboolean set_caps_info(GstVideoFilter *base, GstCaps *in_caps,
     return find_pixel_format(GST_VIDEO_INFO_FORMAT(in), &e->image.format);
 }
 
-/* Returns the microseconds since the last frame drawn: the nominal duration
- * of the caps, except after a gap, as when late frames were dropped. */
+/* Returns the microseconds since the last frame drawn. This is the nominal
+ * duration that the caps state, except after a gap, for example if late frames
+ * were dropped. */
 static gint32 compute_elapsed_us(const GlintFlareElement *e, GstClockTime now)
 {
     const gint64 us =
@@ -190,7 +192,8 @@ static GstFlowReturn transform_frame(GstVideoFilter *base, GstVideoFrame *frame)
                                        GST_FORMAT_TIME, now));
     if (GST_BUFFER_IS_DISCONT(frame->buffer) &&
         GST_CLOCK_TIME_IS_VALID(e->last) && now <= e->last)
-        close_element_filter(e); /* open the lens again after a jump back */
+        /* After a jump back in time, the lens is opened again. */
+        close_element_filter(e);
     if (!e->filter)
         e->filter =
             filter_create("glintflare", e->image.width, e->image.height);

@@ -42,9 +42,10 @@ static bool find_pixel_format(enum video_format from,
     return false;
 }
 
-/* Returns the matrix of luma that is nearest to FRAME's matrix from codes to
- * RGB: the factor from Cr to R is 1.40 in BT.601 and 1.57 in BT.709 at full
- * range. A source without a matrix has zeros. */
+/* Returns the luma matrix (BT.601 or BT.709) that is nearest to FRAME's matrix
+ * from codes to RGB. They are distinguished by the factor from Cr to R: 1.40
+ * for BT.601 and 1.57 for BT.709 at full range. If a source states no matrix,
+ * all its factors are 0. */
 static enum glint_matrix find_luma_matrix(const struct obs_source_frame *frame)
 {
     const float cr = frame->color_matrix[2];
@@ -53,8 +54,8 @@ static enum glint_matrix find_luma_matrix(const struct obs_source_frame *frame)
     return cr > between ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }
 
-/* Returns the transfer curve: that of the frame, or the usual one for RGB or
- * luma. */
+/* Returns the transfer curve that the frame states, otherwise the usual one for
+ * RGB or for luma. */
 static enum glint_tone find_transfer_curve(const struct obs_source_frame *frame,
                                            bool is_rgb)
 {
@@ -96,8 +97,9 @@ static bool set_image_to_frame(const struct obs_source_frame *frame,
 }
 
 struct opening {
-    struct filter *filter; /* owned by the thread until is_done */
-    pthread_mutex_t lock;  /* guards the following members */
+    /* used only by the thread that opens it, until is_done is true */
+    struct filter *filter;
+    pthread_mutex_t lock; /* guards the following members */
     bool is_done, is_left;
 };
 
@@ -113,7 +115,8 @@ static void *open_filter_in_thread(void *arg)
     struct opening *const o = arg;
     bool is_left;
 
-    /* if this fails, drawing fails as well and prints the cause */
+    /* The result is ignored: after a failure drawing fails, too, and prints the
+     * cause. */
     filter_open_lens(o->filter);
     pthread_mutex_lock(&o->lock);
     o->is_done = true;
@@ -147,8 +150,8 @@ static struct opening *start_filter_opening(const struct filter_values *values,
     return o;
 }
 
-/* Returns whether opening has ended, successfully or not. If so, returns the
- * filter in *FILTER and frees O. */
+/* Returns whether opening has ended, successfully or not. If it has, sets
+ * *FILTER to the filter and frees O. */
 static bool collect_opened_filter(struct opening *o, struct filter **filter)
 {
     bool is_done;
@@ -164,8 +167,8 @@ static bool collect_opened_filter(struct opening *o, struct filter **filter)
     return true;
 }
 
-/* Abandons an opening (may be NULL): its thread frees everything when it
- * ends. */
+/* Abandons the opening O, which may be NULL. Its thread frees everything when
+ * it ends. */
 static void abandon_opening(struct opening *o)
 {
     bool is_done;
@@ -186,7 +189,8 @@ OBS_DECLARE_MODULE()
 enum { FRAME_US = 40000, LONGEST_US = 10000000 };
 
 struct flare {
-    pthread_mutex_t lock; /* guards WANTED, the values set last by the user */
+    /* guards WANTED, the latest values that the user has set */
+    pthread_mutex_t lock;
     struct filter_values wanted;
     /* used only by the graphics thread: */
     struct filter *filter;
@@ -231,7 +235,7 @@ static bool add_lens_to_list(void *list, const char *name)
     return true;
 }
 
-/* Shows the position of a lamp only if lamps are not detected. */
+/* Shows the controls of the lamp's position, unless lamps are detected. */
 static bool show_lamp_position(obs_properties_t *all, obs_property_t *changed,
                                obs_data_t *data)
 {
@@ -297,8 +301,8 @@ static void print_warning_once(struct flare *f, const char *text)
     f->has_warned = true;
 }
 
-/* Disables the filter in the source, which its user sees, and closes the
- * failed filter, so that it is opened again when the user enables it. */
+/* Disables the filter in the source, so that the user sees the failure. Closes
+ * the failed filter, so that it is opened again when the user enables it. */
 static void disable_failed_filter(struct flare *f)
 {
     blog(LOG_ERROR, "glint: the filter is disabled: %s",
@@ -308,9 +312,9 @@ static void disable_failed_filter(struct flare *f)
     obs_source_set_enabled(f->source, false);
 }
 
-/* Adopts a filter whose opening has ended, starts opening another if the
- * present one does not fit, and sets the live values. Returns whether the
- * filter can draw. */
+/* Takes over a filter whose opening has ended. Starts to open another filter if
+ * the current one does not fit IMAGE and the values. Sets the live values.
+ * Returns whether the filter can draw. */
 static bool prepare_filter(struct flare *f, const struct glint_image *image)
 {
     const int w = image->width, h = image->height;
@@ -335,8 +339,8 @@ static bool prepare_filter(struct flare *f, const struct glint_image *image)
 }
 
 /* Returns the microseconds since the last frame drawn. For the first frame,
- * after a jump back and after a long gap, returns those of 25 frames per
- * second. */
+ * after a jump back and after a long gap, returns the duration of a frame at 25
+ * frames per second. */
 static int32_t compute_elapsed_us(const struct flare *f, uint64_t now_ns)
 {
     const uint64_t us = (now_ns - f->last_ns + 500) / 1000;

@@ -11,14 +11,14 @@
 #include "glint/engine.h"
 #include "glint/options.h"
 
-/* roundness of the aperture blades unless --stop sets a shape, as in glint
- * overlay */
+/* default roundness of the aperture blades, as in glint overlay; --stop may set
+ * another one */
 #define PHOTO_ROUNDNESS 0.2
 
-/* time between pictures that are drawn quickly, microseconds */
+/* assumed time between pictures if web_draw() draws quickly, microseconds */
 enum { QUICK_US = 1000000 };
 
-/* number of wavelengths of exact rays for "auto" */
+/* number of wavelengths of exact rays if the option is "auto" */
 enum { EXACT_WAVES = 9 };
 
 static struct {
@@ -27,7 +27,7 @@ static struct {
     char *text[GLINT_N_OPTIONS]; /* values of text options */
 
     struct glint_prescription table;
-    /* is_model: opened by web_open() with a WIDEST f-number */
+    /* is_model: web_open() was called with an f-number (WIDEST) */
     bool is_open, is_model;
     char name[GLINT_NAME_BYTES + 32];
     unsigned char *data;
@@ -168,8 +168,9 @@ static int move_zoom_groups(void)
     return record_status(status);
 }
 
-/* Returns the bake options of the model, those of glint overlay; for a model
- * that was requested with its own f-number, the defaults of glint bake. */
+/* Returns the options for baking the model: those of glint overlay. If
+ * web_open() was called with an f-number, returns the defaults of glint
+ * bake. */
 static struct glint_bake_options get_model_bake_options(void)
 {
     const struct glint_options *const o = &web.options;
@@ -273,8 +274,9 @@ size_t web_model_bytes(void)
 
 /* ------------------------------------------------------------------- engine */
 
-/* Sets CAMERA by the options, with the aperture blades of photographs unless
- * options or table define others, and computes the lens's setup. */
+/* Sets CAMERA from the options and computes the lens's setup. The aperture has
+ * the blades that glint overlay uses for photographs, unless the options or the
+ * table define others. */
 static int set_up_camera(struct glint_engine_camera *camera, bool exact)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
@@ -296,8 +298,9 @@ static int set_up_camera(struct glint_engine_camera *camera, bool exact)
                                             &web.dirt, &web.error));
 }
 
-/* Cache of the responses (brightness of the flare) of recent lenses and
- * stops; measuring one takes about as long as drawing a coarse picture. */
+/* Cache of the responses (brightness of the flare) of the lenses and stops that
+ * were used last. It saves time because measuring a response takes about as
+ * long as drawing a coarse picture. */
 enum { KEPT = 16, KEPT_BYTES = 4096 };
 static struct {
     uint64_t key;
@@ -380,7 +383,8 @@ double *web_lamps(void)
     return web.row[0];
 }
 
-/* Writes the row of LAMP that glint overlay --save-lights would write. */
+/* Sets ROW to the values of LAMP, in the units of the file that glint overlay
+ * --save-lights writes. */
 static void write_lamp_row(double row[WEB_COLUMNS],
                            const struct glint_engine_lamp *lamp)
 {
@@ -402,7 +406,8 @@ static void write_lamp_row(double row[WEB_COLUMNS],
     row[WEB_SEEN] = fmax(lamp->seen_px, 0);
 }
 
-/* Returns the lamp that glint overlay --lights would read from ROW. */
+/* Returns the lamp that ROW describes, in the units of the file that glint
+ * overlay --lights reads. */
 static struct glint_engine_lamp read_lamp_row(const double row[WEB_COLUMNS],
                                               uint32_t id)
 {
@@ -454,7 +459,8 @@ int web_doubtful(double xy[2])
     return 1;
 }
 
-/* Returns whether glint overlay --lights would accept ROW. */
+/* Returns whether the values in ROW are in the ranges that glint overlay
+ * --lights accepts. */
 static bool is_lamp_row_valid(const double row[WEB_COLUMNS])
 {
     return fabs(row[WEB_X]) <= 1e6 && fabs(row[WEB_Y]) <= 1e6 &&

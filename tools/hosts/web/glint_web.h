@@ -11,7 +11,8 @@
  *
  * A module has one lens and one engine. On failure functions return 0 or NULL,
  * and web_error() returns the cause. Texts end with 0 and are UTF-8. Pictures
- * are R G B A bytes, without padding, as of ImageData; A stays.
+ * have the layout of ImageData: bytes R, G, B, A without padding. The byte A
+ * does not change.
  */
 #ifndef GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
 #define GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
@@ -27,11 +28,11 @@ enum { WEB_FOUND = -1 };
 struct web_lens {
     const char *name, *folder, *text;
 };
-/* Lens tables of the module; ends with a row whose name is NULL */
+/* lens tables of the module; the last element has the name NULL */
 extern const struct web_lens web_lens[];
 
-/* Columns of the rows of lamps, doubles in the units of glint overlay
- * --save-lights. */
+/* Columns of a row that describes a lamp. Values are doubles in the units of
+ * glint overlay --save-lights. */
 enum {
     WEB_X,
     WEB_Y,
@@ -55,8 +56,9 @@ WEB_EXPORT(web_free) void web_free(void *mem);
 /* Returns the cause of the last failed call. */
 WEB_EXPORT(web_error) const char *web_error(void);
 
-/* Return JSON: the table of options, the styles, and the lenses with their
- * surfaces. Valid until the next of these calls. */
+/* web_options(), web_styles() and web_lenses() return JSON texts: the table of
+ * options, the styles, and the lenses with their surfaces. A text is valid
+ * until the next of these calls. */
 WEB_EXPORT(web_options) const char *web_options(void);
 WEB_EXPORT(web_styles) const char *web_styles(void);
 WEB_EXPORT(web_lenses) const char *web_lenses(void);
@@ -68,15 +70,15 @@ WEB_EXPORT(web_reset) void web_reset(void);
  * --budget. */
 WEB_EXPORT(web_set) int web_set(const char *name, const char *text);
 
-/* Opens the lens of the options. WIDEST: the f-number that its model is
- * baked for, as by glint bake --f-number WIDEST; 0: that of the table or the
- * options, as by glint overlay. Returns the model's file name in glint's
- * cache, NAME-KEY.glint, valid until the next call. */
+/* Opens the lens that the options name. WIDEST: the f-number that its model is
+ * baked for, as with glint bake --f-number WIDEST. 0 means the f-number of the
+ * table or the options, as with glint overlay. Returns the model's file name in
+ * glint's cache, NAME-KEY.glint, which is valid until the next call. */
 WEB_EXPORT(web_open) const char *web_open(double widest);
 
-/* Set the model of the lens: web_model() to DATA, which must come from
- * web_take() and is not copied; web_bake() to a new bake. Without a model,
- * web_size() succeeds only with --rays exact. */
+/* web_model() sets the model of the lens to DATA, which must come from
+ * web_take() and is not copied. web_bake() bakes the model instead. Without a
+ * model, web_size() succeeds only with --rays exact. */
 WEB_EXPORT(web_model) int web_model(void *data, size_t bytes);
 WEB_EXPORT(web_bake) int web_bake(void);
 WEB_EXPORT(web_model_data) const void *web_model_data(void);
@@ -94,11 +96,11 @@ WEB_EXPORT(web_lamps) double *web_lamps(void);
  * there is no such spot. */
 WEB_EXPORT(web_doubtful) int web_doubtful(double xy[2]);
 
-/* Draws the flare of N rows of web_lamps(), 0 .. 1024, or of the lamps that
- * web_find() found (WEB_FOUND), into PIXELS. If QUICK is not 0, draws as in
- * a video: brightness is estimated and wide lamps have fewer points.
- * Strength, exposure, gain and starburst may have been changed since
- * web_size(). */
+/* Draws a flare into PIXELS: that of the first N rows of web_lamps(), N = 0 ..
+ * 1024, or of the lamps that web_find() has found (N = WEB_FOUND). If QUICK is
+ * not 0, draws as in a video: brightness is estimated, and wide lamps have
+ * fewer points. The options strength, exposure, gain and starburst may change
+ * between web_size() and this call. */
 WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n, int quick);
 
 #endif

@@ -16,8 +16,8 @@
 static char *json; /* JSON text to return, [room] */
 static size_t used, room;
 
-/* Appends a formatted text. If there is no memory, the rest is dropped, and
- * the text is not valid JSON. */
+/* Appends a formatted text. If there is no memory, omits it and all later
+ * texts; the result is then not valid JSON. */
 __attribute__((format(printf, 1, 2))) static void append(const char *format,
                                                          ...)
 {
@@ -110,7 +110,8 @@ const char *web_styles(void)
     return end_json();
 }
 
-/* Appends the surfaces: radius, thickness, semi-diameter, index behind. */
+/* Appends radius, thickness, semi-diameter and the index behind it of each
+ * surface. */
 static void append_lens_surfaces(const struct glint_prescription *lens)
 {
     append("\"surfaces\":[");
