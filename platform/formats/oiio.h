@@ -7,10 +7,10 @@
  *     if (!glint_oiio_load(&oiio, &error))
  *         status = oiio->read(&pixels, "x.png", &error);
  *
- * OpenImageIO depends on some 260 shared libraries, so it lives in a plug-in,
- * glint-oiio.so, which is loaded when a picture first needs it and is never
- * unloaded. glint works without the plug-in; only its files (*.cc) are in
- * C++. */
+ * OpenImageIO depends on some 260 shared libraries. It is therefore in a
+ * plug-in, glint-oiio.so, which is loaded when a picture first needs it and is
+ * never unloaded. glint works without the plug-in. Only the plug-in's source
+ * files (*.cc) are in C++. */
 #ifndef GLINT_PLATFORM_FORMATS_OIIO_H
 #define GLINT_PLATFORM_FORMATS_OIIO_H
 
@@ -55,9 +55,10 @@ struct glint_oiio_facts {
 struct glint_oiio_options {
     int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the quality of the
                     input file, or 95 */
-    int drop_colours; /* true: ICC profile and cICP are not written, as they no
-                         longer describe the pixels */
-    /* Output: text that lists the content of the input file that the output's
+    /* true: ICC profile and cICP are not written, because they no longer
+     * describe the pixels */
+    int drop_colours;
+    /* Result: a text that lists the content of the input file that the output's
      * file type cannot hold; "" if it can hold everything. */
     char said[160];
 };
@@ -78,16 +79,17 @@ struct glint_oiio_layers {
 struct glint_oiio {
     int version;
 
-    /* Reads the file PATH into floats if it stores floats (EXR, HDR), else into
-     * 8 bits, whatever its depth. Returns GLINT_E_FORMAT if PATH cannot be
-     * read, GLINT_E_UNSUPPORTED or GLINT_E_MEMORY. */
+    /* Reads the file PATH. The pixels are floats if the file stores floats
+     * (EXR, HDR), else 8 bits, also if the file has more bits. Returns
+     * GLINT_E_FORMAT if PATH cannot be read, GLINT_E_UNSUPPORTED or
+     * GLINT_E_MEMORY. */
     enum glint_status (*read)(struct glint_oiio_pixels *pixels,
                               const char *path, struct glint_error *error);
 
-    /* Encodes PIXELS in the file type of PATH's extension, as a malloc'ed block
-     * that the caller writes to PATH and frees. STRIDE_BYTES may be negative.
-     * Returns GLINT_E_UNSUPPORTED if OpenImageIO knows no such type,
-     * GLINT_E_OUTPUT or GLINT_E_MEMORY. */
+    /* Encodes PIXELS in the file type of PATH's extension. Sets DATA to a
+     * malloc'ed block, which the caller writes to PATH and frees. STRIDE_BYTES
+     * may be negative. Returns GLINT_E_UNSUPPORTED if OpenImageIO does not know
+     * the type, GLINT_E_OUTPUT or GLINT_E_MEMORY. */
     enum glint_status (*encode)(void **data, size_t *bytes, const char *path,
                                 const struct glint_oiio_pixels *pixels,
                                 ptrdiff_t stride_bytes,
@@ -109,12 +111,12 @@ struct glint_oiio {
      * determined by its content, not its name. */
     int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
 
-    /* If PIXELS is NULL, encodes FILE, whose samples the caller may have
-     * changed in place, in its own type with all of its content. Otherwise
-     * encodes PIXELS (upright, without a window, interleaved R G B A samples of
-     * one type) in the type of PATH's extension, with the metadata of FILE that
-     * this type can hold; FILE may then be NULL. Returns the errors of
-     * encode(). */
+    /* If PIXELS is NULL, encodes FILE in its own type with all of its content;
+     * the caller may have changed its samples in place. Otherwise encodes
+     * PIXELS in the type of PATH's extension, with the metadata of FILE that
+     * this type can hold. PIXELS must be upright, without a window, with
+     * interleaved R G B A samples of one type; FILE may then be NULL. Returns
+     * the errors of encode(). */
     enum glint_status (*encode_file)(void **data, size_t *bytes,
                                      const char *path,
                                      struct glint_oiio_file *file,
@@ -130,18 +132,19 @@ struct glint_oiio {
                                        const struct glint_oiio_layers *layers,
                                        struct glint_error *error);
 
-    /* If one of these functions is running, prints to standard error that
-     * OpenImageIO has aborted on the file, and returns 1; else returns 0.
-     * Async-signal-safe, for glint_at_death_set_library_report(). */
+    /* Must be async-signal-safe, for glint_at_death_set_library_report(). If
+     * one of these functions is running, prints to standard error that
+     * OpenImageIO has aborted on the file, and returns 1; else returns 0. */
     int (*report_abort)(void);
 };
 
 /* Sets OIIO to the functions of the plug-in, which the first call loads. If the
  * environment variable GLINT_OIIO is set, it names the plug-in's file, and no
- * folder is searched. Otherwise searches the executable's folder, ../lib/glint
- * from there, and GLINT_PLUGIN_DIR, if that was defined when compiling. Returns
- * GLINT_E_UNSUPPORTED if the plug-in is not found; ERROR has the cause, but not
- * the name of the picture. May be called by any thread. */
+ * folder is searched. Otherwise searches three folders: the executable's
+ * folder, ../lib/glint relative to it, and GLINT_PLUGIN_DIR, if that was
+ * defined when compiling. Returns GLINT_E_UNSUPPORTED if the plug-in is not
+ * found. ERROR then has the cause, but not the name of the picture.
+ * Thread-safe. */
 enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
                                   struct glint_error *error);
 

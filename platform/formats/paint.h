@@ -19,7 +19,7 @@ struct paint {
     const struct glint_image *image;
     int line;       /* thickness of lines and of strokes of letters, pixels */
     uint8_t rgb[3]; /* R, G, B, set by paint_set_colour */
-    uint8_t ycc[3]; /* the same colour as Y, Cb, Cr */
+    uint8_t ycc[3]; /* the colour rgb converted to Y, Cb, Cr */
 };
 
 void paint_set_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b);
@@ -28,14 +28,14 @@ void paint_set_colour(struct paint *p, uint8_t r, uint8_t g, uint8_t b);
 void paint_fill_rectangle(const struct paint *p, int x0, int y0, int x1,
                           int y1);
 
-/* Draws the outline of a square with its middle at (X, Y), 2 HALF pixels plus a
- * line wide. */
+/* Draws the outline of a square with its middle at (X, Y). Its width is 2 HALF
+ * pixels plus the thickness of a line. */
 void paint_square_outline(const struct paint *p, int x, int y, int half);
 
-/* Draws TEXT, five line widths high, with its top left corner at (X, Y).
- * Letters are drawn as capitals; characters other than letters, digits and % .
- * , - + : / are left blank. paint_text_width() returns the width of TEXT in
- * pixels. */
+/* paint_text() draws TEXT with its top left corner at (X, Y); letters are five
+ * line widths high. Small letters are drawn as capitals. Characters other than
+ * letters, digits and % . , - + : / are left blank. paint_text_width() returns
+ * the width of TEXT in pixels. */
 void paint_text(const struct paint *p, int x, int y, const char *text);
 int paint_text_width(const struct paint *p, const char *text);
 

@@ -64,8 +64,8 @@ int glint_gif_count_frames(const char *name)
     return n;
 }
 
-/* Max bytes of a file that glint reads itself: a PFM with its header. PNM files
- * are smaller. */
+/* Max bytes of a file that glint reads without the plug-in: those of a PFM with
+ * its header. PNM files are smaller. */
 #define MAX_FILE_BYTES                                             \
     (SIZE_MAX / 4 < UINT64_C(12) * GLINT_MAX_SIDE * GLINT_MAX_SIDE \
          ? SIZE_MAX / 4                                            \
@@ -76,13 +76,13 @@ int glint_gif_count_frames(const char *name)
 
 enum type_alpha { ALPHA_NONE, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED };
 
-/* Bits: content besides pixels that a file type can hold. */
+/* Bits for the content, besides pixels, that a file type can hold. */
 enum type_holds { HOLDS_METADATA = 1, HOLDS_ICC = 2, HOLDS_CICP = 4 };
 
 struct file_type {
     const char *extension;
-    bool is_native; /* glint writes this type itself, without the plug-in */
-    bool is_grey;   /* The type can hold grey pictures only. */
+    bool is_native; /* true: glint writes this type without the plug-in */
+    bool is_grey;   /* true: the type can hold only grey pictures */
     enum type_alpha alpha;
     bool takes_u8, takes_u16, takes_half, takes_float;
     unsigned holds; /* bits of enum type_holds */
@@ -567,8 +567,8 @@ static void swap_bytes_of_16_bit_samples(uint8_t *to, const uint8_t *from,
     }
 }
 
-/* Copies the float rows of S in reverse order, and converts bytes between the
- * file's order, little-endian if LITTLE is set, and this machine's order. */
+/* Copies the float rows of S in reverse order. Converts the byte order from the
+ * file to this machine or back. LITTLE: the file is little-endian. */
 static void reverse_order_of_float_rows(uint8_t *to, const uint8_t *from,
                                         const struct glint_samples *s,
                                         bool little)
@@ -619,8 +619,8 @@ static enum glint_status open_native_file(struct glint_kept *k,
 }
 
 /* Copies the samples of K back into the bytes of its PNM or PFM file, in the
- * file's byte order. If k->own is NULL, the samples lie in these bytes
- * already. */
+ * file's byte order. Does nothing if k->own is NULL, because the samples are
+ * then in these bytes. */
 static void update_native_file(struct glint_kept *k)
 {
     uint8_t *const at = k->native + k->header_bytes;

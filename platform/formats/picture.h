@@ -7,10 +7,10 @@
  *     glint_picture_save("y.ppm", &image, &error);
  *     glint_picture_free(&image);
  *
- * glint reads and writes PPM, PGM and PFM itself, all other types through its
- * image plug-in (formats/oiio.h). Loading detects the type by content, saving
- * by extension. "-" is a pipe: reads PPM, PGM or PFM; writes PPM, or PFM for
- * floats.
+ * glint reads and writes PPM, PGM and PFM itself, and all other types through
+ * its image plug-in (formats/oiio.h). Loading detects the type by the content
+ * of the file, saving by the extension. "-" is a pipe: loading reads PPM, PGM
+ * or PFM; saving writes PPM, or PFM for floats.
  *
  * There are two kinds of picture. Loading converts between them by the sRGB
  * curve if needed; saving never does:
@@ -25,10 +25,10 @@
  *     glint_kept_save(&kept, "out.png", NULL, &options, &error);
  *     glint_kept_close(&kept);
  *
- * An output of the input's type preserves depth, alpha, other channels, parts,
- * windows, profile and metadata. An output of another type has the colours,
- * upright, the depth, alpha and profile that the type can hold, Exif and XMP,
- * and other metadata that OpenImageIO translates. */
+ * If the output has the type of the input, it preserves depth, alpha, other
+ * channels, parts, windows, profile and metadata. An output of another type is
+ * upright. It has the colours, those of depth, alpha and profile that the type
+ * can hold, Exif and XMP, and other metadata that OpenImageIO translates. */
 #ifndef GLINT_PLATFORM_FORMATS_PICTURE_H
 #define GLINT_PLATFORM_FORMATS_PICTURE_H
 
@@ -43,17 +43,18 @@ struct glint_kept {
     struct glint_samples samples;
     /* true: the file stores floats, so light above white is not clipped */
     bool is_float;
-    /* Text that lists the file's content that glint cannot preserve or does not
-     * know; "" if there is none. */
+    /* Text that lists content of the file that glint does not know or cannot
+     * preserve; "" if there is none. */
     char note[GLINT_KEPT_NOTES];
 
     /* Private. */
     const char *path;
     const struct glint_oiio *oiio; /* NULL: the file is a PNM or PFM */
-    bool has_icc, has_cicp;        /* true: the file states its colours by an
-                                      ICC profile; by cICP */
-    const char *metadata;          /* metadata of the file, as in
-                                      glint_oiio_facts; NULL: none */
+    /* has_icc: the file states its colours by an ICC profile; has_cicp: by
+     * cICP */
+    bool has_icc, has_cicp;
+    const char *metadata; /* metadata of the file, as in
+                             glint_oiio_facts; NULL: none */
     struct glint_oiio_file *file;
     /* all bytes of a PNM or PFM; of other files the first 12 */
     uint8_t *native;
@@ -65,8 +66,8 @@ struct glint_kept {
 struct glint_kept_options {
     int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the quality of the
                     input file, or 95 */
-    /* Output: text that lists the content that was lost when saving; "" if none
-     * was. */
+    /* Result: a text that lists the content that was lost when saving; "" if
+     * nothing was lost. */
     char said[GLINT_KEPT_NOTES];
 };
 
@@ -74,15 +75,15 @@ struct glint_kept_options {
  * not a GIF. */
 int glint_gif_count_frames(const char *name);
 
-/* Returns whether the extension of PATH stands for a type that can hold floats
- * only. Returns false for TIFF, which holds floats or integers, and for "-". */
+/* Returns whether files of PATH's extension can hold only floats. Returns false
+ * for TIFF, which holds floats or integers, and for "-". */
 bool glint_picture_is_float(const char *path);
 
-/* Loads PATH as GLINT_RGB24, full range, sRGB; grey becomes R = G = B, alpha is
+/* Loads PATH as GLINT_RGB24, full range, sRGB. Grey becomes R = G = B, alpha is
  * left out, floats are clipped to 0 .. 1. glint_picture_free() frees IMAGE.
- * Returns GLINT_E_IO if PATH cannot be read, GLINT_E_FORMAT if it is malformed,
- * GLINT_E_UNSUPPORTED if it is not a picture, too large, or of a type whose
- * plug-in is missing, or GLINT_E_MEMORY. */
+ * Returns GLINT_E_IO if PATH cannot be read; GLINT_E_FORMAT if it is malformed;
+ * GLINT_E_UNSUPPORTED if it is not a picture, is too large, or its type needs a
+ * plug-in that is missing; or GLINT_E_MEMORY. */
 enum glint_status glint_picture_load(const char *path,
                                      struct glint_image *image,
                                      struct glint_error *error);
@@ -134,18 +135,18 @@ enum glint_status glint_kept_save(struct glint_kept *kept, const char *path,
                                   struct glint_kept_options *options,
                                   struct glint_error *error);
 
-/* Returns whether PATH has the file type of KEPT. If so, an unchanged picture
- * can be saved by glint_kept_copy_file(), which copies the file. */
+/* Returns whether PATH has the file type of KEPT. If it has,
+ * glint_kept_copy_file() can save an unchanged picture by copying the file. */
 bool glint_kept_is_same_type(const struct glint_kept *kept, const char *path);
 
 enum glint_status glint_kept_copy_file(const struct glint_kept *kept,
                                        const char *path,
                                        struct glint_error *error);
 
-/* Sets BLANK to a black picture of FROM's upright size, with R G B, and with
- * alpha 0 if HAS_ALPHA is set. Its samples have FROM's type, but floats replace
- * 32-bit integers; floats are linear, integers sRGB. The caller frees
- * blank->mem. Returns GLINT_E_MEMORY on failure. */
+/* Sets BLANK to a black picture of FROM's upright size with the channels R G B,
+ * and an alpha of 0 if HAS_ALPHA is set. Its samples have FROM's type; floats
+ * replace 32-bit integers. Floats are linear, integers are sRGB. The caller
+ * frees blank->mem. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_kept_make_blank(struct glint_samples *blank,
                                         const struct glint_samples *from,
                                         bool has_alpha);

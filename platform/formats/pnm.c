@@ -76,7 +76,8 @@ static bool read_pfm_header(struct glint_pnm_header *h, const uint8_t *data,
            (scale < 0 || scale > 0);
 }
 
-#define MAX_NUMBER 99999 /* Larger numbers are read as MAX_NUMBER. */
+/* max number in a header; larger numbers are read as this one */
+#define MAX_NUMBER 99999
 
 struct cursor {
     const uint8_t *at, *end;
@@ -269,7 +270,8 @@ static void decode_pfm_rows(float *rgb, const struct glint_pnm_header *h,
 {
     const size_t n = (size_t)h->width;
 
-    for (int y = h->height - 1; y >= 0; y--) { /* the bottom row comes first */
+    /* A PFM begins with the bottom row. */
+    for (int y = h->height - 1; y >= 0; y--) {
         float *const row = rgb + 3 * n * (size_t)y;
 
         for (size_t i = 0; i < 3 * n; i++) {

@@ -8,15 +8,17 @@
  *     free(image.plane[0]);
  *     free(floats.rgb);
  *
- * PNM: only the binary types P6 (colour) and P5 (grey), maximum value 1 ..
- * 65535, comments anywhere in the header. Samples are scaled to 8 bits and
- * rounded; samples above the stated maximum are clamped to it. Bytes after the
- * first picture are ignored, as PNM files may hold several pictures.
+ * PNM: only the binary types P6 (colour) and P5 (grey) are supported. The
+ * maximum value may be 1 .. 65535, and comments may be anywhere in the header.
+ * Samples are scaled to 8 bits and rounded; samples above the stated maximum
+ * are clamped to it. Bytes after the first picture are ignored, because PNM
+ * files may hold several pictures.
  *
- * PFM, linear light in floats: "PF" holds R G B, "Pf" grey, which is read as R
- * = G = B. The sign of the header's third number gives the byte order
- * (negative: little-endian); its magnitude, on which writers disagree, is
- * ignored. Values are read unchanged, including NaN and infinity. */
+ * PFM stores linear light as floats. "PF" files hold R G B, "Pf" files grey,
+ * which is read as R = G = B. The sign of the third number in the header gives
+ * the byte order (negative: little-endian). The magnitude of this number is
+ * ignored, because writers disagree on its meaning. Values are read unchanged,
+ * including NaN and infinity. */
 #ifndef GLINT_PLATFORM_FORMATS_PNM_H
 #define GLINT_PLATFORM_FORMATS_PNM_H
 
@@ -36,7 +38,8 @@ struct glint_pnm_header {
     size_t bytes;      /* length of the header, bytes */
 };
 
-/* Returns whether DATA begins like a P5 or P6, or like a PFM. */
+/* glint_pnm_has_signature() returns whether DATA begins like a P5 or P6,
+ * glint_pfm_has_signature() whether it begins like a PFM. */
 bool glint_pnm_has_signature(const void *data, size_t bytes);
 bool glint_pfm_has_signature(const void *data, size_t bytes);
 

@@ -206,8 +206,8 @@ static uint32_t get_max_sample_code(enum glint_sample sample)
                                         : UINT32_MAX;
 }
 
-/* Returns sample C of PIXEL: an integer sample divided by MAXIMUM, a float
- * sample unchanged. */
+/* Returns the sample of PIXEL at the place C. Integers are divided by MAXIMUM,
+ * floats are unchanged. */
 static double read_scaled_sample(const struct glint_sample_place *c,
                                  uint32_t maximum, const uint8_t *pixel)
 {
@@ -295,15 +295,15 @@ static void multiply_matrix(const double m[3][3], const double from[3],
         to[i] = m[i][0] * from[0] + m[i][1] * from[1] + m[i][2] * from[2];
 }
 
-/* Returns VALUE; 65504, the largest half, if it is infinity; 0 if it is minus
- * infinity or NaN. */
+/* Returns VALUE if it is finite. Returns 65504, the largest half, for infinity,
+ * and 0 for minus infinity and NaN. */
 static double clamp_to_finite(double value)
 {
     return isnan(value) ? 0 : isinf(value) ? (value > 0 ? 65504 : 0) : value;
 }
 
-/* Sets RGB to the linear light of PIXEL, BT.709 primaries: not multiplied by
- * alpha if STRAIGHT is set, else multiplied. */
+/* Sets RGB to the linear light of PIXEL, BT.709 primaries. The light is
+ * multiplied by alpha, unless STRAIGHT is set. */
 static void decode_pixel_light(const struct decoder *d, const uint8_t *pixel,
                                bool straight, double rgb[3])
 {
@@ -338,9 +338,9 @@ void glint_samples_get_light(const struct glint_samples *samples, int x, int y,
 /* number of histogram bins: eight per octave of light, from 2^-8 to 2^24 */
 #define BINS 256
 
-/* Returns the white level of D's picture: the 99th percentile over all pixels
- * of the largest channel of a pixel, rounded up to an eighth of an octave, at
- * least 1; 1 if samples are not floats. */
+/* Returns the white level of D's picture: the light that the largest channel
+ * exceeds in 1 % of the pixels. It is rounded up to an eighth of an octave, and
+ * is at least 1. It is 1 if samples are not floats. */
 static double find_white_level(const struct decoder *d)
 {
     const struct glint_samples *const s = d->samples;

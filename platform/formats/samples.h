@@ -8,11 +8,11 @@
  *     glint_samples_add_light(&samples, layer); adds light
  *     glint_samples_convert(&to, &from); for another file type
  *
- * "Upright" positions are positions in the picture as a viewer shows it: in its
+ * "Upright" positions are positions in the picture that a viewer shows: its
  * display window, rotated by the file's orientation. The pixels in memory are
- * not rotated. Adding light preserves every bit of samples whose value does not
- * change, of channels other than the colours (alpha, too) and of pixels outside
- * the display window. */
+ * not rotated. Adding light changes only colour samples whose value changes.
+ * All bits of other samples, of other channels (such as alpha) and of pixels
+ * outside the display window are preserved. */
 #ifndef GLINT_PLATFORM_FORMATS_SAMPLES_H
 #define GLINT_PLATFORM_FORMATS_SAMPLES_H
 
@@ -42,7 +42,8 @@ struct glint_samples {
     int orientation;    /* EXIF orientation, 1 .. 8 */
     size_t pixel_bytes; /* bytes of one pixel with all channels */
     int n_colours;      /* number of colours: 3, or 1 for grey */
-    /* is_premultiplied has no effect unless has_alpha is set */
+    /* is_premultiplied: colours are multiplied by alpha; no effect unless
+     * has_alpha is set */
     bool has_alpha, is_premultiplied;
     /* Positions of the samples of R, G, B, and of alpha. In grey pictures all
      * three colours are the same sample. */
@@ -59,7 +60,8 @@ float glint_half_decode(uint16_t half);
  * infinity. */
 uint16_t glint_half_encode(float value);
 
-/* Return the bytes of a sample of type SAMPLE, and whether it is a float. */
+/* glint_sample_get_bytes() returns the bytes of a sample of type SAMPLE,
+ * glint_sample_is_float() whether it is a float. */
 size_t glint_sample_get_bytes(enum glint_sample sample);
 
 bool glint_sample_is_float(enum glint_sample sample);
@@ -75,29 +77,30 @@ bool glint_samples_get_image(const struct glint_samples *samples,
                              struct glint_image *image);
 
 /* Sets RGB to the linear light of the upright pixel (X, Y), BT.709 primaries,
- * multiplied by alpha; to black if the file has no pixel there. NaN becomes
- * black, infinity 65504. */
+ * multiplied by alpha. If the file has no pixel there, RGB is black. NaN
+ * becomes black, infinity 65504. */
 void glint_samples_get_light(const struct glint_samples *samples, int x, int y,
                              float rgb[3]);
 
 /* Sets PROXY to an upright sRGB copy of the picture, GLINT_RGB24; the caller
- * frees plane[0]. Sets WHITE to the light of code 255: 1, or for floats the
- * light that 1 % of the pixels exceed, at least 1. Returns GLINT_E_MEMORY on
- * failure. */
+ * frees plane[0]. Sets WHITE to the light of code 255. This is 1, except for
+ * floats: there it is the light that 1 % of the pixels exceed, at least 1.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_samples_make_proxy(const struct glint_samples *samples,
                                            struct glint_image *proxy,
                                            double *white);
 
 /* Adds LAYER, upright R G B, linear light with BT.709 primaries, to the
- * colours. Straight (unmultiplied) colours get the light undivided by alpha, so
- * compositing multiplies it by alpha. Integer codes are clipped at the
- * maximum. */
+ * colours. If colours are not multiplied by alpha (straight), the layer is not
+ * divided by alpha; compositing then multiplies the light by alpha. Integer
+ * codes are clipped at the maximum. */
 void glint_samples_add_light(struct glint_samples *samples, const float *layer);
 
-/* Sets the upright pixel (X, Y) to RGB, its linear light over black, BT.709
- * primaries, after an object covers the fraction COVER, 0 .. 1, of it. Alpha
- * becomes 1 - (1 - alpha)(1 - COVER); straight (unmultiplied) colours become
- * RGB divided by the new alpha. Does nothing if the file has no pixel there. */
+/* Sets the upright pixel (X, Y) to RGB after an object covers the fraction
+ * COVER, 0 .. 1, of it. RGB is the linear light of the pixel over black, BT.709
+ * primaries. Alpha becomes 1 - (1 - alpha)(1 - COVER). Straight (unmultiplied)
+ * colours become RGB divided by the new alpha. Does nothing if the file has no
+ * pixel there. */
 void glint_samples_set_pixel(struct glint_samples *samples, int x, int y,
                              const double rgb[3], double cover);
 

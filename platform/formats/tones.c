@@ -38,7 +38,8 @@ bool glint_tone_curve_is_hdr(const struct glint_tone_curve *transfer)
 #define PQ_PEAK  (10000 / 203.0)
 #define HLG_PEAK 3.7741178
 
-/* Convert between code and light of PQ [SMPTE ST 2084], both 0 .. 1. */
+/* decode_pq() and encode_pq() convert between code and light of PQ [SMPTE ST
+ * 2084], both 0 .. 1. */
 static double decode_pq(double code)
 {
     const double p = pow(code, 32 / 2523.0);
@@ -55,7 +56,8 @@ static double encode_pq(double light)
                2523 / 32.0);
 }
 
-/* Convert between code and scene light of HLG [ITU-R BT.2100]. */
+/* constants of HLG [ITU-R BT.2100], which decode_hlg() and encode_hlg() use to
+ * convert between code and scene light */
 static const double hlg_a = 0.17883277, hlg_b = 0.28466892, hlg_c = 0.55991073;
 
 static double decode_hlg(double code)
@@ -237,7 +239,7 @@ bool glint_colours_set_primaries(struct glint_colours *colours,
         {0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}};
     double file[3][3], bt709[3][3], own[4][2];
 
-    /* White stays white: the file's white point replaces D65. */
+    /* The file's white point replaces D65, so that white stays white. */
     memcpy(own, bt709_xy, sizeof own);
     memcpy(own[3], xy[3], sizeof own[3]);
     return set_rgb_to_xyz_matrix(file, xy) &&

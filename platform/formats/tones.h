@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * formats/tones.h - converts codes of a picture file to linear light and back,
- * by its colour profile, and colours between its primaries and BT.709.
+ * formats/tones.h - converts the codes of a picture file to linear light and
+ * back by the file's colour profile. Converts colours between the file's
+ * primaries and BT.709.
  *
  *     glint_tone_curve_set(&transfer, GLINT_TONE_IS_SRGB, 0); or
  *     glint_icc_read_colours(&colours, profile, bytes);
  *     light = glint_tone_curve_decode(&transfer, code / 65535.0);
  *
- * A code is 0 .. 1. Floats may exceed that: a curve continues by its own
- * formula above 1, and is mirrored below 0. All computation is in double, for
- * pictures that are edited once; video frames have tables of integers. */
+ * A code is 0 .. 1. Codes of float files may be outside this range: above 1 a
+ * curve continues by its own formula, and below 0 it is mirrored. Computation
+ * is in double, because a picture is converted only once; video frames use
+ * tables of integers instead (video/transfer.h). */
 #ifndef GLINT_PLATFORM_FORMATS_TONES_H
 #define GLINT_PLATFORM_FORMATS_TONES_H
 
@@ -31,9 +33,9 @@ enum glint_tone_kind {
 #define GLINT_TONE_ENTRIES 1024
 
 /* A transfer curve: light = (a code + b)^gamma + e for codes of d and more,
- * light = c code + f for codes below d. A table, if there is one, replaces the
- * formula: it is interpolated linearly between entries at equal steps of code;
- * an entry of 65535 is light 1. */
+ * light = c code + f for codes below d. If there is a table, it replaces the
+ * formula. Its entries are at equal steps of the code, an entry of 65535 is
+ * light 1, and values between entries are interpolated linearly. */
 struct glint_tone_curve {
     double gamma, a, b, c, d, e, f;
     bool is_pq, is_hlg; /* true: the curve of PQ or HLG replaces the formula */
@@ -48,12 +50,14 @@ struct glint_colours {
                               BT.709 */
     /* matrix from light in BT.709 primaries to the file's */
     double from_bt709[3][3];
-    bool is_srgb; /* sRGB curve and BT.709 primaries, as 8-bit pictures have */
+    /* true: sRGB curve and BT.709 primaries, as in most 8-bit pictures */
+    bool is_srgb;
     char name[48];
 };
 
-/* Sets TRANSFER to the curve KIND; GAMMA is used only by GLINT_TONE_IS_GAMMA.
- * The next two functions convert a code to linear light, and back. */
+/* glint_tone_curve_set() sets TRANSFER to the curve KIND; GAMMA is used only by
+ * GLINT_TONE_IS_GAMMA. glint_tone_curve_decode() and glint_tone_curve_encode()
+ * convert a code to linear light, and back. */
 void glint_tone_curve_set(struct glint_tone_curve *transfer,
                           enum glint_tone_kind kind, double gamma);
 double glint_tone_curve_decode(const struct glint_tone_curve *transfer,

@@ -13,7 +13,8 @@
 #include "posix/error.h"
 
 #define ALIGN 64 /* alignment of planes and their rows, bytes */
-/* max rows of a plane in a row of MCUs: 4 blocks of 8 rows */
+/* max number of rows of a plane that one row of MCUs (minimum coded units) has:
+ * 4 blocks of 8 rows */
 #define MAX_ROWS  32
 #define N_PLANES  3
 #define MARKER    0xff
@@ -124,9 +125,8 @@ static void on_libjpeg_error(j_common_ptr jpeg)
     leave_libjpeg_with_message(jpeg, GLINT_E_FORMAT);
 }
 
-/* Leaves libjpeg at the three warnings after which samples are wrong; after
- * other warnings samples are right. Messages with LEVEL >= 0 are not
- * warnings. */
+/* Leaves libjpeg at the three warnings after which samples are wrong; samples
+ * are right after other warnings. Messages with LEVEL >= 0 are not warnings. */
 static void on_libjpeg_message(j_common_ptr jpeg, int level)
 {
     struct glint_mjpeg *const d = jpeg->client_data;
@@ -161,9 +161,10 @@ static void on_source_start(j_decompress_ptr jpeg)
     (void)jpeg;
 }
 
-/* Called when libjpeg has read all data. In the scan, supplies an end-of-image
- * marker, as libjpeg reads ahead and may have decoded all samples already. In
- * the header, leaves libjpeg with an error. */
+/* Called when libjpeg needs more data than the frame has. While the header is
+ * read, leaves libjpeg with an error. In the scan, supplies an end-of-image
+ * marker instead: libjpeg reads ahead, so that it may have decoded all samples
+ * already. */
 static boolean on_data_end(j_decompress_ptr jpeg)
 {
     static const JOCTET end[] = {MARKER, EOI};
@@ -207,7 +208,9 @@ static size_t find_image_start(const uint8_t *data, size_t bytes)
 
         if (marker == SOI)
             start = at;
-        if (marker == MARKER) /* 0xff before the 0xff of a marker is padding */
+        /* Bytes 0xff in front of a marker, which itself begins with 0xff, are
+         * padding. */
+        if (marker == MARKER)
             at++;
         else if (is_marker_without_data(marker))
             at += 2;
@@ -311,15 +314,16 @@ static void start_decoding(struct glint_mjpeg *d, struct glint_image *image)
     }
     d->jpeg.out_color_space = d->jpeg.jpeg_color_space;
     d->jpeg.raw_data_out = TRUE;
-    /* With this method libjpeg's SIMD gives the same bits as its C. */
+    /* With this method libjpeg's SIMD code gives the same bits as its C
+     * code. */
     d->jpeg.dct_method = JDCT_ISLOW;
     d->in_scan = true;
     jpeg_start_decompress(&d->jpeg);
 }
 
-/* Decodes the frame to the planes of IMAGE, one row of MCUs at a time. The last
- * row of MCUs may reach below the picture; the planes have MAX_ROWS spare rows
- * for that. */
+/* Decodes the frame to the planes of IMAGE, one row of MCUs (minimum coded
+ * units) at a time. The last row of MCUs may extend below the picture, so the
+ * planes have MAX_ROWS spare rows. */
 static void decode_jpeg_to_planes(struct glint_mjpeg *d,
                                   const struct glint_image *image)
 {

@@ -12,14 +12,15 @@
  * returned as coded, without conversion to RGB and without upsampling of
  * chroma. They are the same bits on every machine (integer transform).
  *
- * Tolerated faults of cameras: no Huffman tables (the standard tables are
+ * Tolerated faults of cameras: missing Huffman tables (the standard tables are
  * used), an AVI1 header, two start-of-image markers, stray bytes between
- * markers, no end-of-image marker, bytes after it. No state passes from frame
- * to frame: pixels depend only on the bytes of their frame.
+ * markers, a missing end-of-image marker, and bytes behind this marker. Frames
+ * are independent: pixels depend only on the bytes of their frame.
  *
- * libjpeg decodes. It allocates and frees some 30 KiB of heap per frame, in
- * blocks so small that they need no system call after the first frames. In
- * builds without libjpeg, glint_mjpeg_open() returns GLINT_E_UNSUPPORTED. */
+ * Frames are decoded by libjpeg. It allocates and frees some 30 KiB of heap per
+ * frame. The blocks are so small that they need no system call after the first
+ * frames. In builds without libjpeg, glint_mjpeg_open() returns
+ * GLINT_E_UNSUPPORTED. */
 #ifndef GLINT_PLATFORM_JPEG_MJPEG_H
 #define GLINT_PLATFORM_JPEG_MJPEG_H
 
@@ -47,11 +48,11 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
  * or _I444, full range, BT.601, sRGB curve. The size may differ from frame to
  * frame. The samples belong to DECODER and may be changed; the next call
  * overwrites them. Returns GLINT_E_FORMAT if the frame is empty, visibly
- * damaged, or ends before its last sample: the caller should drop the frame and
- * continue. Returns GLINT_E_UNSUPPORTED if the frame is larger than the
- * maximum, progressive, RGB or CMYK, of another subsampling, or has more than 8
- * bits: the next frame is probably of the same kind. Returns GLINT_E_MEMORY if
- * libjpeg got no memory; the next frame may work. */
+ * damaged, or ends before its last sample; the caller should drop the frame and
+ * continue. Returns GLINT_E_UNSUPPORTED if the frame is too large, progressive,
+ * RGB or CMYK, has more than 8 bits, or has an unsupported subsampling; the
+ * next frame is probably of the same type. Returns GLINT_E_MEMORY if libjpeg
+ * got no memory; decoding the next frame may succeed. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

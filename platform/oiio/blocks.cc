@@ -126,9 +126,9 @@ void report_lost_block(std::string &lost, const char *what, size_t n)
             " KB are more than a JPEG's 64 KB";
 }
 
-/* The Exif and XMP blocks that OpenImageIO wrote to MADE are removed even if
- * the blocks of B do not fit into segments, as they contain only a part of what
- * B's contain. */
+/* The Exif and XMP blocks in MADE, which OpenImageIO wrote, are always removed,
+ * because they contain only a part of what the blocks of B contain. This holds
+ * even if the blocks of B do not fit into segments. */
 bytes replace_jpeg_blocks(const bytes &made, const file_blocks &b,
                           std::string &lost)
 {
@@ -243,8 +243,8 @@ void set_upright_orientation(file_blocks &b)
             b.exif[at + 8] = little;
             b.exif[at + 9] = !little;
         }
-    if (end + 4 <= b.exif.size()) /* The next directory is that of the
-                                     thumbnail. */
+    /* The next directory describes the thumbnail. */
+    if (end + 4 <= b.exif.size())
         std::fill_n(b.exif.begin() + static_cast<std::ptrdiff_t>(end), 4, 0);
 }
 

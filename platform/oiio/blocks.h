@@ -19,20 +19,22 @@ namespace glint
 struct file_blocks {
     bytes exif;      /* Exif: a TIFF header and directories; empty: none */
     std::string xmp; /* the XMP packet; empty: none */
-    bytes icc;       /* ICC profile of HEIF, and of WebP, for which OpenImageIO
-                        2.4 reads none */
+    /* ICC profile; only set for HEIF and for WebP, of which OpenImageIO 2.4
+     * does not read it */
+    bytes icc;
     /* codes of primaries, transfer, matrix and full range [ITU-T H.273]; all 0:
      * none */
     unsigned char cicp[4];
 };
 
-/* Returns Exif and XMP of WHOLE, the bytes of a file of OpenImageIO's TYPE;
- * empty if TYPE has no such blocks or they are malformed. */
+/* read_metadata_blocks() returns Exif and XMP of WHOLE, the bytes of a file of
+ * OpenImageIO's TYPE. They are empty if TYPE has no such blocks or they are
+ * malformed. read_tiff_metadata() does the same for a TIFF. */
 file_blocks read_metadata_blocks(const std::string &type, const bytes &whole);
 file_blocks read_tiff_metadata(const bytes &whole);
 
-/* Sets the orientation in B to 1, and removes its Exif thumbnail and the
- * properties of its XMP that refer to other pictures in the file. */
+/* Sets the orientation in B to 1 (upright). Removes the Exif thumbnail of B,
+ * and the XMP properties that refer to other pictures in the file. */
 void set_upright_orientation(file_blocks &b);
 
 /* Returns MADE, the bytes of a file of TYPE, with its own metadata blocks

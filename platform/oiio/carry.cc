@@ -20,7 +20,8 @@ bool is_chunk_copied(const file_piece &chunk, bool same_coding, bool drop_icc)
     if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST",
                                                          "acTL", "fcTL",
                                                          "fdAT"}))
-        return false; /* the last three names: further frames of an animation */
+        /* acTL, fcTL and fdAT belong to the further frames of an animation. */
+        return false;
     if (is_one_of(chunk.name, {"sBIT", "bKGD"}))
         return same_coding;
     return !drop_icc || !is_one_of(chunk.name, {"iCCP", "gAMA", "cHRM", "sRGB",
@@ -36,8 +37,8 @@ bool is_metadata_segment(const file_piece &segment)
            marker == 0xfe;
 }
 
-/* Returns whether SEGMENT is an index of several pictures, with offsets in the
- * old file. */
+/* Returns whether SEGMENT is an index of several pictures. Its offsets hold
+ * only for the old file. */
 bool is_picture_index(const file_piece &segment)
 {
     return has_marker_byte(segment, 0xe2) && begins_with_text(segment, "MPF", 4);
@@ -188,8 +189,8 @@ bool are_pictures_previews(const file_piece &segment)
         const uint32_t tag = first + 2 + 12 * i;
         const uint32_t place = number(tag + 8, 4), size = number(tag + 4, 4);
 
-        if (number(tag, 2) != 0xb002) /* tag of the list of pictures; its
-                                         entries have 16 bytes */
+        /* 0xb002 is the list of pictures; its entries have 16 bytes */
+        if (number(tag, 2) != 0xb002)
             continue;
         all = size > 16;
         for (uint32_t k = 16; k + 16 <= size && place + k + 16 <= n; k += 16)
@@ -309,8 +310,9 @@ bytes find_png_chunk(const bytes &file, const char *name)
 
 /* ---------------------------------------------------------------- complete */
 
-/* Finds the end of the image in the scans. In a scan the byte 0xff occurs only
- * before a 0 byte and in restart markers; any other marker ends the scan. */
+/* Searches the scans for the end of the image. In a scan the byte 0xff occurs
+ * only before a 0 byte and in restart markers; any other marker ends the
+ * scan. */
 std::string describe_missing_jpeg_data(const bytes &file)
 {
     const std::vector<file_piece> segments = split_jpeg_segments(file);
@@ -328,7 +330,7 @@ std::string describe_missing_jpeg_data(const bytes &file)
             return "";
         } else if (at[1] == 0xff) {
             at++;
-        } else { /* the marker of a table or of the next scan */
+        } else { /* the marker belongs to a table or to the next scan */
             if (end - at < 4)
                 break;
             at += 2 + (at[2] << 8 | at[3]);
@@ -442,8 +444,8 @@ std::string describe_missing_tiff_data(const bytes &file)
     const uint64_t first = t.big ? t.number(8, 8) : t.number(4, 4);
     const uint64_t n = t.number(first, t.big ? 8 : 2);
     const unsigned step = t.big ? 20 : 12;
-    /* total bits of the pixels; packing: value of tag 259, 1: uncompressed;
-     * total: bytes as stored */
+    /* bits: number of bits of all pixels; packing: value of tag 259 (1:
+     * uncompressed); total: number of bytes as stored */
     uint64_t bits = 1, packing = 1, total = 0;
     uint64_t offsets = 0, counts = 0, entries = 0, missing = 0, present = 0;
 
@@ -475,8 +477,8 @@ std::string describe_missing_tiff_data(const bytes &file)
     }
     if (!present)
         return "has no pixels";
-    /* Only fax codes (2 .. 4) compress by more than 4096 to 1. With other codes
-     * a file that seems to compress more was cut off. */
+    /* Only fax codes (2 .. 4) compress by more than a factor of 4096. A file
+     * with another code that seems to compress more was cut off. */
     if (missing == 0 && (packing >= 2 && packing <= 4 ? true
                          : packing == 1 ? total * 8 >= bits || present < entries
                                         : total * 8 * 4096 >= bits))

@@ -88,8 +88,9 @@ void read_entry(const reader &r, uint64_t at, uint64_t &room, directory &to)
 directory read_directory(const reader &r, uint64_t at, uint32_t &next)
 {
     const unsigned n = r.number(at, 2);
-    /* limit of the size of all values, bytes; without it, values that overlap
-     * could need far more memory than the file's size */
+    /* Limit of the size of all values, bytes. Values may overlap in the file;
+     * without this limit they could need far more memory than the file's
+     * size. */
     uint64_t room = r.file.size();
     directory read;
 
@@ -132,8 +133,8 @@ void append_little_number(bytes &to, uint32_t value, int n)
         to.push_back(static_cast<unsigned char>(value >> (8 * i)));
 }
 
-/* Appends the values of directory D, and D with NEXT as the offset of the next
- * directory, to the file TO. Returns the offset of D. */
+/* Appends the values of directory D to the file TO, and then D itself, with
+ * NEXT as the offset of the next directory. Returns the offset of D. */
 uint32_t write_directory(bytes &to, const directory &d, uint32_t next)
 {
     bytes list;
@@ -169,7 +170,7 @@ uint32_t read_directory_pointer(const struct entry &e)
                      uint32_t(e.values[1]) << 8 | e.values[0];
 }
 
-/* Copies the directories of FROM to which D points (Exif, GPS) to TO, and sets
+/* Copies the directories to which D points (Exif, GPS) from FROM to TO. Sets
  * the pointers in D to their new offsets. */
 void copy_pointed_directories(bytes &to, const reader &from, directory &d,
                               int depth)
@@ -193,9 +194,9 @@ void copy_pointed_directories(bytes &to, const reader &from, directory &d,
     }
 }
 
-/* Appends directory D to FILE, a little-endian TIFF, with NEXT as the offset of
- * the next directory, and writes its offset to LINK. Returns the offset of the
- * link to NEXT. */
+/* Appends directory D to FILE, a little-endian TIFF, and writes the offset of D
+ * to LINK. NEXT: offset of the next directory. Returns the offset at which NEXT
+ * is stored. */
 uint64_t append_linked_directory(bytes &file, uint64_t link, const directory &d,
                                  uint32_t next)
 {

@@ -65,9 +65,9 @@ inline std::string make_printable(const std::string &text)
     return line;
 }
 
-/* Returns CAUSE, a message of OpenImageIO, with the file's NAME replaced by
- * "the file", as glint prints NAME before the message. Returns UNLESS if CAUSE
- * is empty. */
+/* Returns CAUSE, a message of OpenImageIO, in which "the file" replaces the
+ * file's NAME, because glint prints NAME before the message. Returns UNLESS if
+ * CAUSE is empty. */
 inline std::string remove_file_name(std::string cause, const std::string &name,
                                     const char *unless)
 {
@@ -91,16 +91,16 @@ struct calls {
     std::atomic<int> n{0};
     std::atomic<int> err{-1}; /* duplicate of standard error while calls are
                                  running */
-    /* Message to print on an abort, with the name of the file of the latest
-     * call. */
+    /* message that is printed on an abort; contains the name of the file of the
+     * latest call */
     char text[256] = "";
 };
 
 inline calls under_way;
 
 /* A running call for the file NAME. While it exists, standard error is
- * /dev/null, as OpenImageIO's libraries print errors there that they also
- * return. */
+ * /dev/null, because OpenImageIO's libraries both return errors and print them
+ * there. */
 class call
 {
   public:
@@ -155,8 +155,8 @@ class call
     }
 };
 
-/* Prints to glint's standard error, if a call is running, that OpenImageIO has
- * aborted, and returns 1; else returns 0. Async-signal-safe. */
+/* If a call is running, prints to glint's standard error that OpenImageIO has
+ * aborted, and returns 1. Otherwise returns 0. Async-signal-safe. */
 inline int report_abort()
 {
     const int err = under_way.err;
@@ -221,7 +221,8 @@ open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
 {
     std::unique_ptr<OIIO::ImageInput> in = OIIO::ImageInput::create(path);
 
-    (void)OIIO::geterror(); /* Other readers may support the file. */
+    /* The error is cleared, because another reader may support the file. */
+    (void)OIIO::geterror();
     reject_video_reader(in.get());
     in = OIIO::ImageInput::open(path, config);
     if (!in)

@@ -56,8 +56,8 @@ bool is_avif(const bytes &file)
 
 int get_heif_bits(const heif_picture &picture)
 {
-    /* libheif 1.15 makes libaom abort on 4:2:0 and 4:4:4 pictures of 10
-     * bits. */
+    /* Pictures of 10 bits as 4:2:0 and 4:4:4 would make libaom abort, because
+     * of a bug in libheif 1.15. */
     return picture.bits <= 8                        ? 8
            : picture.is_avif || picture.bits == 12 ? 12
                                                     : 10;
@@ -112,7 +112,7 @@ void read_heif_metadata_blocks(const heif_image_handle *from, file_blocks &to)
         if (data.empty() ||
             heif_image_handle_get_metadata(from, ids[i], data.data()).code)
             continue;
-        /* Exif begins with the offset of its TIFF header. */
+        /* The Exif block begins with the offset of its TIFF header. */
         const size_t skip =
             data.size() < 4 ? data.size()
                             : 4 + (size_t(data[0]) << 24 | data[1] << 16 |
@@ -366,8 +366,8 @@ void add_image_plane(heif_image *to, const planes &from, heif_channel channel,
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             uint8_t *const at = mem + size_t(y) * size_t(stride);
-            /* neutral Cb or Cr is half the number of all codes, not half the
-             * code of white */
+            /* The neutral value of Cb and Cr is half the number of codes, not
+             * half the code of white. */
             const double v = from.mean(x, y, step, channel) * white +
                              (channel == heif_channel_Cb ||
                                       channel == heif_channel_Cr

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * oiio/heif.h - reads and writes HEIC and AVIF pictures by libheif, because
- * OpenImageIO 2.4 reads them in 8 bits only, and without colour tags and
- * profile. */
+ * oiio/heif.h - reads and writes HEIC and AVIF pictures by libheif. OpenImageIO
+ * 2.4 is not used for them because it reads only 8 bits, and neither colour
+ * tags nor profile. */
 #ifndef GLINT_PLATFORM_OIIO_HEIF_H
 #define GLINT_PLATFORM_OIIO_HEIF_H
 
@@ -31,8 +31,9 @@ bool is_heif(const bytes &file);
 /* Returns whether FILE, a HEIF, is an AVIF. */
 bool is_avif(const bytes &file);
 
-/* Return whether this plug-in was built with libheif, and whether it also has
- * an encoder for AVIF or for HEIC. */
+/* is_heif_readable() returns whether this plug-in was built with libheif,
+ * is_heif_writable() whether libheif also has an encoder for AVIF or for
+ * HEIC. */
 bool is_heif_readable();
 bool is_heif_writable(bool avif);
 

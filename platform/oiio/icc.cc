@@ -29,7 +29,7 @@ using profile_ptr = std::unique_ptr<void, decltype(&cmsCloseProfile)>;
 using transform_ptr = std::unique_ptr<void, decltype(&cmsDeleteTransform)>;
 
 /* Returns whether profile P is for N_COLOURS colours and consists of tables,
- * not of curves and a matrix. Rejects tables of floats, whose elements may
+ * not of curves and a matrix. Rejects tables of floats: their elements may
  * share bytes, so that a small profile could need unlimited memory. */
 bool is_table_profile(cmsHPROFILE p, size_t n_colours)
 {
@@ -70,9 +70,9 @@ size_t get_pixel_bytes(const code_layout &layout)
     return (layout.n_colours + layout.has_alpha) * layout.sample_bytes;
 }
 
-/* Returns the transform from one profile to another. For each pixel it
- * evaluates the tables of the profiles. lcms2 would by default precompute a
- * grid of colours, which is wrong by up to 20 codes of 8 bits for dark inks. */
+/* Returns the transform from one profile to another. It evaluates the tables of
+ * the profiles for each pixel. The default of lcms2 would be a precomputed grid
+ * of colours, which is wrong by up to 20 codes of 8 bits for dark inks. */
 transform_ptr create_icc_transform(const profile_ptr &from,
                                    const code_layout &of_from,
                                    const profile_ptr &to,
@@ -175,7 +175,7 @@ void lcms_link::encode(const bytes &from, bytes &to) const
 /* -------------------------------------------------------------------- JPEG */
 
 struct jpeg_errors {
-    jpeg_error_mgr base; /* first member, as libjpeg has a pointer to it */
+    jpeg_error_mgr base; /* first member, because libjpeg has a pointer to it */
     std::jmp_buf escape;
     char cause[JMSG_LENGTH_MAX];
 };
@@ -226,7 +226,7 @@ bytes decode_cmyk_jpeg(const bytes &file, int width, int height)
     if (!done)
         throw failure{GLINT_E_FORMAT, errors.cause};
     for (unsigned char &ink :
-         pixels) /* in Adobe's JPEGs code 255 is no ink */
+         pixels) /* In Adobe's JPEGs the code 255 stands for no ink. */
         ink = static_cast<unsigned char>(255 - ink);
     return pixels;
 }

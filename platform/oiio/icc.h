@@ -22,7 +22,7 @@ namespace glint
 {
 
 /* Layout of interleaved codes: 1 colour (grey), 3 (R G B) or 4 (C M Y K, where
- * 0 is no ink), then alpha, by which colours are not multiplied. Samples have 1
+ * 0 is no ink), then alpha. Colours are not multiplied by alpha. Samples have 1
  * or 2 bytes. */
 struct code_layout {
     size_t n_colours;
@@ -30,9 +30,9 @@ struct code_layout {
     size_t sample_bytes;
 };
 
-/* Gamma of the RGB of links that can encode. Its primaries are those of
- * BT.2020, which include most colours of inks; chromaticities x, y of red,
- * green, blue and white follow. */
+/* The RGB of links that can encode. wide_gamma: its gamma. wide_primaries: the
+ * primaries of BT.2020, which include most colours of inks, as chromaticities
+ * x, y of red, green, blue and white. */
 constexpr double wide_gamma = 2.2;
 constexpr double wide_primaries[4][2] = {
     {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
@@ -47,8 +47,9 @@ struct icc_link {
     virtual ~icc_link() = default;
     virtual bytes decode(const bytes &codes) const = 0;
 
-    /* Changes those pixels of CODES that do not decode to the pixels of RGB to
-     * codes that do. Other pixels do not change. */
+    /* Compares CODES with the pixels RGB. Where a pixel of CODES does not
+     * decode to its pixel in RGB, replaces it by codes that do. Other pixels do
+     * not change. */
     virtual void encode(const bytes &rgb, bytes &codes) const = 0;
 };
 
@@ -60,7 +61,7 @@ std::unique_ptr<icc_link>
 open_icc_link(const bytes &profile, const code_layout &layout, bool may_encode);
 
 /* Returns the pixels of FILE, a CMYK JPEG of WIDTH x HEIGHT pixels, as C M Y K
- * in 8 bits, 0 is no ink. Throws failure. */
+ * in 8 bits, where 0 is no ink. Throws failure. */
 bytes decode_cmyk_jpeg(const bytes &file, int width, int height);
 
 } // namespace glint

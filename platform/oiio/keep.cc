@@ -70,9 +70,9 @@ struct glint_oiio_file {
     int bits;
     bool is_avif;
     std::string lost;
-    /* Conversion by the profile of parts[0], if that profile consists of tables
-     * and can encode; and the pixels converted to RGB, to which light is
-     * added. */
+    /* link: conversion by the profile of parts[0]; only set if this profile
+     * consists of tables and can encode. rgb: the pixels converted to RGB, to
+     * which light is added. */
     std::unique_ptr<glint::icc_link> link;
     glint::kept_part rgb;
     bool drops_icc; /* true: the pixels of parts[0] are no longer in the file's
@@ -109,8 +109,9 @@ bytes read_whole_file(const char *path)
     return all;
 }
 
-/* WebP is read and written by its own library: OpenImageIO 2.4 multiplies
- * colours by alpha on reading, and does not divide on writing. */
+/* WebP is read and written by its own library, because OpenImageIO 2.4
+ * multiplies colours by alpha on reading and does not divide by alpha on
+ * writing. */
 #if __has_include(<webp/encode.h>)
 
 /* Returns whether decode_webp() can decode FILE: a WebP without animation, in a
@@ -235,8 +236,8 @@ void request_supported_sample_types(ImageSpec &spec)
         spec.set_format(TypeDesc::FLOAT);
 }
 
-/* Returns SPEC, of a C M Y K picture or of the RGB to which OpenImageIO
- * converted one, changed to C M Y K. */
+/* Returns SPEC, changed to describe a C M Y K picture. SPEC may describe the
+ * RGB to which OpenImageIO has converted the picture. */
 ImageSpec convert_spec_to_cmyk(ImageSpec spec)
 {
     spec.nchannels = 4;
@@ -398,8 +399,9 @@ void request_cmyk_reading(struct glint_oiio_file &file,
         file.link.reset();
 }
 
-/* If FILE has a conversion by its profile, adds the RGB to which it converts
- * the pixels. If the conversion cannot encode, this RGB replaces the pixels. */
+/* If FILE has a conversion by its profile, converts its pixels to RGB and adds
+ * this RGB to FILE. If the conversion cannot encode, the RGB replaces the
+ * pixels. */
 void add_rgb_by_profile(struct glint_oiio_file &file)
 {
     kept_part &part = file.parts.at(0);
@@ -472,10 +474,12 @@ int find_channel(const ImageSpec &spec, const std::string &name)
     return -1;
 }
 
-/* The colour channels and alpha of a part, by name. */
+/* the channels of a part that are chosen, by name, as its colours and alpha */
 struct choice {
     int index[4]; /* indices of the channels of R, G, B, alpha; -1: none */
-    int rank;     /* preference, 1 .. 4, higher is better; 0: nothing chosen */
+    /* preference of this choice, 1 .. 4 (higher is better); 0: nothing
+     * chosen */
+    int rank;
 };
 
 int rank_channel_prefix(const std::string &prefix)
@@ -765,8 +769,8 @@ int glint::can_write(const char *path)
 namespace
 {
 
-/* A file in memory, for OpenImageIO's writers. It can also be read, as the TIFF
- * writer reads what it has written. */
+/* A file in memory for OpenImageIO's writers. It can also be read, because the
+ * TIFF writer reads what it has written. */
 class memory : public OIIO::Filesystem::IOProxy
 {
   public:
@@ -815,8 +819,8 @@ class memory : public OIIO::Filesystem::IOProxy
     bytes &data;
 };
 
-/* Removes the attributes that describe how the input file was coded, not its
- * content. */
+/* Removes the attributes that describe how the input file was coded. Attributes
+ * that describe its content stay. */
 void remove_coding_attributes(ImageSpec &spec)
 {
     for (const char *name :
@@ -854,8 +858,8 @@ ImageSpec copy_basic_spec(const ImageSpec &spec)
     return to;
 }
 
-/* Removes the attributes for which OpenImageIO 2.4 writes an Exif directory to
- * a TIFF, which is corrupt for files in memory. */
+/* Removes the attributes that would make OpenImageIO 2.4 write an Exif
+ * directory to a TIFF. This directory is corrupt for files in memory. */
 void remove_exif_attributes(ImageSpec &spec)
 {
     const auto is_exif = [](const OIIO::ParamValue &p) {
@@ -941,8 +945,8 @@ void write_parts(ImageOutput &out, const char *path,
         throw failure{GLINT_E_OUTPUT, out.geterror()};
 }
 
-/* Returns whether FILE's metadata are copied byte for byte. Those of a BigTIFF
- * are not: OpenImageIO copies the metadata that it knows. */
+/* Returns whether FILE's metadata are copied byte for byte. They are not for a
+ * BigTIFF, of which OpenImageIO copies the metadata that it knows. */
 bool is_metadata_copied_from(const struct glint_oiio_file &file)
 {
     return is_metadata_copied(file.type) &&

@@ -22,10 +22,10 @@ namespace glint
 
 using bytes = std::vector<unsigned char>;
 
-/* The copy functions return the file MADE with its metadata replaced by the
- * metadata of FROM, a file of the same type; without FROM's ICC profile if
- * DROP_ICC is set. They return MADE unchanged if they cannot parse either
- * file. */
+/* The copy_*_metadata() functions return the file MADE with its metadata
+ * replaced by those of FROM, a file of the same type. The ICC profile of FROM
+ * is not copied if DROP_ICC is set. If a file cannot be parsed, they return
+ * MADE unchanged. */
 bytes copy_png_metadata(const bytes &made, const bytes &from, bool drop_icc);
 bytes copy_jpeg_metadata(const bytes &made, const bytes &from, bool drop_icc);
 bytes copy_webp_metadata(const bytes &made, const bytes &from, bool drop_icc);
@@ -38,19 +38,21 @@ bytes copy_tiff_metadata(const bytes &made, const bytes &from, bool drop_icc);
 bytes add_metadata_to_tiff(const bytes &made, const bytes &exif,
                            const std::string &xmp);
 
-/* Removes from the packet XMP the properties that refer to pictures or a video
- * after the first picture of the file: gain map, motion photo, container; if
- * UPRIGHT is set, also the orientation. Returns false and clears XMP if it has
- * such properties and is malformed. The time is linear in the size of XMP. */
+/* Removes properties from the packet XMP that refer to pictures or a video
+ * after the first picture of the file: gain map, motion photo, container. If
+ * UPRIGHT is set, also removes the orientation. If XMP has such properties and
+ * is malformed, clears it and returns false. The time is linear in the size of
+ * XMP. */
 bool remove_xmp_claims(std::string &xmp, bool upright);
 
-/* Return a text that states what is missing in a truncated FILE, "" if it is
- * complete. */
+/* Both functions return a text that states what is missing in a truncated FILE;
+ * "" if FILE is complete. */
 std::string describe_missing_jpeg_data(const bytes &file);
 std::string describe_missing_tiff_data(const bytes &file);
 
-/* Returns the quality, 1 .. 100 on libjpeg's scale, whose quantisation tables
- * are nearest to the tables of FILE; 0 if FILE has no tables. */
+/* Returns an estimate of FILE's quality, 1 .. 100: the quality at which the
+ * quantisation tables of libjpeg are nearest to those of FILE. Returns 0 if
+ * FILE has no tables. */
 int estimate_jpeg_quality(const bytes &file);
 
 bool is_progressive_jpeg(const bytes &jpeg);

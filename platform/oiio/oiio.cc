@@ -39,9 +39,9 @@ std::vector<int> choose_rgb_channels(int n_channels)
     return {0, 0, 0};
 }
 
-/* Reads PATH as bytes or floats and rotates it upright. Does not open the
- * ImageBuf by file name, as that would read from a cache after the file has
- * changed. */
+/* Reads PATH as bytes or floats and rotates it upright. The ImageBuf is not
+ * opened by file name, because it would then come from a cache even if the file
+ * has changed. */
 OIIO::ImageBuf load_upright_image(const char *path)
 {
     const std::unique_ptr<OIIO::ImageInput> in = open_picture(path);
@@ -71,7 +71,8 @@ void read_upright_pixels(struct glint_oiio_pixels *pixels, const char *path)
 
     if (rgb.has_error())
         throw failure{GLINT_E_FORMAT, rgb.geterror()};
-    OIIO::ROI roi = rgb.roi_full(); /* black where the file has no data */
+    /* Pixels for which the file has no data are black. */
+    OIIO::ROI roi = rgb.roi_full();
     roi.chbegin = 0;
     roi.chend = 3;
     struct glint_oiio_pixels made = {roi.width(), roi.height(),
@@ -86,8 +87,8 @@ void read_upright_pixels(struct glint_oiio_pixels *pixels, const char *path)
     *pixels = made;
 }
 
-/* Encodes PIXELS to memory, as some writers of OpenImageIO do not report a full
- * disk. */
+/* Encodes PIXELS to memory instead of a file, because some writers of
+ * OpenImageIO do not report a full disk. */
 std::vector<unsigned char> encode_pixels(const char *path,
                                          const struct glint_oiio_pixels *pixels,
                                          ptrdiff_t stride_bytes)
@@ -105,8 +106,8 @@ std::vector<unsigned char> encode_pixels(const char *path,
     if (!out->supports("ioproxy") || !out->set_ioproxy(&file))
         throw failure{GLINT_E_UNSUPPORTED, "OpenImageIO cannot write this "
                                            "type into memory"};
-    /* A TIFF with a colour space would get an Exif directory, which OpenImageIO
-     * 2.4 corrupts when writing to memory. */
+    /* A TIFF gets no colour space: OpenImageIO 2.4 would write an Exif
+     * directory for it, which is corrupt for files in memory. */
     if (std::strcmp(out->format_name(), "tiff") != 0)
         spec.attribute("oiio:ColorSpace", pixels->is_float ? "Linear" : "sRGB");
     if (!out->open(path, spec) ||
@@ -130,7 +131,8 @@ OIIO::ImageSpec describe_layer(const struct glint_oiio_layers *layers, int k)
     return spec;
 }
 
-/* OpenImageIO 2.4 can write files of several parts only by file name. */
+/* Encodes LAYERS as the parts of a temporary file, because OpenImageIO 2.4 can
+ * write files of several parts only by file name. */
 std::vector<unsigned char> encode_parts(const char *path,
                                         const struct glint_oiio_layers *layers)
 {

@@ -74,7 +74,9 @@ std::vector<file_piece> split_jpeg_segments(const bytes &file)
         const unsigned char *const p = file.data() + at;
         const size_t n = size_t(p[2]) << 8 | p[3];
 
-        if (p[1] == 0xff) { /* 0xff before the 0xff of a marker is padding */
+        /* Bytes 0xff in front of a marker, which itself begins with 0xff, are
+         * padding. */
+        if (p[1] == 0xff) {
             at++;
             continue;
         }

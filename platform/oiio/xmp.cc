@@ -13,7 +13,7 @@ namespace glint
 namespace
 {
 
-/* beginnings of the names of XMP properties that refer to pictures and a video
+/* prefixes of the names of XMP properties that refer to pictures or a video
  * after the first picture [Ultra HDR; Motion Photo format 1.0; Apple] */
 const char *const claims[] = {"hdrgm:",
                               "HDRGainMap:",
@@ -41,9 +41,10 @@ struct cleaner {
     std::string out;
     size_t at = 0;
     std::vector<name> open = {}; /* names of the open elements at position AT */
-    size_t skipped_at = 0; /* number of open elements at which the end of a
-                              removed element is reached; 0: nothing is being
-                              removed */
+    /* number of open elements when the removal of an element began, including
+     * this element; removal ends when fewer are open; 0: no element is being
+     * removed */
+    size_t skipped_at = 0;
 
     bool is_claim(const name &n) const
     {
