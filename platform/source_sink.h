@@ -22,15 +22,16 @@
  * files may be larger. */
 #define GLINT_PANEL_SIDE 8192
 
-/* A frame of a source. Its memory may be used until done() is called. */
+/* A frame of a source. The caller may use its memory until it calls done(). */
 struct glint_source_frame {
-    struct glint_image image; /* plane[0] NULL: there is no frame yet */
-    uint32_t sequence;        /* sequence number from the device; wraps
-                                 around */
+    /* picture of the frame; plane[0] is NULL if there is no frame yet */
+    struct glint_image image;
+    uint32_t sequence; /* sequence number from the device; wraps
+                          around */
     /* CLOCK_MONOTONIC time at which the frame was captured, us */
     int64_t time_us;
-    /* true: the frame may be modified in place, as its memory is cached and
-     * nothing else writes to it */
+    /* true: the frame may be modified in place, because its memory is cached
+     * and nobody else writes to it */
     bool is_drawable;
     /* Number of older frames that were returned to the device unused before
      * this frame. */

@@ -17,7 +17,7 @@
 /* State of the OBJ text that is being written. */
 struct writer {
     FILE *to;
-    int is_flat; /* 1: normals are not written, as all faces are flat */
+    int is_flat; /* 1: all faces are flat, so normals are not written */
     /* Indices, counted from 1, of the first vertex, texture coordinate and
      * normal of the next mesh. */
     unsigned place, uv, normal;

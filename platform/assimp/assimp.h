@@ -24,11 +24,11 @@
 struct glint_assimp {
     int version;
 
-    /* Reads the mesh file PATH and writes it to the descriptor FD, then closes
-     * FD. Writes the letter m and an OBJ text of v, vt, vn, usemtl and f lines;
-     * or, if the file holds no mesh or one of more than MAX_TRIANGLES
-     * triangles, the letter x and a line with the cause. Called in a child
-     * process. */
+    /* Reads the mesh file PATH, writes it to the descriptor FD and closes FD.
+     * The output is the letter m and an OBJ text of v, vt, vn, usemtl and f
+     * lines. If the file has no mesh, or one of more than MAX_TRIANGLES
+     * triangles, the output is the letter x and a line with the cause. Called
+     * in a child process. */
     void (*write)(int fd, const char *path, unsigned max_triangles);
 };
 

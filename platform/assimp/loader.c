@@ -70,8 +70,8 @@ static rlim_t read_mapped_bytes(void)
                  : 0;
 }
 
-/* Runs the child process until it exits. Restores the default actions of
- * signals and unblocks them, as glint's own handlers would remove the temporary
+/* Runs in the child process and exits. Unblocks signals and restores their
+ * default actions, because glint's own handlers would remove the temporary
  * files of the parent process. */
 static void run_import_process(const struct glint_assimp *face, int fd,
                                const char *path, unsigned max_triangles)
@@ -196,9 +196,10 @@ static int has_node_with_two_parents(const char *text, size_t bytes)
     return is_shared;
 }
 
-/* Returns an error in the glTF in TEXT[BYTES], the beginning of a file of ALL
- * bytes, or NULL. A binary glTF begins with a magic number, a version, the
- * file's length, and length and type of the JSON chunk. */
+/* Returns NULL if TEXT[BYTES], the beginning of a file of ALL bytes, is a valid
+ * glTF; else a text that states the error. A binary glTF begins with a magic
+ * number, a version, the length of the file, and the length and type of the
+ * JSON chunk. */
 static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
 {
     if (bytes >= 4 && memcmp(text, "glTF", 4) == 0) {

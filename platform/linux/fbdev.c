@@ -63,9 +63,10 @@ static int open_console(const char *path, int *fd)
         errno = saved;
         return -1;
     }
-    /* A program that draws on the console has set VT_PROCESS, so that the
-     * kernel notifies it before switching consoles. Graphics mode with VT_AUTO
-     * was left behind by a program that was killed. */
+    /* A running program that draws on the console has set VT_PROCESS, so that
+     * the kernel notifies it before it switches consoles. If the console is in
+     * graphics mode with VT_AUTO, a killed program has left it in this
+     * state. */
     if (mode == KD_GRAPHICS && ioctl(*fd, VT_GETMODE, &switching) == 0 &&
         switching.mode == VT_AUTO)
         mode = KD_TEXT;
@@ -83,9 +84,10 @@ static bool explain_console_refusal(int *fd, struct glint_error *note,
     return false;
 }
 
-/* Sets the console to graphics mode; a process may do so with one console at
- * a time. Returns false, with the reason in NOTE, if there is no console,
- * the permission is missing or another program draws on the console. */
+/* Sets the console to graphics mode. A process may do this with only one
+ * console at a time. If there is no console, the permission is missing, or
+ * another program draws on the console, returns false and sets NOTE to the
+ * reason. */
 static bool acquire_console(int *fd, struct glint_error *note)
 {
     int mode = open_console("/dev/tty", fd);

@@ -12,18 +12,19 @@
  * screens and panning, frames are double-buffered; else they are drawn to the
  * visible screen.
  *
- * Each put() first reads the mode from the driver: another program may have
- * changed it, and glint adapts; or the device may have been removed, which
- * writing to its still mapped memory would not reveal. Only a change of the
- * frame's size allocates memory.
+ * Each put() first reads the mode from the driver. If another program has
+ * changed it, glint adapts. The call also fails if the device was removed;
+ * writing to its memory, which stays mapped, would not fail. Memory is
+ * allocated only if the frame's size changes.
  *
  * While the sink is open, the console (the terminal of the process, or the
  * foreground console) is in graphics mode, in which it draws neither text nor
  * cursor. Closing restores its mode, as do exit() and the signals that
  * posix/at_death.h lists; then the kernel redraws the text. After kill -9 the
- * console stays dark and cannot be switched, as programs in graphics mode must
- * do that themselves. The next run restores the text; so does SysRq + K, or
- * echo k > /proc/sysrq-trigger from another terminal. */
+ * console stays dark and cannot be switched, because in graphics mode the
+ * program itself must switch consoles. The next run of glint restores the text,
+ * and so do SysRq + K and echo k > /proc/sysrq-trigger from another terminal.
+ */
 #ifndef GLINT_PLATFORM_LINUX_FBDEV_H
 #define GLINT_PLATFORM_LINUX_FBDEV_H
 
@@ -33,8 +34,9 @@
 
 struct glint_fbdev_options {
     enum glint_panel_fit fit;
-    /* true: with only one screen of memory, wait for the panel's refresh if the
-     * driver can. Less tearing; costs up to one refresh period per frame. */
+    /* true: if memory holds only one screen and the driver supports it, wait
+     * for the panel's refresh before drawing. This reduces tearing and costs up
+     * to one refresh period per frame. */
     bool vsync;
     bool console; /* true: set the console to graphics mode while the sink is
                      open */

@@ -19,9 +19,9 @@
  * is unused. */
 bool glint_fourcc_to_format(uint32_t fourcc, enum glint_pixel_format *format);
 
-/* Returns the FOURCC of FORMAT with all planes in one block of memory, or 0 if
- * V4L2 has none, as for GLINT_LINEAR_Q20 and for GLINT_I444, which exists as
- * YM24 only. */
+/* Returns the FOURCC of FORMAT with all planes in one block of memory. Returns
+ * 0 if V4L2 has none: for GLINT_LINEAR_Q20, and for GLINT_I444, for which V4L2
+ * has only the multi-block format YM24. */
 uint32_t glint_fourcc_from_format(enum glint_pixel_format format);
 
 /* Writes FOURCC as text, such as "YUYV", with '?' for unprintable
@@ -33,16 +33,17 @@ void glint_fourcc_text(uint32_t fourcc, char text[5]);
  * become the FOURCC unchanged. Returns false for other texts. */
 bool glint_fourcc_parse(const char *text, uint32_t *fourcc);
 
-/* Colours of a format, by V4L2's values: enum v4l2_colorspace,
+/* Colours of a format as values of V4L2: enum v4l2_colorspace, enum
  * v4l2_ycbcr_encoding and so on. */
 struct glint_v4l2_colour {
     uint32_t colorspace, ycbcr_enc, quantization, xfer_func;
 };
 
-/* Sets range, matrix and transfer of IMAGE, whose format is set, from COLOUR. A
- * value of "default" follows the rules of videodev2.h, except that grey is full
- * range. If glint does not support COLOUR (BT.2020, linear, RGB of limited
- * range ...), sets IMAGE to the nearest colours and returns false. */
+/* Sets range, matrix and transfer of IMAGE from COLOUR; the format of IMAGE
+ * must be set before. A "default" value is resolved by the rules of
+ * videodev2.h, except that grey is full range. If glint does not support COLOUR
+ * (BT.2020, linear, RGB of limited range ...), sets IMAGE to the nearest
+ * colours and returns false. */
 bool glint_v4l2_colour_to_image(const struct glint_v4l2_colour *colour,
                                 struct glint_image *image);
 

@@ -24,8 +24,8 @@ enum glint_v4l2_outcome {
 
 struct glint_v4l2_taken {
     int index;
-    /* size of each block of the buffer, and offset of the data in the block,
-     * bytes */
+    /* bytes: size of each block of the buffer; start: offset of the data in the
+     * block, bytes */
     size_t bytes[3], start[3];
     uint32_t sequence;
     int64_t time_us;
@@ -195,8 +195,9 @@ static void release_buffers(struct glint_v4l2 *v)
                 free(mem);
         }
     memset(v->buffer, 0, sizeof v->buffer);
-    /* The driver's buffers are freed even if n_buffers is 0: freeing them may
-     * have failed before, and until it succeeds no format can be set. */
+    /* The driver's buffers are freed even if n_buffers is 0. An earlier attempt
+     * to free them may have failed, and no format can be set until it
+     * succeeds. */
     if (v->io == GLINT_V4L2_MMAP || v->io == GLINT_V4L2_USERPTR)
         request_buffers(v,
                         v->io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP
@@ -316,8 +317,8 @@ static const char *allocate_all_buffers(struct glint_v4l2 *v, uint32_t n)
 }
 
 /* Allocates buffers of type IO. Returns NULL, or the name of the call that
- * failed, with errno set. Requests them twice, as a driver that was just
- * stopped refuses the first request. */
+ * failed, with errno set. If the first request fails, tries once more, because
+ * a driver that was just stopped refuses the first request. */
 static const char *allocate_buffers(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
@@ -377,8 +378,8 @@ static const char *allocate_supported_buffers(struct glint_v4l2 *v)
 
 /* time limit for restarting a broken stream, us */
 #define PATIENCE_US 900000
-/* min time without a frame, us, after which a stream has stalled; also
- * STALL_FRAMES frame times must have passed */
+/* A stream has stalled if no frame has arrived for STALL_US us and for
+ * STALL_FRAMES frame times. */
 #define STALL_US     2000000
 #define STALL_FRAMES 4
 /* largest gap of sequence numbers that is counted as dropped frames */
@@ -490,9 +491,9 @@ static bool is_device_present(const struct glint_v4l2 *v)
     return glint_ioctl(v->device.fd, VIDIOC_QUERYCAP, &cap) == 0;
 }
 
-/* Negotiates the format again. A device that is read by read(2) is closed
- * and reopened first, as it streams until it is closed and accepts no other
- * format meanwhile. */
+/* Negotiates the format again. A device that is read by read(2) is closed and
+ * opened again first, because it streams until it is closed and accepts no new
+ * format while it streams. */
 static enum glint_status renegotiate_format(struct glint_v4l2 *v,
                                             struct glint_error *error)
 {
@@ -508,10 +509,10 @@ static enum glint_status renegotiate_format(struct glint_v4l2 *v,
 }
 
 /* Stops the stream and prepares it again with the current format of the device.
- * Only the next frame shows whether the restart has succeeded: until a frame
- * arrives, failures are ignored for PATIENCE_US. After that time returns the
- * error of the failed request, or reports WHY if the stream had been
- * started. */
+ * Only the next frame shows whether this has succeeded, so failures are ignored
+ * for PATIENCE_US until a frame arrives. After that time returns the error of
+ * the failed request, or, if the stream had been started, an error with the
+ * text WHY. */
 static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
                                         struct glint_error *error)
 {
@@ -545,8 +546,8 @@ static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
 
 /* ------------------------------------------------------------------- frames */
 
-/* Restarts the time limits STALL_US and PATIENCE_US, as the source has changed
- * or has no signal. */
+/* Restarts the time limits STALL_US and PATIENCE_US. Called if the source has
+ * changed or has no signal. */
 static void restart_time_limits(struct glint_v4l2 *v)
 {
     v->heard_us = glint_get_time_us();
@@ -604,10 +605,10 @@ static void queue_idle_buffers(struct glint_v4l2 *v)
 }
 
 /* Returns the number of frames lost before the frame with number SEQUENCE.
- * Returns 0 where sequence numbers are unreliable: for the first two frames
- * after a start, as v4l2loopback begins with an old number; for drivers that
- * repeat a number; and for gaps above MAX_GAP, as such a gap would have been a
- * stall. */
+ * Returns 0 where sequence numbers are unreliable. These are the first two
+ * frames after a start (v4l2loopback begins with an old number), numbers that a
+ * driver repeats, and gaps above MAX_GAP (so long a gap would have been a
+ * stall). */
 static int count_missing_frames(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;

@@ -14,12 +14,12 @@
  * buffers; if the device does not support these, in buffers of the application
  * (USERPTR), else by read(2).
  *
- * next() stops a broken stream and negotiates the format again: after failed
- * requests, a fatal error of the driver, a change of the source, 30 damaged
- * frames in a row, or no frame for two seconds plus four frame times. The
- * caller starts the stream again; a call of next() does so, too. If that does
- * not help within a second, or the device was removed, start() and next()
- * return GLINT_E_DEVICE. */
+ * next() stops a broken stream and negotiates the format again. A stream is
+ * broken after failed requests, a fatal error of the driver, a change of the
+ * source, 30 damaged frames in a row, or if no frame arrives for two seconds
+ * and four frame times. start() or the next call of next() then starts the
+ * stream again. If the stream does not work within a second, or the device was
+ * removed, start() and next() return GLINT_E_DEVICE. */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
 #define GLINT_PLATFORM_LINUX_V4L2_H
 
@@ -59,8 +59,9 @@ struct glint_v4l2 {
     struct glint_v4l2_buffer buffer[GLINT_V4L2_MAX_BUFFERS];
     struct glint_mjpeg *jpeg; /* decoder of JPEG streams */
     bool streams;
-    int n_numbered; /* number of frames since the stream was started, counted up
-                       to 2 only */
+    /* number of frames with a sequence number since the start of the stream;
+     * stops counting at 2 */
+    int n_numbered;
     uint32_t sequence; /* sequence number of the last frame that was dequeued */
     uint32_t n_read;   /* number of frames read by read(2), which gives no
                           sequence number */
@@ -70,10 +71,10 @@ struct glint_v4l2 {
     int n_useless;     /* number of damaged frames in a row */
 };
 
-/* Opens the camera that WISH names, negotiates a format and allocates N_BUFFERS
- * buffers, 2 .. GLINT_V4L2_MAX_BUFFERS, of type IO, or as many as the driver
- * grants. Afterwards no other program can change the format. On failure CAMERA
- * is closed. */
+/* Opens the camera that WISH names, negotiates a format and allocates buffers
+ * of type IO. N_BUFFERS, 2 .. GLINT_V4L2_MAX_BUFFERS, is the requested number;
+ * the driver may grant fewer. Afterwards no other program can change the
+ * format. On failure CAMERA is closed. */
 enum glint_status glint_v4l2_open(struct glint_v4l2 *camera,
                                   const struct glint_v4l2_config *wish,
                                   enum glint_v4l2_io io, int n_buffers,

@@ -16,9 +16,9 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* Formats in order of preference: two bytes per pixel, in which flares are
- * drawn in place; planes; RGB; JPEG, which has to be decoded; and grey, which
- * has no colours. */
+/* Formats in order of preference: two bytes per pixel, because flares are drawn
+ * in place; then planes; then RGB; then JPEG, which must be decoded; then grey,
+ * which has no colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -56,8 +56,8 @@ static bool has_device_frame_size(const struct glint_v4l2_device *d,
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
     if (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
-        return true; /* A device that does not list its sizes may have this
-                        size. */
+        /* The device does not list its sizes, so it may have this one. */
+        return true;
     if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
         return w >= size.stepwise.min_width && w <= size.stepwise.max_width &&
                h >= size.stepwise.min_height && h <= size.stepwise.max_height;
@@ -69,8 +69,8 @@ static bool has_device_frame_size(const struct glint_v4l2_device *d,
     return false;
 }
 
-/* Returns whether the frame interval A is at most 0.5 % longer than the
- * interval of the requested rate. The tolerance is needed because USB states
+/* Returns whether the frame interval A is short enough for the requested rate,
+ * with a tolerance of 0.5 %. The tolerance is needed because USB states
  * intervals in units of 100 ns, and because 29.97 frames per second are also
  * called 30. */
 static bool is_interval_short_enough(const struct glint_v4l2_device *d,
@@ -115,8 +115,8 @@ static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 }
 
 /* Returns the first format of preferred[] that the device has in size W x H at
- * the requested rate; if there is none, the first that the device has in any
- * size; 0 if glint can read none of the device's formats. */
+ * the requested rate. If there is none, returns the first one that the device
+ * has in any size. Returns 0 if glint can read none of the device's formats. */
 static uint32_t choose_offered_format(const struct glint_v4l2_device *d,
                                       uint32_t w, uint32_t h)
 {
@@ -189,8 +189,8 @@ static void write_members_of_v4l2_format(struct v4l2_format *f,
 }
 
 /* Sets the planes of F from PIX. Returns false if the planes do not fit into
- * the blocks of F. In a single block the planes follow each other, and the
- * strides of chroma follow from the stride of luma. */
+ * the blocks of F. If there is only one block, the planes follow each other in
+ * it, and the strides of chroma are computed from the stride of luma. */
 static bool set_format_planes(struct glint_v4l2_format *f,
                               const struct pix *pix)
 {
@@ -229,8 +229,9 @@ static void set_format_colour(struct glint_v4l2_device *d,
     struct glint_image image = {.format = f->is_jpeg ? GLINT_I420 : f->pixels};
 
     glint_v4l2_colour_to_image(colour, &image);
-    if (f->is_jpeg) { /* JPEG frames are coded as JFIF, whatever the driver
-                         reports. */
+    /* JPEG frames have the colours of JFIF, even if the driver states
+     * others. */
+    if (f->is_jpeg) {
         image.range = GLINT_RANGE_FULL;
         image.matrix = GLINT_MATRIX_BT601;
     }

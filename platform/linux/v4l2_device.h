@@ -3,8 +3,8 @@
  * linux/v4l2_device.h - a camera before it streams: identity, capabilities, and
  * the negotiated format.
  *
- * A configuration is a request: the device answers with what it supports, and
- * glint uses that, including strides and sizes.
+ * A configuration is only a request. The device answers with a format that it
+ * supports, and glint uses this format, including its strides and sizes.
  */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
 #define GLINT_PLATFORM_LINUX_V4L2_DEVICE_H
@@ -19,15 +19,18 @@
 #define GLINT_V4L2_PATH 256
 
 struct glint_v4l2_config {
-    const char *device;   /* path, "/dev/video0", or "0" for short */
-    int width, height;    /* 0, 0: the device's current size */
-    int fps_num, fps_den; /* frames per second; 0: the device's current rate */
-    uint32_t fourcc;      /* 0: the format that costs the least to draw in, of
-                             those with this size and rate */
-    int input;            /* index of the input; -1: the input that is
-                             selected */
-    /* range and matrix in place of those that the device states; -1: as the
-     * device states */
+    /* path of the device, such as "/dev/video0"; "0" means this path, too */
+    const char *device;
+    int width, height; /* requested size; 0, 0: the device's current size */
+    /* requested frames per second; 0: the device's current rate */
+    int fps_num, fps_den;
+    /* requested format; 0: of the formats with this size and rate, the one in
+     * which drawing costs the least */
+    uint32_t fourcc;
+    int input; /* index of the input; -1: the input that is
+                  selected */
+    /* range and matrix that replace those that the device states; -1: not
+     * replaced */
     int range, matrix;
 };
 

@@ -99,10 +99,10 @@ static enum glint_status set_output_format(struct glint_v4l2_sink *out,
         got, px->width, px->height, want, like->width, like->height);
 }
 
-/* Starts streaming, although frames are sent by write(2): v4l2loopback 0.12
- * with exclusive_caps=1 accepts output again after glint ends only if glint
- * has streamed. Other drivers refuse, as no buffers were requested; that
- * error is ignored. */
+/* Starts streaming, although frames are sent by write(2). This is needed for
+ * v4l2loopback 0.12 with exclusive_caps=1: otherwise it accepts no output any
+ * more after glint ends. Other drivers refuse because no buffers were
+ * requested; this error is ignored. */
 static void start_streaming(const struct glint_v4l2_sink *out)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
@@ -122,8 +122,9 @@ static void set_frame_rate(const struct glint_v4l2_sink *out, int num, int den)
     glint_ioctl(out->fd, VIDIOC_S_PARM, &parm);
 }
 
-/* Sets the frame's layout and allocates its memory: all planes in one block of
- * SIZE bytes, luma rows STRIDE bytes apart, chroma rows in proportion. */
+/* Sets the frame's layout and allocates its memory. All planes lie in one block
+ * of SIZE bytes. Luma rows are STRIDE bytes apart; the strides of chroma are in
+ * proportion. */
 static enum glint_status set_frame_layout(struct glint_v4l2_sink *out,
                                           size_t stride, size_t size,
                                           struct glint_error *error)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The loops are so simple that compilers vectorise them: they read bytes, sum
- * products of 16 bits in 32 bits, and write bytes. */
+ * Draws pictures on a panel (panel/panel.h). The loops read bytes, sum products
+ * of 16 bits in 32 bits, and write bytes, so that compilers can vectorise them.
+ */
 #include "panel/panel.h"
 
 #include <stdlib.h>
@@ -98,9 +99,9 @@ static const struct mix mixes[2][2] = {
 };
 /* clang-format on */
 
-/* Terms that are added to the products of codes and constants: minus the
- * products of the codes that stand for zero (black, and the codes of Cb = Cr =
- * 0), plus 1/2 for rounding. */
+/* Constant terms of the sums that convert Y', Cb, Cr to R', G', B'. They
+ * subtract the products of the codes that stand for zero (black, and Cb = Cr =
+ * 0) and add 1/2 for rounding. */
 struct bias {
     int32_t red, green, blue, grey;
 };
@@ -117,9 +118,9 @@ static struct bias compute_rounding_bias(const struct mix *m)
     };
 }
 
-/* Returns SUM as a code, clamped to 0 .. 255. |SUM| must be below 2^23, so that
- * the code fits 16 bits before it is clamped; vectors then hold twice as many
- * codes as with 32 bits. */
+/* Returns SUM as a code, clamped to 0 .. 255. |SUM| must be below 2^23. The
+ * code then fits 16 bits before it is clamped, so that vectors hold twice as
+ * many codes as with 32 bits. */
 static inline uint8_t convert_to_code(int32_t sum_q13)
 {
     const int16_t code = (int16_t)(sum_q13 >> 13);
@@ -294,7 +295,7 @@ size_t glint_row_rgb_bytes(int width)
 
 void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 {
-    /* so that an even number of samples fits if WIDTH is odd */
+    /* Chroma needs an even number of samples, also if WIDTH is odd. */
     const ptrdiff_t each = (ptrdiff_t)width + 1;
     uint8_t *const at = mem;
 
@@ -401,7 +402,7 @@ static void pack_byte_channels(const struct glint_row_pack *p, uint8_t *dst,
         pack_three_byte_pixels(dst, byte[0], byte[1], byte[2], n);
 }
 
-/* Returns (CODE * MOST + 127) / 255, computed without a division: exact for
+/* Returns (CODE * MOST + 127) / 255. Needs no division; the result is exact for
  * sums below 65535. */
 static inline uint16_t scale_code_to_max(uint8_t code, uint16_t most)
 {
@@ -542,8 +543,8 @@ static int clamp_side_to_min_1(int side)
     return side < 1 ? 1 : side;
 }
 
-/* Sets the areas so that all of the picture is shown, scaled to fit the panel
- * at its aspect ratio. */
+/* Sets the areas so that the whole picture is shown, scaled to the panel at its
+ * aspect ratio. */
 static void fit_picture_to_panel(struct glint_panel *p)
 {
     const struct glint_panel_config *const c = &p->cfg;

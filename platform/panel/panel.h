@@ -11,9 +11,10 @@
  * ratio, by nearest-neighbour sampling; or it is centred unscaled and cropped.
  * Drawing does not write to the panel outside the picture.
  *
- * Each row is computed in cached memory and then copied, so the panel's own
- * memory is only written, and in order: it may be write-combining. Panel rows
- * that show the same row of the picture are computed once.
+ * Each row is computed in cached memory and then copied to the panel. The
+ * panel's memory, which may be write-combining, is only written, in order of
+ * addresses. If several panel rows show the same row of the picture, this row
+ * is computed once.
  *
  * Packed pixels of any true-colour layout (glint_row_pack):
  *
@@ -21,18 +22,19 @@
  *     out words of 16, 24 or 32 bits, in the order of the machine's bytes,
  *          as Linux describes framebuffers: offset and length of each channel
  *
- * A channel of n bits gets code c as (c (2^n - 1) + 127) / 255: the nearest
- * value, and for 16-bit pixels the inverse of glint_row_rgb_read().
- * Transparency is written as opaque; unused bits are zero.
+ * A code c, 0 .. 255, is written to a channel of n bits as (c (2^n - 1) + 127)
+ * / 255, which is the nearest value. For 16-bit pixels this is the inverse of
+ * glint_row_rgb_read(). A transparency channel is set to opaque; unused bits
+ * are 0.
  *
  * glint_row_rgb reads part of a row as R', G', B' bytes from a picture of any
- * format but GLINT_LINEAR_Q20: R' = Y' ky + Cr k and so on, in integers.
- * Constants have 13 fraction bits (_q13); a sum is rounded once to the nearest
- * code, ties up, then clamped to 0 .. 255. Over all codes the result is within
- * 1 of exact arithmetic, and equal for 99.6 % of codes and for all greys.
- * Chroma of subsampled formats is repeated, as it is when flares are drawn
- * (src/image/codes.c). Channels may point into the picture itself if nothing
- * has to be computed. */
+ * format except GLINT_LINEAR_Q20. It computes R' = Y' ky + Cr k and so on in
+ * integers, where ky and k are constants of the colour matrix with 13 fraction
+ * bits (_q13). A sum is rounded once to the nearest code, ties up, then clamped
+ * to 0 .. 255. The result differs from exact arithmetic by at most 1; it is
+ * equal for 99.6 % of codes and for all greys. Chroma samples of subsampled
+ * formats are repeated, as in src/image/codes.c. If nothing has to be computed,
+ * channels may point into the picture itself. */
 #ifndef GLINT_PLATFORM_PANEL_PANEL_H
 #define GLINT_PLATFORM_PANEL_PANEL_H
 
@@ -64,12 +66,14 @@ struct glint_row_pack {
 
     /* Private members. */
     enum glint_pack_way way;
-    /* BYTES: index of the channel in each byte of a pixel; 3: the byte holds no
-     * colour. */
+    /* for the method BYTES: index of the channel in each byte of a pixel; 3:
+     * the byte holds no colour */
     int channel[4];
-    /* BYTES: a row of values for the byte that holds no colour. */
+    /* for the method BYTES: a row of values for the byte that holds no
+     * colour */
     uint8_t *rest;
-    /* TABLES: bits in the word of a pixel for each code of a colour. */
+    /* for the method TABLES: bits in the word of a pixel for each code of each
+     * channel */
     uint32_t *table[3];
     uint32_t opaque;
 };
@@ -86,8 +90,8 @@ struct glint_panel_config {
 
 struct glint_panel {
     struct glint_panel_config cfg;
-    /* shown: area of the panel that the picture covers; seen: area of the
-     * picture that is shown there */
+    /* shown: area of the panel in which the picture is drawn; seen: part of the
+     * picture that is drawn there */
     struct glint_panel_area {
         int x, y, width, height;
     } shown, seen;

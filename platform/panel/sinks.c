@@ -90,9 +90,9 @@ static void split_chroma_plane(const struct glint_image *to,
 
 enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
 
-/* Matrix by_q16 from R', G', B' (columns) to Y', Cb, Cr (rows), and the
- * constants zero_q16 that are added to the rows: code of zero, plus 1/2 for
- * rounding. */
+/* Conversion of R', G', B' to Y', Cb, Cr. by_q16: matrix with one row per
+ * result. zero_q16: constant that is added to each row: the code that stands
+ * for zero, plus 1/2 for rounding. */
 struct mix {
     int32_t by_q16[3][3], zero_q16[3];
 };
@@ -227,9 +227,9 @@ static bool is_reader_ready(const struct glint_y4m_sink *y)
 {
     struct pollfd writable = {.fd = y->writer.out.fd, .events = POLLOUT};
 
-    return poll(&writable, 1, 0) != 0; /* If poll() reports an error of the
-                                          descriptor, the next write reports it,
-                                          too. */
+    /* An error that poll() reports counts as writable, because the next write
+     * reports it, too. */
+    return poll(&writable, 1, 0) != 0;
 }
 
 static enum glint_status write_y4m_frame(struct glint_sink *sink,

@@ -5,12 +5,13 @@
  *
  * The first frame opens the stream; all frames must have its size, format and
  * range. Formats that Y4M does not support are converted to planes; RGB is
- * written in limited range, as most readers expect. The matrix is not stated,
- * as Y4M has no tag for it: readers assume BT.601 below 720 lines, else BT.709,
- * and RGB is converted with that matrix.
+ * written in limited range, as most readers expect. Y4M has no tag for the
+ * matrix: readers assume BT.601 below 720 lines, else BT.709, and RGB is
+ * converted with this matrix.
  *
- * New frames are dropped and counted while the reader of a pipe has not read
- * the last frame: live frames do not queue. A frame is never written partly.
+ * Live frames do not queue: while the reader of a pipe has not read the last
+ * frame, new frames are dropped and counted. A frame is written completely or
+ * not at all.
  *
  * glint_convert_to_planes() converts any 8-bit picture to planes of Y', Cb, Cr.
  * Samples of packed and half-packed formats are copied, not computed. RGB

@@ -66,10 +66,10 @@ static bool is_library_fault(int signal_number)
 }
 
 /* Signal handler. Runs all registered functions, then lets the signal kill the
- * process; after a fault in a library, exits with status 1 instead.
- * SA_RESETHAND has restored the default action, so the signal, raised again and
- * delivered on return, kills the process with the status that its parent
- * expects. */
+ * process. After a fault in a library, exits with status 1 instead.
+ * SA_RESETHAND has restored the default action, so the signal is raised again;
+ * when the handler returns, it kills the process with the status that the
+ * parent expects. */
 static void handle_signal(int signal_number)
 {
     run_all_handlers();

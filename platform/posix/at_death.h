@@ -5,16 +5,17 @@
  *
  *     glint_at_death_register(remove_files);       once
  *
- * Registered functions run, the latest first, at exit() and when a signal kills
- * the process: a request to end (SIGHUP, SIGINT, SIGTERM, SIGQUIT ...) or a
- * fault of its own (SIGSEGV, SIGABRT ...). The signal's default action then
- * follows, so that a parent sees the status it expects. No function runs after
- * SIGKILL, _exit() and a stack overflow.
+ * Registered functions run at exit() and when a signal kills the process, the
+ * latest first. The signal may be a request to end (SIGHUP, SIGINT, SIGTERM,
+ * SIGQUIT ...) or a fault of the process (SIGSEGV, SIGABRT ...). The signal's
+ * default action follows, so that a parent sees the status that it expects. No
+ * function runs after SIGKILL, _exit() or a stack overflow.
  *
- * The first call changes the actions of signals that the application has left
- * at their default: SIGPIPE and SIGXFSZ are ignored, so that writing fails
- * instead, and signals that kill the process get a handler. An application with
- * handlers of its own must end by exit() or glint_at_death_end_by_signal().
+ * The first call changes the actions of signals, except those for which the
+ * application has set an action. SIGPIPE and SIGXFSZ are ignored, so that
+ * writing fails instead. Signals that kill the process get a handler. An
+ * application with handlers of its own must end by exit() or
+ * glint_at_death_end_by_signal().
  */
 #ifndef GLINT_PLATFORM_POSIX_AT_DEATH_H
 #define GLINT_PLATFORM_POSIX_AT_DEATH_H
@@ -30,15 +31,15 @@ typedef void glint_at_death_fn(void);
  * glint. */
 bool glint_at_death_register(glint_at_death_fn *fn);
 
-/* Sets REPORT, which is called when a library may have ended the process: by
- * exit(), as libjpeg does, by an abort (SIGABRT, an assertion, std::terminate)
- * or by an access to invalid memory, which then becomes exit code 1. REPORT
- * must be async-signal-safe; if the library is running, it prints a message and
- * returns 1, else it returns 0. A later REPORT replaces it. */
+/* Sets REPORT, which replaces an earlier one. It is called when a library may
+ * have ended the process: by exit(), as libjpeg does; by an abort (SIGABRT, an
+ * assertion, std::terminate); or by an access to invalid memory, which then
+ * becomes exit code 1. REPORT must be async-signal-safe. It must return 0 if
+ * the library is not running; otherwise it prints a message and returns 1. */
 void glint_at_death_set_library_report(int (*report)(void));
 
-/* Runs all functions, then ends the process by the default action of
- * SIGNAL_NUMBER; for an application's own signal handlers.
+/* Runs all registered functions, then ends the process by the default action of
+ * SIGNAL_NUMBER. Signal handlers of an application call it.
  * Async-signal-safe. */
 void glint_at_death_end_by_signal(int signal_number);
 

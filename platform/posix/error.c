@@ -30,7 +30,7 @@ size_t glint_utf8_get_length(const char *text)
         return length;
     code = byte[0] & (0x7fu >> length);
     for (size_t i = 1; i < length; i++) {
-        /* true also for the zero byte that ends TEXT */
+        /* This also rejects the zero byte that ends TEXT. */
         if ((byte[i] & 0xc0) != 0x80)
             return 0;
         code = code << 6 | (byte[i] & 0x3fu);

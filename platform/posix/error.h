@@ -25,9 +25,9 @@ size_t glint_utf8_get_length(const char *text);
 void glint_utf8_replace_unprintable(char *text);
 
 /* Sets ERROR to "FILE: cause" and returns STATUS, so that callers report and
- * return in one statement. If FILE is long, its beginning is cut off, so that
- * the cause fits. Control characters, which hostile files and names may
- * contain, become '?', so that the text is one line. */
+ * return in one statement. The beginning of a long FILE is omitted so that the
+ * cause fits. Control characters, which hostile files and names may contain,
+ * become '?', so that the text is one line. */
 enum glint_status glint_error_report(struct glint_error *error,
                                      enum glint_status status, const char *file,
                                      const char *format, ...)

@@ -27,9 +27,9 @@ struct glint_input {
 enum glint_status glint_input_open(struct glint_input *in, const char *path,
                                    struct glint_error *error);
 
-/* Like glint_input_open(), but only for input that ends: a regular file, "-",
- * /dev/null, or a pipe that is open already (/dev/fd/N). Never waits for a
- * writer. Returns GLINT_E_IO if PATH is a FIFO or another device. */
+/* Like glint_input_open(), but accepts only input that has an end: a regular
+ * file, "-", /dev/null, or a pipe that is already open (/dev/fd/N). Never waits
+ * for a writer. Returns GLINT_E_IO if PATH is a FIFO or another device. */
 enum glint_status glint_input_open_file(struct glint_input *in,
                                         const char *path,
                                         struct glint_error *error);

@@ -48,8 +48,9 @@ static void copy_folder_of_path(char *folder, const char *path)
 
 /* Returns whether the kernel would follow the symbolic link at PATH, whose
  * status is LINK. In a folder that everybody may write to, the kernel follows
- * only links of the user and of the folder's owner, but reports a refusal only
- * if the link leads to an existing file. */
+ * only links of this user and of the folder's owner. The check is needed
+ * because the kernel itself reports a refusal only if the file at the end of
+ * the link exists. */
 static bool may_follow_link(const char *path, const struct stat *link)
 {
     char folder[PATH_BYTES];
@@ -106,11 +107,11 @@ static char *follow_dangling_links(const char *path)
     return NULL;
 }
 
-/* Returns the path of the file that PATH leads to after all links; the
- * caller frees it. ST is the status of PATH, or NULL if there is no file
- * yet, as at the end of a dangling link. On failure returns NULL with errno
- * set: EACCES for a dangling link that the kernel would not follow, ESTALE
- * if PATH now leads to another file than ST, or a system error. */
+/* Returns the path of the file that PATH leads to after all links; the caller
+ * frees it. ST is the status of this file, or NULL if it does not exist yet,
+ * for example behind a dangling link. On failure returns NULL with errno set:
+ * EACCES for a dangling link that the kernel would not follow, ESTALE if PATH
+ * now leads to another file than ST, or a system error. */
 static char *resolve_links_of_target(const char *path, const struct stat *st)
 {
     struct stat now;
@@ -226,9 +227,9 @@ static void remove_if_abandoned(int folder, const char *name)
     close(fd);
 }
 
-/* Removes temporary files that killed runs have left in TARGET's folder: files
- * of this user whose process has ended and that no process on any machine has
- * locked. Does nothing if the last call cleaned the same folder. */
+/* Removes temporary files that killed runs have left in TARGET's folder. These
+ * are files of this user whose process has ended and that no process on any
+ * machine has locked. Does nothing if the last call cleaned the same folder. */
 static void remove_abandoned_files(const char *target)
 {
     /* hash of inode and device of the folder that was cleaned last */
@@ -255,8 +256,8 @@ static void remove_abandoned_files(const char *target)
 
 #define BUFFER_BYTES 65536
 #define MAX_TMP      16 /* max number of open temporary files */
-/* max number of temporary names to try, as files with some of these names may
- * exist */
+/* max number of temporary names to try; files with some of the names may
+ * already exist */
 #define MAX_TRIES 1000
 
 /* ---------------------------------------------- files to remove when dying */
@@ -293,9 +294,9 @@ static bool register_temporary_file(char *name)
     return false;
 }
 
-/* Removes NAME from the list of temporary files and frees it. If DYING is set,
- * NAME is not freed, as another thread may use it in
- * remove_all_temporary_files(). */
+/* Removes NAME from the list of temporary files and frees it. NAME is not freed
+ * if DYING is set, because remove_all_temporary_files() may use it in another
+ * thread. */
 static void unregister_temporary_file(char *name)
 {
     for (int i = 0; i < MAX_TMP; i++) {
@@ -318,9 +319,10 @@ static enum glint_status report_open_refusal(const struct glint_output *out,
                               strerror(number));
 }
 
-/* Creates the file NAME and adds it to the list of temporary files. Blocks
- * signals meanwhile, as a signal between the two steps would leave the file
- * behind. Returns the file's descriptor, or -1 with errno set. */
+/* Creates the file NAME and adds it to the list of temporary files. Signals are
+ * blocked between the two steps; otherwise a signal could kill the process
+ * before the file is in the list, and the file would remain. Returns the file's
+ * descriptor, or -1 with errno set. */
 static int create_temporary_file(char *name, mode_t mode)
 {
     sigset_t held, old;
@@ -341,9 +343,9 @@ static int create_temporary_file(char *name, mode_t mode)
     return fd;
 }
 
-/* Reports that no temporary file could be created, with the last 40 bytes of
- * its folder's name, cut at a whole character, so that the cause fits behind
- * the name. */
+/* Reports that no temporary file could be created. The message contains at most
+ * the last 40 bytes of the folder's name, beginning with a complete character,
+ * so that the cause fits behind it. */
 static enum glint_status
 report_temporary_file_failure(const struct glint_output *out, int number,
                               struct glint_error *error)
@@ -402,9 +404,10 @@ static enum glint_status open_temporary_file(struct glint_output *out,
 }
 
 /* Resolves the links of OUT's name and sets OUT's target, unless the file
- * exists and is not regular. Sets ST to the status of an existing file, else
- * IS_THERE to false. Tries again if another process replaces the file
- * meanwhile, as jobs that finish together may do. Returns 0 or an errno. */
+ * exists and is not regular. Sets IS_THERE to whether the file exists, and ST
+ * to its status. Tries again if another process replaces the file at the same
+ * time, which happens if several jobs finish together. Returns 0 or an
+ * errno. */
 static int find_output_target(struct glint_output *out, struct stat *st,
                               bool *is_there)
 {

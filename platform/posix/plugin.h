@@ -14,17 +14,16 @@
 #include "glint/status.h"
 
 struct glint_plugin {
-    /* File name of the library; without .so it is the name of its Debian
-     * package. */
+    /* File name of the library. Without ".so" it is also the name of the Debian
+     * package of the plug-in. */
     const char *file;
     const char *setting; /* environment variable with the path of the library */
     const char *symbol;  /* name of the exported struct */
     const char *noun;    /* name in messages, such as "the image plug-in" */
     int version;         /* version of the interface; plug-ins of other versions
                             are rejected */
-    /* Members for the message that the plug-in is missing. */
-    /* what follows if the plug-in is missing, appended to the message: ", so
-     * that ...", or "" */
+    /* Members for the message that is printed if the plug-in is missing. */
+    /* consequence that is appended to the message: ", so that ...", or "" */
     const char *without;
     const char *library; /* Debian package needed to build it */
     const char *target;  /* make target that builds it */
@@ -32,11 +31,11 @@ struct glint_plugin {
 
 /* Returns the struct that PLUGIN exports. If the environment variable
  * plugin->setting is set, it names the library's file, and no folder is
- * searched. Otherwise searches the folder of the program, or host plug-in, that
- * contains this code; ../lib/glint from there; and GLINT_PLUGIN_DIR, if that
- * was defined when compiling. Skips folders that everybody may write to.
- * Returns NULL, with the cause in ERROR, if the plug-in is not found or
- * rejected. Not thread-safe. */
+ * searched. Otherwise searches three folders: the folder of the program or host
+ * plug-in that contains this code; ../lib/glint relative to it; and
+ * GLINT_PLUGIN_DIR, if that was defined when compiling. Skips folders that
+ * everybody may write to. Returns NULL, with the cause in ERROR, if the plug-in
+ * is not found or rejected. Not thread-safe. */
 const void *glint_plugin_load(const struct glint_plugin *plugin,
                               struct glint_error *error);
 

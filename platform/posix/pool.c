@@ -37,8 +37,8 @@ struct pool {
     void *ctx;
     unsigned n_jobs;
 
-    /* Index of the next job; atomic. Unsigned, as every worker increments it
-     * once past the end. */
+    /* Index of the next job; atomic. It is unsigned because every worker
+     * increments it once more after the last job. */
     unsigned next;
     int n_helpers;
     struct helper helper[GLINT_MAX_WORKERS - 1];
@@ -100,15 +100,16 @@ static void run_jobs(struct glint_workers *workers, int n_jobs,
     run_remaining_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
-    p->open = false; /* A helper that has not woken up yet would find no job
-                        left. */
+    /* Helpers that have not woken up yet may not join, because no job is
+     * left. */
+    p->open = false;
     while (p->busy > 0)
         pthread_cond_wait(&p->idle, &p->lock);
     pthread_mutex_unlock(&p->lock);
 }
 
-/* Blocks all signals except those of a thread's own faults (SIGSEGV ...): if
- * these were blocked, a fault would kill the process without running the
+/* Blocks all signals except those of faults of the thread itself (SIGSEGV ...).
+ * If these were blocked, a fault would kill the process without running the
  * functions of posix/at_death.h. */
 static void block_signals(sigset_t *old)
 {

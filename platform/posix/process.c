@@ -18,8 +18,8 @@ void glint_process_open_closed_streams(void)
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
         if (fcntl(fd, F_GETFD) < 0 && errno == EBADF &&
             open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY) != fd)
-            _exit(1); /* No stream is open on which the cause could be
-                         printed. */
+            /* The cause cannot be printed because no stream is open. */
+            _exit(1);
 }
 
 const char *glint_process_get_setting(const char *name)
@@ -27,9 +27,9 @@ const char *glint_process_get_setting(const char *name)
     return secure_getenv(name);
 }
 
-/* Returns the file name in LINE of /proc/self/maps, "BEGIN-END ... FILE" with
- * two hexadecimal addresses, if the range contains the address AT; else
- * NULL. */
+/* Returns the file name in LINE of /proc/self/maps if the line's address range
+ * contains AT; else NULL. A line is "BEGIN-END ... FILE"; BEGIN and END are
+ * hexadecimal addresses. */
 static const char *find_mapped_file(const char *line, uintptr_t at)
 {
     char *rest;
@@ -39,10 +39,10 @@ static const char *find_mapped_file(const char *line, uintptr_t at)
     return begin <= at && at < end ? strchr(rest, '/') : NULL;
 }
 
-/* Reads /proc/self/maps, as dladdr() returns the path passed to dlopen(), which
- * may be relative to an earlier working directory, and argv[0] for a program.
- * Allocates no memory: if an allocation failed, a file that exists would be
- * reported as missing. */
+/* Reads /proc/self/maps instead of calling dladdr(). For a library, dladdr()
+ * returns the path passed to dlopen(), which may be relative to an earlier
+ * working directory; for a program, it returns argv[0]. Allocates no memory: if
+ * an allocation failed, a file that exists would be reported as missing. */
 bool glint_process_find_own_file(char *path, size_t bytes)
 {
     static const char own = 0;

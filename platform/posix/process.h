@@ -16,22 +16,23 @@
 #define GLINT_WORKER_STACK_BYTES (2 << 20)
 #endif
 
-/* Opens each closed descriptor of 0 to 2 such that reading or writing it
- * fails, so that no file opened later becomes standard input, output or
- * error. */
+/* Opens those of the descriptors 0 to 2 that are closed, such that reading or
+ * writing them fails. Otherwise a file opened later could become standard
+ * input, output or error. */
 void glint_process_open_closed_streams(void);
 
 /* Returns the value of the environment variable NAME, or NULL if it is not set
  * or the program is setuid or setgid. */
 const char *glint_process_get_setting(const char *name);
 
-/* Sets PATH to the absolute path of the program, or of the plug-in of a host,
- * that this code is linked into. Returns false if it is unknown or too long. */
+/* Sets PATH to the absolute path of the file that contains this code: the
+ * program, or the plug-in of a host. Returns false if the path is unknown or
+ * too long. */
 bool glint_process_find_own_file(char *path, size_t bytes);
 
-/* Returns FN(CTX). If the stack limit is below BYTES, FN runs in a thread with
- * a stack of BYTES, which then receives all signals; if the thread cannot be
- * created, FN runs directly. For main(). */
+/* Returns FN(CTX). If the stack limit is below BYTES, runs FN in a thread with
+ * a stack of BYTES; this thread then receives all signals. If the thread cannot
+ * be created, runs FN directly. Meant for main(). */
 int glint_process_run_with_stack(size_t bytes, int (*fn)(void *ctx), void *ctx);
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The window plug-in glint-sdl.so: the only file that uses SDL2. */
+ * The window plug-in glint-sdl.so. No other file of glint uses SDL2. */
 #include <SDL2/SDL.h>
 #include <stdlib.h>
 

@@ -9,8 +9,8 @@
  *
  * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is
  * requested, from $GLINT_SDL or the folders that posix/plugin.h lists. The
- * picture keeps its aspect ratio in a window of any size. Once the user closes
- * it or presses Escape or q, put returns GLINT_E_CLOSED. */
+ * picture keeps its aspect ratio in a window of any size. After the user has
+ * closed the window or pressed Escape or q, put returns GLINT_E_CLOSED. */
 #ifndef GLINT_PLATFORM_SDL_SDL_H
 #define GLINT_PLATFORM_SDL_SDL_H
 
@@ -46,9 +46,9 @@ struct glint_window {
     int width, height; /* size of the pictures that the window shows, pixels */
 };
 
-/* Prepares WINDOW; the first frame opens it on the desktop. TITLE must outlive
- * WINDOW. Returns GLINT_E_DEVICE if there is no plug-in; ERROR names another
- * way to show frames. */
+/* Prepares WINDOW. The window appears on the desktop with the first frame.
+ * TITLE must outlive WINDOW. If there is no plug-in, returns GLINT_E_DEVICE,
+ * and ERROR suggests another way to show frames. */
 enum glint_status glint_window_open(struct glint_window *window,
                                     const char *title,
                                     struct glint_error *error);

@@ -154,7 +154,8 @@ static int64_t compute_log2_q32(uint64_t n, uint64_t d)
         n *= 2;
         whole--;
     }
-    while (d >> 31) { /* so that n * 2^31 fits into 64 bits, as n < 2 d */
+    /* After the shifts n * 2^31 fits into 64 bits, because n < 2 d. */
+    while (d >> 31) {
         n >>= 1;
         d >>= 1;
     }
@@ -232,7 +233,8 @@ static int32_t decode_pq_q24(int step, int steps)
  * is light 1 and the peak is 3.774118. */
 static int32_t decode_hlg_q24(int64_t step, int64_t steps)
 {
-    /* log2(e) / a, c, b and the peak light */
+    /* slope: log2(e) / a; c and b: as in the formula above; peak: the peak
+     * light */
     const int64_t slope_q24 = 135346594, c_q32 = 2404798274;
     const int64_t b_q24 = 4775952, peak_q24 = 63319195;
     int64_t v_q32, light_q24;

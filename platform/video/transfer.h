@@ -3,9 +3,9 @@
  * video/transfer.h - the transfer curves and primaries that tags of a video
  * name [ITU-T H.273], in integers, so that results are the same on every CPU.
  *
- * Light 1 is diffuse white: code 1, but 203 cd/m2 by PQ and 0.265 of the peak
- * of the scene light by HLG [ITU-R BT.2408], so that PQ can represent light up
- * to 49.3 and HLG up to 3.77. */
+ * Light 1 is diffuse white, which most curves encode as the code 1. PQ encodes
+ * it as 203 cd/m2, and HLG as 0.265 of the peak of the scene light [ITU-R
+ * BT.2408]. PQ can therefore represent light up to 49.3, and HLG up to 3.77. */
 #ifndef GLINT_PLATFORM_VIDEO_TRANSFER_H
 #define GLINT_PLATFORM_VIDEO_TRANSFER_H
 
@@ -43,9 +43,9 @@ extern const char *const glint_transfer_words[];
 int glint_transfer_from_tag(const char *tag);
 int glint_primaries_from_tag(const char *tag);
 
-/* Returns the light of code v = STEP / STEPS, 0 <= STEP <= STEPS <= 2^16; 2^24
- * is white. Light rises with STEP; light below 2^-24 is 0. The relative error
- * is below 1e-5 plus rounding. */
+/* Returns the light of code v = STEP / STEPS, where 0 <= STEP <= STEPS <= 2^16.
+ * 2^24 stands for white. Light rises with STEP; light below 2^-24 of white is
+ * 0. The relative error is below 1e-5 plus rounding. */
 int32_t glint_transfer_decode_q24(enum glint_transfer_curve curve, int step,
                                   int steps);
 

@@ -312,8 +312,8 @@ static bool parse_header_tag(struct glint_y4m_header *h, const char *tag)
         return tag[1] && copy_tag_text(h->colour, sizeof h->colour, tag + 1);
     }
     if (!parse_colour_range(h, tag)) {
-        /* All tags fit into EXTRA, as they come from a line that is not
-         * longer. */
+        /* All tags fit into EXTRA because the header line is not longer than
+         * EXTRA. */
         strcat(h->extra, " ");
         strcat(h->extra, tag);
     }
@@ -545,7 +545,8 @@ glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
     return status;
 }
 
-/* Sets *MORE to whether a stream without FRAME lines continues. */
+/* Sets *MORE to whether another frame follows in a stream without FRAME
+ * lines. */
 static enum glint_status peek_raw_frame(struct glint_y4m_reader *r, bool *more,
                                         struct glint_error *error)
 {
@@ -561,9 +562,9 @@ static enum glint_status peek_raw_frame(struct glint_y4m_reader *r, bool *more,
     return GLINT_OK;
 }
 
-/* Reads the rows of a frame that are padded to r->stride, without the padding.
- * Returns the number of bytes of pixels read, fewer than a frame at the end of
- * the stream, or -1 on failure. */
+/* Reads a frame whose rows are padded to r->stride, and omits the padding.
+ * Returns the number of bytes of pixels read, which is less than a frame at the
+ * end of the stream, or -1 on failure. */
 static ptrdiff_t read_padded_rows(struct glint_y4m_reader *r)
 {
     uint8_t *to = r->planes;
@@ -620,8 +621,8 @@ allocate_copy_tables(const struct glint_y4m_header *h)
     return seen;
 }
 
-/* Sets r->frame. Its memory is allocated with the first frame, so that reading
- * only the header needs none. */
+/* Sets r->frame and allocates its memory. Called for the first frame, so that a
+ * program that reads only the header needs no memory. */
 static enum glint_status allocate_frame(struct glint_y4m_reader *r,
                                         struct glint_error *error)
 {
@@ -984,8 +985,9 @@ static void convert_to_ycc(const struct glint_y4m_light *l,
     ycc_q20[2] = y4m_scaled_quotient((int32_t)(rgb_q20[0] - y), l->cr_factor);
 }
 
-/* Sets the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when the
- * fraction COVER_Q8 of its light is hidden and the light of LAYER is added. */
+/* Computes the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC. They
+ * occur if the fraction COVER_Q8 of its light is hidden and the light of LAYER
+ * is added. */
 static void compute_code_change(const struct glint_y4m_light *l,
                                 const int32_t ycc[3], const float *layer,
                                 int cover_q8, int64_t change_q20[3])
@@ -1019,8 +1021,8 @@ static bool has_block_added_light(const float *layer)
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
 }
 
-/* Returns SUM_Q20 / COUNT, rounded to an integer. COUNT is 1 .. 4; 3 occurs
- * only at the right edge of 4:1:1. */
+/* Returns SUM_Q20 / COUNT, rounded to an integer. COUNT is the number of pixels
+ * per chroma sample, 1 .. 4; it is 3 only at the right edge of 4:1:1. */
 static int64_t divide_by_pixel_count(int64_t sum_q20, int count)
 {
     const int64_t whole = 3 * (int64_t)WHITE_Q20;
@@ -1144,7 +1146,7 @@ static void convert_block_to_bt709(const struct glint_y4m_seen *seen,
             sum[0] += made[1];
             sum[1] += made[2];
         }
-    /* The copy of a 4:1:1 frame is 4:2:2. */
+    /* The BT.709 copy of a 4:1:1 frame has the format 4:2:2. */
     for (int c = 1; c < 3 && !is_grey; c++)
         for (int x = b->x0; x < b->x1; x += 2)
             write_sample_code(

@@ -14,13 +14,13 @@
  * ffmpeg -f yuv4mpegpipe writes and reads such streams: one header line and
  * then, for each frame, a line FRAME and the planes Y, Cb, Cr without padding.
  * Chroma of subsampled formats has (side + 1) / 2 samples, as everywhere in
- * glint. The layouts that are handled are listed below; the siting of the
- * chroma samples of 4:2:0 makes no difference here. Frames of more than 8 bits,
- * of 4:1:1, or of a transfer or primaries other than BT.709 are returned as an
- * 8-bit BT.709 copy, for analysis. The stored planes, with the alpha plane if
- * there is one, are in reader->planes: glint_y4m_light adds light to them, and
- * glint_y4m_writer_put_planes() writes them. Both fields of an interlaced frame
- * are treated as one picture.
+ * glint. The supported layouts are listed below. The positions of the chroma
+ * samples of 4:2:0 relative to luma (siting) are ignored. A frame is returned
+ * as an 8-bit BT.709 copy, for analysis, if it has more than 8 bits, is 4:1:1,
+ * or has a transfer or primaries other than BT.709. The stored planes, with the
+ * alpha plane if there is one, are in reader->planes: glint_y4m_light adds
+ * light to them, and glint_y4m_writer_put_planes() writes them. Both fields of
+ * an interlaced frame are treated as one picture.
  *
  * Colours of a stream, unless the caller changes them in the header after open:
  *   range     limited; full only by the tag XCOLORRANGE=FULL. C420jpeg
@@ -53,8 +53,8 @@
 struct glint_y4m_seen;
 
 struct glint_y4m_layout {
-    /* GLINT_GREY, _I420, _I422 or _I444; _I422 for 4:1:1, as its copy is
-     * 4:2:2. */
+    /* GLINT_GREY, _I420, _I422 or _I444; for 4:1:1 _I422, the format of its
+     * 8-bit copy */
     enum glint_pixel_format format;
     int bits;       /* bits per sample, 8 .. 16 */
     bool has_alpha; /* a fourth plane of full size, which is copied unchanged */
@@ -86,8 +86,8 @@ struct glint_y4m_header {
                                    stated */
     bool range_stated;          /* the stream has the tag XCOLORRANGE */
     char extra[GLINT_Y4M_LINE]; /* all other tags, each after a space */
-    /* The header line that was read, or "". Printed again unchanged if range
-     * equals line_range. */
+    /* The header line that was read, or "". It is printed again unchanged if
+     * range still equals line_range. */
     char line[GLINT_Y4M_LINE];
     enum glint_range line_range;
 };
@@ -172,10 +172,10 @@ enum glint_status glint_y4m_reader_open(struct glint_y4m_reader *reader,
                                         const char *path,
                                         struct glint_error *error);
 
-/* Opens PATH, raw frames in the format of HEADER without header and FRAME
- * lines, as camera programs write them. Rows of luma begin STRIDE bytes apart,
- * rows of narrower chroma half as far apart; if STRIDE is 0, rows have no
- * padding. Returns GLINT_E_IO on failure. */
+/* Opens PATH, a stream of raw frames in the format of HEADER. It has no header
+ * and no FRAME lines, like the output of camera programs. Rows of luma begin
+ * STRIDE bytes apart, rows of narrower chroma half as far apart; if STRIDE is
+ * 0, rows have no padding. Returns GLINT_E_IO on failure. */
 enum glint_status
 glint_y4m_reader_open_raw(struct glint_y4m_reader *reader, const char *path,
                           const struct glint_y4m_header *header, size_t stride,
@@ -235,11 +235,11 @@ void glint_y4m_writer_abort(struct glint_y4m_writer *writer);
 /* -------------------------------------------------------------------- light
  *
  * Light on frames of any depth, layout and transfer. Codes are converted to R',
- * G', B' and then to linear light (video/transfer.h). Light is added there, and
- * the codes are changed by the resulting difference, chroma by its mean over
- * the pixels of a chroma sample. All arithmetic is in integers, so that results
- * are the same on every machine; codes of pixels without added light do not
- * change. */
+ * G', B' and then to linear light (video/transfer.h). Light is added to the
+ * linear light. The codes of the frame are then changed by the difference that
+ * this makes; a chroma sample is changed by the mean difference of its pixels.
+ * All arithmetic is in integers, so that results are the same on every machine;
+ * codes of pixels without added light do not change. */
 
 enum {
     GLINT_Y4M_STEPS = 4096,   /* number of steps of R'G'B' from black to
@@ -263,7 +263,8 @@ struct glint_y4m_light {
     enum glint_primaries primaries;
     /* linear light of each step of R'G'B'; 2^24: white */
     int32_t decode_q24[GLINT_Y4M_STEPS + 1];
-    /* R'G'B' by octave of light and entry in the octave; 2^20: white */
+    /* R', G' or B' as a function of light: [octave of the light][entry in the
+     * octave]; 2^20: white */
     int32_t encode_q20[GLINT_Y4M_OCTAVES][GLINT_Y4M_IN_OCTAVE + 1];
 };
 

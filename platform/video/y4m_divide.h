@@ -10,17 +10,18 @@
 
 enum { Y4M_SHARE_BITS = 40, Y4M_PART_BITS = 48, Y4M_PART_SKIP = 14 };
 
-/* Returns the factor with which y4m_scaled_quotient() computes K 2^UP / D; UP
+/* Returns the factor that y4m_scaled_quotient() needs to compute K 2^UP / D. UP
  * must be at most 20, D 219 .. 65535. */
 static inline int64_t y4m_scaled_quotient_factor(int up, int32_t d)
 {
     return ((INT64_C(1) << (up + Y4M_SHARE_BITS)) + d - 1) / d;
 }
 
-/* Returns K 2^UP / D; |K| is at most 2^20, and the result at most 2^22. FACTOR
- * is too large by less than 1, so the quotient before the shift is too large by
- * less than 2^-20. A quotient that is not an integer is at least 1 / 2D below
- * the next integer, so the error never reaches it. */
+/* Returns K 2^UP / D, where UP and D are those of FACTOR. |K| must be at most
+ * 2^20, and the result at most 2^22. FACTOR is too large by less than 1, so the
+ * quotient before the shift is too large by less than 2^-20. A quotient that is
+ * not an integer is at least 1 / 2D below the next integer, so this error
+ * cannot reach the integer. */
 static inline int32_t y4m_scaled_quotient(int32_t k, int64_t factor)
 {
     const int64_t size = k < 0 ? -(int64_t)k : k;
@@ -31,7 +32,7 @@ static inline int32_t y4m_scaled_quotient(int32_t k, int64_t factor)
     return (int32_t)(k < 0 ? -share : share);
 }
 
-/* Returns the factor with which y4m_divide_fraction() divides by D, 2^15 ..
+/* Returns the factor that y4m_divide_fraction() needs to divide by D, 2^15 ..
  * 2^16. */
 static inline int64_t y4m_fraction_factor(int32_t d)
 {
@@ -39,7 +40,8 @@ static inline int64_t y4m_fraction_factor(int32_t d)
 }
 
 /* Returns N / D, clamped to 0 .. 2^20. The bits lost by Y4M_PART_SKIP and by
- * rounding FACTOR amount to less than 1, so Q is the quotient or one less. */
+ * rounding FACTOR amount to less than 1. Q is therefore the quotient or one
+ * less. */
 static inline int32_t y4m_divide_fraction(int64_t n, int32_t d, int64_t factor)
 {
     const int64_t m = n + d / 2;
