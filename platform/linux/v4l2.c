@@ -605,10 +605,10 @@ static void queue_idle_buffers(struct glint_v4l2 *v)
 }
 
 /* Returns the number of frames lost before the frame with number SEQUENCE.
- * Returns 0 where sequence numbers are unreliable. These are the first two
- * frames after a start (v4l2loopback begins with an old number), numbers that a
- * driver repeats, and gaps above MAX_GAP (so long a gap would have been a
- * stall). */
+ * Returns 0 in three cases in which sequence numbers are unreliable. The first
+ * two frames after a start: v4l2loopback begins with an old number. A number
+ * that the driver repeats. A gap above MAX_GAP: so long a gap would have been a
+ * stall. */
 static int count_missing_frames(struct glint_v4l2 *v, uint32_t sequence)
 {
     const uint32_t missing = sequence - v->sequence - 1;

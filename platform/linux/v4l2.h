@@ -16,10 +16,10 @@
  *
  * next() stops a broken stream and negotiates the format again. A stream is
  * broken after failed requests, a fatal error of the driver, a change of the
- * source, 30 damaged frames in a row, or if no frame arrives for two seconds
- * and four frame times. start() or the next call of next() then starts the
- * stream again. If the stream does not work within a second, or the device was
- * removed, start() and next() return GLINT_E_DEVICE. */
+ * source, or 30 damaged frames in a row. It is also broken if no frame arrives
+ * for two seconds and four frame times. start() or the next call of next() then
+ * starts the stream again. If the stream does not work within a second, or the
+ * device was removed, start() and next() return GLINT_E_DEVICE. */
 #ifndef GLINT_PLATFORM_LINUX_V4L2_H
 #define GLINT_PLATFORM_LINUX_V4L2_H
 

@@ -19,7 +19,7 @@
 #define GLINT_V4L2_PATH 256
 
 struct glint_v4l2_config {
-    /* path of the device, such as "/dev/video0"; "0" means this path, too */
+    /* path of the device, such as "/dev/video0", or its number, such as "0" */
     const char *device;
     int width, height; /* requested size; 0, 0: the device's current size */
     /* requested frames per second; 0: the device's current rate */

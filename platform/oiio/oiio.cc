@@ -131,8 +131,9 @@ OIIO::ImageSpec describe_layer(const struct glint_oiio_layers *layers, int k)
     return spec;
 }
 
-/* Encodes LAYERS as the parts of a temporary file, because OpenImageIO 2.4 can
- * write files of several parts only by file name. */
+/* Encodes LAYERS, one part per layer. Uses a file in memory that has a file
+ * name, because OpenImageIO 2.4 can write files of several parts only by
+ * name. */
 std::vector<unsigned char> encode_parts(const char *path,
                                         const struct glint_oiio_layers *layers)
 {

@@ -24,9 +24,9 @@ static double draw_random_number(struct random *r)
     return (double)((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
 }
 
-/* A bundle of rays: those of one ghost, direction and wavelength. Contains the
- * model's data and the exact path of the bundle, and the errors measured so
- * far. */
+/* A bundle is the set of rays of one ghost, direction and wavelength. This
+ * struct holds the model's data and the exact path of a bundle, and the errors
+ * measured so far. */
 struct meter {
     const struct glint_visible *visible;
     const struct glint_fitted_system *fitted;

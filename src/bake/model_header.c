@@ -19,12 +19,12 @@ enum {
     REVISION = 13,
     /* revision for lenses faster than GLINT_WIDE, replaces REVISION */
     WIDE_REVISION = 17,
-    /* added to the revision of lenses with non-spherical surfaces */
+    /* further revision in the key of lenses with non-spherical surfaces */
     SHAPED_REVISION = 1,
-    /* added to the revision of lenses that are not round */
+    /* further revision in the key of lenses that are not round */
     SKEW_REVISION = 2,
-    /* added to the revision of round lenses that are baked for lights beyond
-     * GLINT_FAR degrees */
+    /* further revision in the key of round lenses that are baked for lights
+     * beyond GLINT_FAR degrees */
     FAR_REVISION = 3
 };
 

@@ -246,9 +246,9 @@ struct sides {
     double x[3][MOST], value[MOST];
 };
 
-/* Fits the box polynomial SIDE to the samples SIDES. It has DEGREE in the
- * direction coordinates s and p, and terms linear in the wavelength coordinate
- * w. The error may exceed TOLERANCE if no such polynomial meets it. */
+/* Fits the box polynomial SIDE to the samples SIDES. The polynomial has DEGREE
+ * in the direction coordinates s and p, and is linear in the wavelength
+ * coordinate w. Its error exceeds TOLERANCE if no such polynomial meets it. */
 static void fit_box_polynomial(const struct sides *sides, int degree,
                                double tolerance, double side[GLINT_BOX_TERMS])
 {
@@ -280,7 +280,7 @@ static void fit_box_polynomial(const struct sides *sides, int degree,
 }
 
 /* Returns the number that must be added to the half-size polynomial HALF so
- * that none of its values, sampled over ZONE, is negative. */
+ * that its min over ZONE, which is sampled, becomes 0. */
 static double compute_size_deficit(const struct glint_zone *zone,
                                    const double half[GLINT_BOX_TERMS])
 {

@@ -16,8 +16,9 @@
 /* patches whose larger side is at most this difference of sines are not
  * halved */
 #define LEAST_SIDE 0.04
-/* Patches whose larger side is below this difference of sines are accepted if
- * the last halving did not help and their error is at most attempt.bearable. */
+/* A patch is accepted although its error is above attempt.kept if three
+ * conditions hold: its larger side is below this difference of sines, the last
+ * halving did not help, and its error is at most attempt.bearable. */
 #define STUCK_SIDE 0.12
 /* Halving a patch did not help if a half still has more than this fraction of
  * the patch's error. */
@@ -32,8 +33,8 @@
 /* Min width in w (0 .. 2) of a band that is halved. */
 #define LEAST_BAND 0.6
 /* If visible light fills more than this fraction of a patch's pupil box, the
- * two halves of the patch are searched for light only inside the box. The
- * search grid is then fine enough not to miss light. */
+ * search for light in its two halves is limited to this box. The search grid is
+ * then fine enough not to miss light. */
 #define SOLID 0.08
 /* PART_LEFT: min error, in tolerances, at which a pupil box is divided into
  * parts (see next.c). MOST_HIDDEN: upper limit of the factor that raises

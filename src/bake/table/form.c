@@ -46,8 +46,9 @@ bool glint_prescription_is_round(const struct glint_prescription *lens)
 
 /* --------------------------------------------------------------------- sag */
 
-/* Sets AT to the profile (sag as a function of the squared height) by the lens
- * table's formula at H2, and to its first and second derivative by H2. */
+/* Evaluates the lens table's formula for the profile, which is the sag as a
+ * function of the squared height. Sets AT to its value at H2 and to its first
+ * and second derivative by H2. */
 static void evaluate_table_profile(const struct glint_form *f, double h2,
                                    double at[3])
 {

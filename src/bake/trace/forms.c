@@ -5,8 +5,8 @@
  * A form is such a surface, prepared for tracing (bake/table/form.h). At round
  * forms and at cylinders on the axis, Newton's method runs for all lanes at
  * once and starts at the vertex plane. It is certain to find the nearest
- * intersection if the ray stays within the glass and is steeper than the
- * profile at every point, because z - sag is then monotone along the ray. All
+ * intersection if z - sag is monotone along the ray. This holds if the ray
+ * stays within the glass and is steeper than the profile at every point. All
  * other rays are intersected one by one.
  */
 #include "bake/trace/beam.h"

@@ -6,13 +6,13 @@
  *   out  the range in this plane where rays pass, however small
  *
  * Example: a lens of 180 degrees has a front of 80 mm, and ghosts that enter
- * through a spot of 1/20 mm; no ray of a grid over the front hits it. But if
- * one ray meets the plane of a barrel far to the left of the barrel's axis, and
- * its neighbour far to the right, a ray between them meets the centre. The
- * interval between two such neighbours is therefore searched again with more
- * rays, until a ray passes, if the same may hold for the stop and all barrels.
- * Limits: misses spots off the light's plane, and spots closer to another one
- * than 1/256 of the front.
+ * through a spot of 1/20 mm; no ray of a grid over the front hits it. Therefore
+ * pairs of neighbouring rays are examined. If one ray crosses a barrel left of
+ * its centre and the other one right of it, a ray between them crosses the
+ * centre. If this may hold for the stop and all barrels, the interval between
+ * the two rays is searched with more rays, until a ray passes. Limits: misses
+ * spots off the light's plane, and spots closer to another one than 1/256 of
+ * the front.
  */
 #ifndef GLINT_BAKE_TRACE_SPOT_H
 #define GLINT_BAKE_TRACE_SPOT_H
