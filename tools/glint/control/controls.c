@@ -19,9 +19,10 @@
 
 /* clang-format off */
 const struct control_form control_forms[] = {
-    /* columns: verb, its word, its clause; number of names, how many of them
-     * follow the clause; min and max count of numbers, their lowest and highest
-     * value, whether they must be integers */
+    /* Columns: verb; command word; clause, a keyword after the names, or NULL;
+     * number of names, and how many of these follow the clause; min and max
+     * count of numbers; min and max value of a number; whether numbers must be
+     * integers; usage. */
     {CONTROL_ORBIT,    "orbit",       NULL,       0, 0, 2, 2, -360, 360, false,
      "orbit YAW PITCH"},
     {CONTROL_DISTANCE, "distance",    NULL,       0, 0, 1, 1, 1e-6, 1e6, false,
@@ -81,11 +82,11 @@ static const char blanks[] = " \t\r\n";
 
 /* Parser state of one line */
 struct reader {
-    /* the line, and the position in it after the word read last */
+    /* text of the line, and the position after the word read last */
     const char *text, *at;
     const char *where;
     char word[CONTROL_LINE];
-    int column; /* column of the word read last, or of the end of the line */
+    int column; /* column of the word read last, or of the line's end */
     struct glint_error *error;
 };
 
@@ -116,7 +117,6 @@ static bool read_next_word(struct reader *r)
     return n > 0;
 }
 
-/* Returns a copy of R that has read one more word; R does not change. */
 static struct reader peek_next_word(const struct reader *r)
 {
     struct reader ahead = *r;
@@ -151,8 +151,8 @@ static enum glint_status report_unknown_word(const struct reader *r,
         suggest_from_words(&suggest));
 }
 
-/* Returns the first form at index I or later whose first word is WORD, or
- * NULL. */
+/* Returns the first row of control_forms, from index I on, whose command word
+ * is WORD, or NULL. */
 static const struct control_form *find_command_form(const char *word, int i)
 {
     for (; i < control_n_forms; i++)
@@ -179,8 +179,8 @@ static enum glint_status read_command_names(struct reader *r,
     return GLINT_OK;
 }
 
-/* Reads the clause if the command word has forms with one, and sets FORM to the
- * form with that clause. */
+/* Reads the clause if FORM has one. Sets FORM to the row of the same command
+ * word that has this clause. */
 static enum glint_status read_command_clause(struct reader *r,
                                              const struct control_form **form)
 {
@@ -335,7 +335,9 @@ enum glint_status control_parse_line(const char *text, const char *where,
     return status;
 }
 
-/* Change per key press: degrees, and factors of distances and slopes */
+/* Changes by a single key press: STEP_DEG is added to angles; the factors
+ * multiply distances, slopes of brushed metal and the light of the
+ * environment. */
 #define STEP_DEG 3
 #define NEARER   0.95
 #define SMOOTHER 0.87
@@ -398,14 +400,14 @@ enum glint_status keyboard_open(struct keyboard *k, int fd)
     raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
     raw.c_cc[VMIN] = 0;
     raw.c_cc[VTIME] = 0;
-    /* In a background process tcsetattr() would stop the process. */
+    /* tcsetattr() would stop a process that runs in the background. */
     if (tcgetpgrp(fd) == getpgrp())
         tcsetattr(fd, TCSANOW, &raw);
     return GLINT_OK;
 }
 
-/* Returns the length of the first key of TEXT[N]: one byte, or the bytes of
- * an escape sequence up to its final letter. */
+/* Returns the number of bytes of the first key in TEXT[N]: 1, or the length of
+ * an escape sequence, which ends with a letter. */
 static int get_first_key_length(const char *text, int n)
 {
     int i = 2;

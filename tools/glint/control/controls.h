@@ -43,45 +43,48 @@ enum {
 enum control_verb {
     CONTROL_NONE, /* empty line, no command */
     /* Camera: */
-    /* orbits the camera about the point ahead: yaw to the right, pitch up,
-     * degrees */
+    /* orbits the camera about a point in front of it: yaw to the right, pitch
+     * up, degrees */
     CONTROL_ORBIT,
-    /* sets the distance from the centre of the orbit, units */
+    /* sets the distance from the centre of the orbit, scene units */
     CONTROL_DISTANCE,
-    /* moves the camera to a sensor of the motion, numbered from 1 */
+    /* moves the camera to sensor K of the recorded motion, from 1 */
     CONTROL_SENSOR,
     CONTROL_SCENE, /* returns the camera to its pose in the scene file */
-    CONTROL_WALK,  /* moves the camera by units to the right, up and ahead */
+    CONTROL_WALK,  /* moves the camera right, up and ahead, scene units */
     /* rotates the camera: yaw to the right, pitch up, roll clockwise,
      * degrees */
     CONTROL_LOOK,
     /* Materials, by name: */
-    CONTROL_ALPHA, /* alpha of brushed metal; a single value sets both axes */
-    /* colour of Phong materials; specular colour of brushed metal */
+    /* sets alpha (roughness) of a brushed metal; 1 value: of both axes */
+    CONTROL_ALPHA,
+    /* sets the colour of a Phong material, or the specular colour of a brushed
+     * metal */
     CONTROL_COLOUR,
-    CONTROL_DIFFUSE, /* diffuse colour of brushed metal */
-    /* changes an object's material: names of object and material */
+    CONTROL_DIFFUSE, /* sets the diffuse colour of a brushed metal */
+    /* assigns a material to an object: names of object and material */
     CONTROL_MATERIAL,
-    /* Objects, or types of objects of a motion, by name: */
+    /* Objects, or types of objects of a recorded motion, by name: */
     CONTROL_SHOW,
     CONTROL_HIDE,
-    CONTROL_SIZE, /* radius of a ball, units */
+    CONTROL_SIZE, /* sets the radius of a ball, scene units */
     /* Environment light: */
-    CONTROL_TURN,     /* rotation of the environment to the right, degrees */
-    CONTROL_SCALE,    /* factor on all light of the environment */
+    /* sets the rotation of the environment to the right, degrees */
+    CONTROL_TURN,
+    CONTROL_SCALE,    /* sets the factor on all light of the environment */
     CONTROL_MAP,      /* selects an environment of the scene by name */
     CONTROL_NEXT_MAP, /* selects the next environment */
-    /* Time of poses and recorded motions: */
-    CONTROL_STEP, /* moves by a number of frames, default 1, negative: backwards
-                   */
+    /* Time of pose files and recorded motions: */
+    /* moves by N frames, default 1; negative: backwards */
+    CONTROL_STEP,
     CONTROL_JUMP, /* moves to a frame */
-    /* sets the playback rate, frames per second; without a number one frame per
-     * picture */
+    /* sets the playback rate, frames per second; without a number each picture
+     * shows the next frame */
     CONTROL_PLAY,
     CONTROL_PAUSE,
     CONTROL_STOP, /* jumps to frame 0 and pauses */
-    /* The flare: name[0] is an engine option that takes effect with the next
-     * frame, v[0] its new value. */
+    /* Sets an engine option that takes effect with the next frame: NAME[0] is
+     * its name, V[0] its value. */
     CONTROL_OPTION,
     CONTROL_VERBS
 };
@@ -89,11 +92,12 @@ enum control_verb {
 /* Syntax of a command */
 struct control_form {
     enum control_verb verb;
-    const char *word;   /* first word of the line */
-    const char *clause; /* keyword after the names, or NULL */
-    int names; /* number of names, 0 .. 2, equal for all forms of a command word
-                */
-    int behind;      /* number of these names that follow the clause */
+    const char *word; /* first word of the line */
+    /* keyword that follows the names or stands between them, or NULL */
+    const char *clause;
+    /* number of names, 0 .. 2; all forms of a word have the same */
+    int names;
+    int behind;      /* number of names after the clause */
     int least, most; /* min and max count of numbers */
     double lowest, highest;
     bool is_whole; /* whether numbers must be integers */
@@ -108,12 +112,11 @@ struct control_line {
     int number; /* line number in the file, from 1 */
     int frame;  /* frame number; -1: not given */
     enum control_verb verb;
-    /* whether the command comes from a key: then angles (degrees) are added to
-     * the current value, and other values multiply it */
+    /* true for a key: angles (degrees) are added to the present value, and
+     * other numbers multiply it */
     bool is_change;
     char name[2][CONTROL_NAME];
-    /* byte positions in the line, from 1, of the names and of the first
-     * value */
+    /* columns, in bytes from 1, of the names and of the first number */
     int name_column[2], column;
     int n; /* number of values */
     double v[CONTROL_VALUES];
@@ -132,7 +135,7 @@ extern const char keyboard_help[];
 
 enum {
     CONTROL_WHERE = 200
-}; /* max bytes of a text position, "FILE:LINE", with its terminator */
+}; /* max bytes of a location "FILE:LINE" with its terminator */
 
 struct controls {
     long n_bad;             /* number of lines that were skipped */
@@ -140,10 +143,11 @@ struct controls {
 
     /* Private. */
     bool is_open, is_keys, has_ahead;
-    struct text_lines lines;  /* input lines; closed after a file was read */
-    struct control_line *row; /* lines of a file */
+    /* lines of the pipe or file; closed once a file was read */
+    struct text_lines lines;
+    struct control_line *row; /* parsed lines of a file */
     int n, next;
-    int read_at; /* number of the picture for which the pipe was read last */
+    int read_at; /* number of the picture at which the pipe was read last */
     struct control_line ahead;
     struct keyboard keys;
 };

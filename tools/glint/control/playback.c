@@ -8,8 +8,8 @@ void playback_init(struct playback *playback)
     *playback = (struct playback){.fps = -1, .last = CONTROL_MOST_FRAME};
 }
 
-/* Moves the playback position to frame AT, clamped to the valid frames. The
- * next picture shows it. */
+/* Sets the playback position to AT, clamped to the range of frames. The next
+ * picture shows this frame, without an advance. */
 static void jump_to_frame(struct playback *p, double at)
 {
     p->at = fmax(0, fmin(at, p->last));
@@ -33,7 +33,7 @@ bool playback_execute_command(struct playback *playback,
         playback->fps = line->n ? line->v[0] : -1;
         return true;
     case CONTROL_PAUSE:
-        /* the same key pauses and continues */
+        /* A key toggles the pause; a control line only sets it. */
         playback->is_paused = !line->is_change || !playback->is_paused;
         return true;
     case CONTROL_STOP:

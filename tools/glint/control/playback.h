@@ -5,7 +5,7 @@
  *
  *     playback_init(&playback);
  *     playback_execute_command(&playback, &line);            step, jump, play
- * ... frame = playback_next_frame(&playback, elapsed_s);  each picture
+ *     frame = playback_next_frame(&playback, elapsed_s);     each picture
  *
  * If a rate is set, playback follows time, not the number of pictures: frame k
  * does not depend on what was shown before.

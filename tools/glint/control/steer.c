@@ -10,8 +10,8 @@
 
 #define RADIAN 0.017453292519943295
 
-/* Min and max factor that keys can set on the environment's light; scene texts
- * have the same limits */
+/* Min and max factor on the light of an environment. Scene texts have the same
+ * limits; keys could exceed them. */
 #define LEAST_SCALE 1e-6
 #define MOST_SCALE  1e6
 
@@ -32,7 +32,8 @@ static void open_environments(struct steer *steer)
     }
 }
 
-/* Checks that LINE, a command about environments, names an existing one. */
+/* Checks LINE, a command about environments: the scene must have an
+ * environment, and one with the name in LINE, if any. */
 static enum glint_status
 check_environment_command(const struct steer *steer,
                           const struct control_line *line, const char *where,
@@ -57,7 +58,7 @@ check_environment_command(const struct steer *steer,
                                   line->name[0], suggest_from_words(&suggest));
 }
 
-/* Shows the current environment with its rotation and scale. */
+/* Selects the current environment in SCENE and sets its rotation and scale. */
 static enum glint_status show_environment(const struct steer *s,
                                           struct glint_scene *scene)
 {
@@ -94,8 +95,8 @@ static enum glint_status change_environment(struct steer *steer,
     return show_environment(steer, scene);
 }
 
-/* Sets KIND to the type of objects called NAME. Returns false if there is no
- * such type, or if an object has that name. */
+/* Sets KIND to the type NAME of a recorded motion's objects, such as "shells".
+ * Returns false if NAME is not a type or is the name of an object. */
 static bool find_object_type(const struct steer *steer, const char *name,
                              enum glint_scene_kind *kind)
 {
@@ -132,10 +133,11 @@ static enum glint_status check_motion_sensor(const struct steer *steer,
     if (m)
         n = (int)((const struct glint_motion_header *)(const void *)(m + 1))
                 ->n_sensors;
-    return line->v[0] > n ? control_set_line_error(
-                                error, where, line->column,
-                                "no such sensor: the scene's motion has %d", n)
-                          : GLINT_OK;
+    return line->v[0] > n
+               ? control_set_line_error(
+                     error, where, line->column,
+                     "no such sensor: the scene's motion has %d of them", n)
+               : GLINT_OK;
 }
 
 /* -------------------------------------------------------------------- camera
@@ -161,8 +163,9 @@ static void rotate_camera_axes(double axis[3][3], int a, int b, double deg)
     }
 }
 
-/* Sets FROM to the unit vector from the centre of the orbit to the camera. */
-static void set_orbit_from_position(const struct steer_orbit *o, double from[3])
+/* Sets FROM to the direction of the camera as seen from the centre of orbit O,
+ * a unit vector. */
+static void compute_orbit_direction(const struct steer_orbit *o, double from[3])
 {
     const double yaw = o->yaw_deg * RADIAN, pitch = o->pitch_deg * RADIAN;
 
@@ -181,8 +184,9 @@ static enum glint_status orbit_camera(const struct steer *steer,
     const double x = cos(yaw), z = sin(yaw);
     double from[3];
 
-    set_orbit_from_position(&s->orbit, from);
-    /* the up axis is ahead x right, as z points away from the viewer */
+    compute_orbit_direction(&s->orbit, from);
+    /* The axes are left-handed: z points away from the viewer. So up is the
+     * cross product ahead x right. */
     const double axis[3][3] = {
         {x, 0, z},
         {-from[1] * z, from[0] * z - from[2] * x, from[1] * x},
@@ -305,11 +309,11 @@ static void apply_object_type_changes(const struct steer *steer,
         set_scene_camera(steer, scene);
 }
 
-/* max pitch, degrees; directly above its target a camera has no defined right
- * axis */
+/* Max pitch of an orbit, degrees. At 90 degrees the camera would look straight
+ * down, and its right axis would be undefined. */
 #define MOST_PITCH 89.0
 
-/* Min and max alpha (slope) of brushed metal that keys can set */
+/* Min and max alpha (roughness) of brushed metal. Keys could exceed them. */
 #define LEAST_ALPHA 0.001
 #define MOST_ALPHA  1.0
 
@@ -379,14 +383,15 @@ void steer_close(struct steer *steer)
 /* --------------------------------------------------------------------- names
  */
 
-/* Returns the name of object or material I. */
+/* Returns the name of material I if IS_MATERIAL, else of object I. */
 static const char *find_object_or_material_name(const struct steer *s,
                                                 bool is_material, int i)
 {
     return is_material ? s->model.material[i].name : s->model.object[i].name;
 }
 
-/* Sets INDEX to the index of name K of LINE. */
+/* Sets INDEX to the index of the object, or material if IS_MATERIAL, that name
+ * K of LINE denotes. Reports an error if there is none. */
 static enum glint_status find_index_of_command_name(
     const struct steer *s, const struct control_line *line, int k,
     bool is_material, const char *where, struct glint_error *error, int *index)
@@ -495,9 +500,9 @@ static enum glint_status apply_orbit_to_camera(const struct steer *s,
                : status;
 }
 
-/* Starts an orbit about the point ahead of the camera at the depth of the mean
- * position of all visible objects except planes, or one unit ahead if that is
- * behind the camera. */
+/* Starts an orbit about the point in front of the camera that is as far away,
+ * along the view direction, as the mean position of all visible objects except
+ * planes. If that is behind the camera, the distance is one scene unit. */
 static void begin_camera_orbit(struct steer *s)
 {
     const struct glint_scene_camera *const c = &s->camera;
@@ -574,7 +579,7 @@ static enum glint_status execute_camera_command(struct steer *s,
 /* --------------------------------------------------------------------- looks
  */
 
-/* Sets LOOK to the appearance of material I changed by LINE. */
+/* Applies LINE to LOOK, the present appearance of material I. */
 static void change_material_appearance(const struct steer *s,
                                        const struct control_line *line, int i,
                                        struct glint_scene_look *look)
@@ -598,10 +603,10 @@ static void change_material_appearance(const struct steer *s,
     }
 }
 
-/* Returns whether material I with the appearance LOOK reflects at most the
- * light it receives. */
-static bool is_appearance_darker(const struct steer *s, int i,
-                                 const struct glint_scene_look *look)
+/* Returns whether material I with the appearance LOOK reflects at most as much
+ * light as it receives. */
+static bool conserves_energy(const struct steer *s, int i,
+                             const struct glint_scene_look *look)
 {
     bool is = true;
 
@@ -610,8 +615,9 @@ static bool is_appearance_darker(const struct steer *s, int i,
     return is;
 }
 
-/* Changes the appearance of material INDEX, or of all metals. If LINE is
- * invalid for one of them, changes none. */
+/* Changes the appearance of material INDEX, or of all brushed metals if LINE
+ * names no material. Changes none if the result would be invalid for one of
+ * them. */
 static enum glint_status
 change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
                                const struct control_line *line, int index)
@@ -627,7 +633,7 @@ change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
         if (all && !is_brushed_metal(s, i))
             continue;
         change_material_appearance(s, line, i, &look);
-        status = is_appearance_darker(s, i, &look)
+        status = conserves_energy(s, i, &look)
                      ? glint_scene_set_look(scene, i, &look)
                      : GLINT_E_ARGUMENT;
     }

@@ -15,22 +15,22 @@
 #include "control/controls.h"
 #include "glint/scene/scene.h"
 
-/* Present state of an object */
+/* Present properties of an object */
 struct steer_thing {
     bool is_shown;
     int material;
     int32_t radius; /* radius of a ball, scene steps */
 };
 
-/* Present state of an environment */
+/* Present rotation and brightness of an environment */
 struct steer_map {
     double turn_deg, scale;
 };
 
-/* Present state of one type of objects in a motion */
+/* Present properties of one type of objects of a recorded motion */
 struct steer_kind {
     bool is_hidden;
-    int32_t steps; /* radius or width, scene steps; 0: as in the scene */
+    int32_t steps; /* radius or width, scene steps; 0: that of the scene file */
 };
 
 /* State of a camera that orbits a point */
@@ -47,14 +47,15 @@ struct steer {
     /* appearance of each material, [n_materials] */
     struct glint_scene_look *look;
     struct steer_orbit orbit;
-    /* Camera before the orbit began */
+    /* camera of the scene or pose file, or as moved by the commands walk and
+     * look; an orbit does not change it */
     struct glint_scene_camera camera;
-    /* whether control lines moved the camera, so that poses no longer do */
+    /* whether walk or look moved the camera; then poses no longer move it */
     bool is_free;
     struct steer_map environment[GLINT_SCENE_MAX_ENVIRONMENTS];
     int shown; /* index of the visible environment */
     struct steer_kind kind[GLINT_KINDS];
-    int sensor; /* sensor that the camera is at, or -1 */
+    int sensor; /* index of the motion's sensor at which the camera is, or -1 */
 };
 
 /* Initialises STEER with a copy of MODEL; the data that MODEL points to must
@@ -64,27 +65,27 @@ enum glint_status steer_open(struct steer *steer,
 
 void steer_close(struct steer *steer);
 
-/* Records that a pose moved the camera to AT, AXIS_Q30. Returns false if the
- * camera ignores poses, because control lines have moved it. */
+/* Records the pose AT, AXIS_Q30 of the camera. Returns whether to move the
+ * camera to it: not if control lines have moved the camera. */
 bool steer_record_camera_pose(struct steer *steer, const int32_t at[3],
                               const int32_t axis_q30[3][3]);
 
-/* Checks that the names in LINE exist. On GLINT_E_FORMAT, ERROR is
- * "WHERE:COLUMN: cause". */
+/* Checks that the scene has the objects, materials and environments that LINE
+ * names. On GLINT_E_FORMAT, ERROR is "WHERE:COLUMN: cause". */
 enum glint_status steer_check_line(const struct steer *steer,
                                    const struct control_line *line,
                                    const char *where,
                                    struct glint_error *error);
 
-/* Executes LINE, any command except those of playback.h. Returns GLINT_E_FORMAT
- * like steer_check_line(), without a change. */
+/* Executes LINE, any command except those of playback.h. If LINE is invalid,
+ * changes nothing and returns GLINT_E_FORMAT like steer_check_line(). */
 enum glint_status steer_execute_command(struct steer *steer,
                                         struct glint_scene *scene,
                                         const struct control_line *line,
                                         const char *where,
                                         struct glint_error *error);
 
-/* Applies all recorded changes to SCENE, which must be in the state of its
+/* Applies all recorded changes to SCENE, which must be as initialised from its
  * model. */
 void steer_apply_state(const struct steer *steer, struct glint_scene *scene);
 

@@ -118,7 +118,8 @@ static const char *choose_y4m_pixel_format(const char *pixels)
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
 
-/* children to kill when glint ends; atomic; 0: free entry */
+/* ids of running children, killed when glint ends; 0: free. A signal handler
+ * reads them, so access is atomic. */
 static pid_t running[MAX_CHILDREN];
 
 static void kill_all_children(void)
@@ -164,9 +165,9 @@ bool child_is_program_installed(const char *name)
 
 /* ----------------------------------------------------------------- starting */
 
-/* Executes ARGV in the forked child with the standard streams IN, OUT and SAID
- * (-1: inherited). If this fails, writes errno to FAILED. Makes system calls
- * only. */
+/* Executes ARGV in the child after fork(). IN, OUT and SAID become standard
+ * input, output and error (SAID -1: inherited). If exec fails, writes errno to
+ * FAILED. Makes system calls only. */
 static void exec_child_program(const char *const *argv, int in, int out,
                                int said, int failed)
 {
@@ -187,8 +188,8 @@ static void exec_child_program(const char *const *argv, int in, int out,
     _exit(NOT_FOUND);
 }
 
-/* Returns the errno with which the child failed to execute its program, or
- * 0. */
+/* Returns the errno that exec_child_program() wrote to FD, or 0 if the program
+ * was executed. */
 static int read_child_exec_errno(int fd)
 {
     int number = 0;
@@ -200,7 +201,8 @@ static int read_child_exec_errno(int fd)
     return n == (ssize_t)sizeof number ? number : 0;
 }
 
-/* Opens two pipes, DATA and FAILED, whose ends are closed by exec. */
+/* Opens the pipe DATA for frames, and the pipe FAILED for the errno of exec,
+ * which closes both in the child. */
 static bool open_child_pipes(int data[2], int failed[2])
 {
     if (pipe2(data, O_CLOEXEC) < 0)
@@ -273,18 +275,20 @@ static enum glint_status start_ffmpeg_child(struct child *child,
     return start_program(child, argv, kind, error);
 }
 
-/* Same as start_ffmpeg_child(), but the child's messages go to a file.
- * child_forward_messages() copies them to standard error and searches them for
- * WORDS, a list that ends with NULL. */
-static enum glint_status
-start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
-            const char *const *words, struct glint_error *error)
+/* Starts a program like start_ffmpeg_child(), but its standard error is a file.
+ * child_forward_messages() copies this file to glint's standard error, and sets
+ * CHILD->heard if it contains one of WORDS, a list that ends with NULL. */
+static enum glint_status start_monitored_child(struct child *child,
+                                               const char *const *argv,
+                                               enum child_pipe kind,
+                                               const char *const *words,
+                                               struct glint_error *error)
 {
     enum glint_status status;
 
     *child = CHILD_NONE;
     child->listening = words;
-    /* A file instead of a pipe, as a full pipe would block the child. */
+    /* A full pipe would block the child; a file cannot. */
     child->said = memfd_create("said", MFD_CLOEXEC);
     if (child->said >= 0)
         fcntl(child->said, F_SETFL, O_APPEND);
@@ -296,8 +300,8 @@ start_heard(struct child *child, const char *const *argv, enum child_pipe kind,
 
 /* ------------------------------------------------------------------ hearing */
 
-/* Copies new messages of the child to standard error: whole lines, or
- * everything if ALL. */
+/* Copies new messages of CHILD to standard error: complete lines, or all text
+ * if ALL. */
 static void forward_child_messages(struct child *child, bool all)
 {
     char text[4096];
@@ -316,8 +320,8 @@ static void forward_child_messages(struct child *child, bool all)
             child->heard |= strstr(text, child->listening[i]) != NULL;
         fwrite(text, 1, (size_t)n, stderr);
         child->told += n;
-        /* Frees the memory of the copied text; if this fails, the memory stays
-         * in use. */
+        /* Frees the memory of the copied text. A failure only leaves that
+         * memory in use. */
         (void)fallocate(child->said, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
                         0, child->told);
     }
@@ -338,8 +342,8 @@ static void close_child_messages(struct child *child)
 
 /* ------------------------------------------------------------------- ending */
 
-/* Closes the filter file of a child that has ended. A running child may not
- * have opened it yet. */
+/* Closes the filter file of CHILD after it has ended. Earlier it might not have
+ * opened the file yet. */
 static void close_filter_script(struct child *child)
 {
     if (child->script >= 0)
@@ -463,8 +467,8 @@ static void parse_stream_line(struct ffmpeg_video *v, const char *line)
     parse_number_property(line, "height", &v->height);
 }
 
-/* Returns the ratio NAME in TEXT, lines of ffprobe, as a numerator for the
- * denominator UNITS; -1 if it is missing. */
+/* Returns the value of NAME, N/D or N, in the ffprobe output TEXT, as a rounded
+ * multiple of 1 / UNITS; -1 if it is missing. */
 static long parse_ratio_numerator(const char *text, const char *name,
                                   long units)
 {
@@ -480,8 +484,8 @@ static long parse_ratio_numerator(const char *text, const char *name,
     return d > 0 ? (n * units + d / 2) / d : -1;
 }
 
-/* Parses mastering display, light levels and Dolby Vision from TEXT, the side
- * data of a frame or stream. */
+/* Reads mastering display, light levels and Dolby Vision from TEXT, the output
+ * of ffprobe about the side data of stream and first frame. */
 static void parse_side_data(struct ffmpeg_video *v, const char *text)
 {
     static const char *const names[] = {
@@ -507,7 +511,7 @@ static void parse_side_data(struct ffmpeg_video *v, const char *text)
         v->has_dolby || strstr(text, "DOVI") || strstr(text, "Dolby Vision");
 }
 
-/* Counts a stream with CODEC and the type KIND, a word of ffprobe. */
+/* Counts a stream of type KIND, in the words of ffprobe, with CODEC. */
 static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
                                  const char *kind)
 {
@@ -529,8 +533,9 @@ static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
     }
 }
 
-/* Parses LINE about any stream, a chapter or tags. CODEC is that of the current
- * stream. A time code track is counted by its tag only. */
+/* Parses LINE, ffprobe output about a stream of any type, a chapter or tags.
+ * CODEC stores the codec between two lines of a stream. A time code track is
+ * not counted as a stream, as its tag is preserved. */
 static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
                                     char codec[FFMPEG_WORD])
 {
@@ -571,9 +576,8 @@ static void read_child_output(struct child *child, char text[PROBE_BYTES])
     text[used] = '\0';
 }
 
-/* Sets TEXT to the output of ffprobe about ENTRIES of URL. OPTIONS: up to five
- * arguments, ending with NULL. Returns false if ffprobe fails; TEXT is "" if it
- * cannot be started. */
+/* Sets TEXT to what ffprobe prints about ENTRIES of URL. OPTIONS are up to five
+ * more arguments, ending with NULL. Returns false if ffprobe fails. */
 static bool run_ffprobe(const char *url, const char *const *options,
                         const char *entries, char text[PROBE_BYTES])
 {
@@ -650,8 +654,8 @@ long ffmpeg_count_frames(const char *name)
     return strtol(n, NULL, 10);
 }
 
-/* Appends ", KIND TAG" to REPORT if VALUE is unknown. Returns VALUE, or the
- * default for an unknown one. */
+/* Returns VALUE, or the default if VALUE is unknown. In this case appends ",
+ * KIND TAG" to REPORT. */
 static int replace_unknown_tag(int value, const char *kind, const char *tag,
                                char report[FFMPEG_REPORT])
 {
@@ -691,7 +695,8 @@ void ffmpeg_set_y4m_colour_tags(const struct ffmpeg_video *video,
 
 /* ------------------------------------------------------------------- words */
 
-/* Command line under construction. N also counts arguments that did not fit. */
+/* Command line under construction. N may exceed MAX_WORDS, which is then an
+ * error. */
 struct words {
     const char *word[MAX_WORDS + 1];
     int n;
@@ -710,7 +715,7 @@ static void add_two_arguments(struct words *w, const char *a, const char *b)
     add_argument(w, b);
 }
 
-/* Adds "-i URL" with the limits for inputs. */
+/* Adds "-i URL" after the options that limit what ffmpeg may open. */
 static void add_input_url(struct words *w, const char *url)
 {
     for (int i = 0; input_limits[i]; i++)
@@ -739,8 +744,8 @@ static enum glint_status end_ffmpeg_arguments(struct words *w,
     return GLINT_OK;
 }
 
-/* Messages of ffmpeg 5 about truncated files, for which it exits with 0; ends
- * with NULL */
+/* Messages of ffmpeg 5 about a truncated file, with which it nevertheless exits
+ * with 0. The list ends with NULL. */
 static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
@@ -863,8 +868,9 @@ bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
     return true;
 }
 
-/* Writes an ffmpeg expression that maps the frame number N, FIRST .. END - 1,
- * to TIMES[N] in units of 1 / 90000 s: a tree of comparisons. */
+/* Writes to TO an ffmpeg expression that maps the frame number N, FIRST .. END
+ * - 1, to TIMES[N] in units of 1 / 90000 s. The expression is a binary tree of
+ * comparisons. */
 static void write_time_expression(FILE *to, const double *times, int first,
                                   int end)
 {
@@ -881,9 +887,9 @@ static void write_time_expression(FILE *to, const double *times, int first,
     fputc(')', to);
 }
 
-/* Writes a filter script that sets the TIMES of frames, after FILTER (may be
- * NULL), to a memory file. Sets NAME to its name. Returns its descriptor, or -1
- * on failure. */
+/* Writes a filter script to a memory file: FILTER (may be NULL), then a filter
+ * that sets the TIMES of the frames. Sets NAME to the file's name. Returns its
+ * descriptor, or -1 on failure. */
 static int write_filter_script(const struct ffmpeg_times *times,
                                const char *filter, char name[FFMPEG_WORD + 16])
 {
@@ -929,9 +935,10 @@ enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
     add_two_arguments(&w, "-f", "yuv4mpegpipe");
     add_argument(&w, "-");
     status = end_ffmpeg_arguments(&w, error);
-    return status == GLINT_OK ? start_heard(child, w.word, CHILD_WRITES,
-                                            ffmpeg_cut_words, error)
-                              : status;
+    return status == GLINT_OK
+               ? start_monitored_child(child, w.word, CHILD_WRITES,
+                                       ffmpeg_cut_words, error)
+               : status;
 }
 
 /* ---------------------------------------------------------------- encoding */
@@ -966,8 +973,9 @@ static bool can_hold_sound_codec(const char *ext, const char *codec)
 static const char *const of_mov[] = {"mov", "mp4", "m4v", "3gp", NULL};
 static const char *const of_mkv[] = {"mkv", "mka", NULL};
 
-/* Adds arguments for the subtitles of the second input: Matroska accepts all,
- * other types of EXT only text, in their own codec. */
+/* Adds arguments that copy the subtitles of the second input to a file of type
+ * EXT. Matroska accepts all subtitles and attachments. Other types accept text
+ * only, which is converted to the codec of the type. */
 static void add_subtitle_arguments(struct words *w, const char *ext,
                                    const struct ffmpeg_video *v)
 {
@@ -991,7 +999,7 @@ static void add_subtitle_arguments(struct words *w, const char *ext,
 }
 
 /* Adds arguments that copy sound, subtitles, chapters and tags of the second
- * input. TIMECODE is memory for one argument. */
+ * input, which is the original video. TIMECODE is memory for one argument. */
 static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
                               const struct ffmpeg_video *v,
                               char timecode[FFMPEG_REPORT])
@@ -1124,8 +1132,8 @@ static bool is_encoder_installed(const char *encoder)
     return strstr(text, word) != NULL;
 }
 
-/* Returns the encoder for V's codec if the type of T supports it; else HEVC for
- * HDR, which players expect; NULL: the default encoder of the type. */
+/* Returns the encoder for a file of T's type: that of V's codec, or else HEVC
+ * for HDR video. Returns NULL for the default encoder of the type. */
 static const struct family *choose_encoder_family(const struct ffmpeg_target *t,
                                                   const struct ffmpeg_video *v)
 {
@@ -1231,7 +1239,8 @@ static void add_picture_options(struct words *w, const struct ffmpeg_target *t,
         *pad = find_padding_filter(t, v);
         add_interlace_flags(w, v);
     } else {
-        /* MPEG-1 does not support interlacing, nor do .ogv and .wmv. */
+        /* Neither MPEG-1 nor the codecs of .ogv and .wmv support
+         * interlacing. */
         if (is_video_interlaced(v) && strncasecmp(ext, "mp", 2) == 0)
             add_two_arguments(w, "-c:v", "mpeg2video");
         add_two_arguments(w, "-q:v", "2");
@@ -1358,9 +1367,10 @@ static void set_ffmpeg_cause(char cause[CAUSE], const char *line,
     snprintf(cause, CAUSE, "%.*s", (int)strcspn(line, "\r\n"), line);
 }
 
-/* Reads the output of ffmpeg from FROM: one line that begins with a digit per
- * frame, lines with '#', and messages, the first of which becomes CAUSE.
- * Returns the number of frames, or 0 if the file is truncated. */
+/* Reads from FROM what ffmpeg prints: a line that begins with a digit for each
+ * frame, lines that begin with '#', and messages. Sets CAUSE to the first
+ * message. Returns the number of frames, or 0 if a message reports a truncated
+ * file. */
 static long count_printed_frames(FILE *from, const char *url, char cause[CAUSE])
 {
     char line[LINE];
@@ -1382,8 +1392,8 @@ static long count_printed_frames(FILE *from, const char *url, char cause[CAUSE])
 static bool decode_video_piece(const char *url, enum piece piece,
                                char cause[CAUSE])
 {
-    /* Frames decoded from the preceding key frame on appear in the output only
-     * if they keep the time stamps of the file. */
+    /* Decoding starts at the key frame before the last second. Only with the
+     * time stamps of the file (-copyts) are these frames in the output. */
     static const char *const from_end[] = {"-copyts", "-noaccurate_seek",
                                            "-sseof", "-1", NULL};
     const char *argv[24] = {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel",
@@ -1430,8 +1440,8 @@ enum glint_status ffmpeg_check_output(const char *file, const char *name,
         return glint_error_report(error, GLINT_E_OUTPUT, name,
                                   "the file name is too long for ffmpeg");
     has_first = decode_video_piece(url, FIRST, cause);
-    /* ffmpeg cannot seek from the end of files without an index, such as .ts;
-     * all of their frames are decoded. */
+    /* ffmpeg cannot seek from the end of a file without an index, such as .ts.
+     * Then all frames are decoded. */
     if (has_first && (decode_video_piece(url, LAST, cause) ||
                       decode_video_piece(url, ALL, cause)))
         return GLINT_OK;
@@ -1442,7 +1452,7 @@ enum glint_status ffmpeg_check_output(const char *file, const char *name,
         has_first ? "last" : "first", cause);
 }
 
-/* Text of a report of losses, ", no alpha, ..." */
+/* Text of a report of lost properties: ", no alpha, ..." */
 struct report {
     char text[FFMPEG_TAGS];
     size_t n;
@@ -1462,8 +1472,8 @@ __attribute__((format(printf, 2, 3))) static void note(struct report *report,
         report->n += (size_t)n;
 }
 
-/* Adds to the report that the output has only MADE of the input's FROM streams
- * of type KIND. */
+/* Adds to the report that only MADE of the FROM streams of type KIND are in the
+ * output. */
 static void note_lost_streams(struct report *r, const char *kind, int from,
                               int made)
 {
@@ -1471,8 +1481,9 @@ static void note_lost_streams(struct report *r, const char *kind, int from,
         note(r, ", %d of %d %s", made, from, kind);
 }
 
-/* Adds to the report which of the input's tags FROM are not among the output's
- * tags MADE, ignoring case, except tags that belong to the file type. */
+/* Adds to the report each tag in FROM, the names of the input's tags, that is
+ * missing in MADE, the names of the output's tags. Ignores case, and tags that
+ * belong to the file type. */
 static void note_lost_tags(struct report *r, const char *from, const char *made)
 {
     static const char *const own[] = {"major_brand",

@@ -9,16 +9,17 @@
  *     ffmpeg_check_output(target.file, target.name, &error);  and decodes
  *
  * ffmpeg runs as a child process at the other end of a pipe of y4m frames.
- * Sound is copied if the output container supports its codec; else it is
- * encoded again, with a message. The video codec is of the input's family if
- * the container supports it. Tags, chapters, time code, subtitles, alpha,
- * fields, colours and mastering data are preserved if the output can hold them;
- * one warning names all that are lost.
+ * Sound is copied if the output container supports its codec. Otherwise it is
+ * encoded again, and a message is printed. The output has the codec of the
+ * input if its container supports that codec. Tags, chapters, time code,
+ * subtitles, alpha, fields, colours and mastering data are preserved if the
+ * output can store them. A single warning lists all that are lost.
  *
- * A child is a program that glint runs at the end of a pipe. It is run without
- * a shell, so names need no quotes. It writes to glint's standard error, or to
- * a file that glint copies there. It is killed when glint ends or child_kill()
- * is called, and glint always waits for its exit status.
+ * A child is a program that glint runs at the end of a pipe. No shell is
+ * involved, so names need no quotes. The child's messages go to glint's
+ * standard error, either directly or through a file that glint copies. The
+ * child is killed when glint ends or child_kill() is called. glint always waits
+ * for its exit status.
  *
  * An input must be a container of pictures and sound that refers to no other
  * file: a playlist named .mp4 is rejected. */
@@ -32,28 +33,32 @@
 #include "video/y4m.h"
 
 enum child_pipe {
-    CHILD_WRITES, /* FD receives the child's standard output; its standard input
-                   * is empty. */
-    CHILD_PRINTS, /* FD receives the child's standard output and standard error;
-                   * its standard input is empty. */
-    CHILD_READS   /* FD feeds the child's standard input; its standard output is
-                   * discarded. */
+    /* glint reads the child's standard output from FD. The child's standard
+     * input is empty. */
+    CHILD_WRITES,
+    /* glint reads the child's standard output and standard error from FD. The
+     * child's standard input is empty. */
+    CHILD_PRINTS,
+    /* glint writes the child's standard input to FD. The child's standard
+     * output is discarded. */
+    CHILD_READS
 };
 
 struct child {
-    pid_t pid;  /* 0: no process */
-    int fd;     /* glint's end of the pipe; -1: closed */
-    int said;   /* file that receives the child's standard error; -1: the child
-                 * writes to glint's standard error */
-    off_t told; /* bytes of SAID already copied to glint's standard error */
-    const char *const *listening; /* texts to search for in the child's
-                                   * messages; ends with NULL, not owned */
-    bool heard;                   /* whether a message contained one of these
-                                   * texts */
+    pid_t pid; /* 0: no process */
+    int fd;    /* glint's end of the pipe; -1: closed */
+    int said;  /* file that receives the child's standard error; -1: the child
+                * writes to glint's standard error */
+    /* number of bytes of SAID already copied to glint's standard error */
+    off_t told;
+    /* texts to search for in the child's messages; ends with NULL, not owned */
+    const char *const *listening;
+    /* whether a message contained one of LISTENING */
+    bool heard;
     int script; /* file from which the child reads its filter; -1: none */
 };
 
-/* Initial value: no process. */
+/* value of a child without a process */
 #define CHILD_NONE ((struct child){.fd = -1, .said = -1, .script = -1})
 
 enum {
@@ -65,13 +70,13 @@ enum {
 
 enum ffmpeg_subtitles { SUBTITLES_NONE, SUBTITLES_TEXT, SUBTITLES_IMAGES };
 
-/* Properties of a video as words of ffmpeg; "" if unknown */
+/* Properties of a video, as ffprobe prints them; "" if unknown */
 struct ffmpeg_video {
     /* names of the video codec and its profile, such as hevc and Main 10 */
     char codec[FFMPEG_WORD], profile[FFMPEG_WORD];
     char pixels[FFMPEG_WORD]; /* yuv420p ... */
-    char fields[FFMPEG_WORD]; /* field order in words of ffprobe: progressive,
-                               * tt, bb, tb or bt */
+    /* progressive, or the order of interlaced fields: tt, bb, tb or bt */
+    char fields[FFMPEG_WORD];
     /* nominal and mean frame rate, frames per second, as N/D */
     char rate[FFMPEG_WORD], mean_rate[FFMPEG_WORD];
     char timecode[FFMPEG_WORD]; /* time code of the first frame */
@@ -98,17 +103,18 @@ struct ffmpeg_times {
     int n;
 };
 
-/* The output, and the properties that its encoder needs. */
+/* The output video, and what its encoder needs */
 struct ffmpeg_target {
-    const char *name;  /* name of the output */
-    const char *file;  /* temporary file to write, of the same extension */
+    const char *name; /* name of the output */
+    /* temporary file that ffmpeg writes; has the extension of NAME */
+    const char *file;
     const char *sound; /* file whose sound and subtitles are copied, or NULL */
     /* Options for the encoder, separated by blanks, or NULL. */
     const char *options;
     int width, height;
-    bool is_444;                      /* chroma is not subsampled */
-    const struct ffmpeg_times *times; /* times of the frames; NULL: constant
-                                         rate */
+    bool is_444; /* whether chroma is not subsampled */
+    /* times of the frames; NULL: constant frame rate */
+    const struct ffmpeg_times *times;
     enum glint_range range;
     bool quiet;
 };
@@ -134,40 +140,41 @@ void child_kill(struct child *child);
  * .mpg and similar. */
 bool ffmpeg_is_video(const char *name);
 
-/* Sets VIDEO to the properties that ffprobe reports of NAME; all are empty if
- * it fails. */
+/* Sets VIDEO to the properties that ffprobe reports of the file NAME. If
+ * ffprobe fails, all members are empty. */
 void ffmpeg_probe_video(struct ffmpeg_video *video, const char *name);
 
-/* Returns the number of frames in NAME, by an ffprobe run that reads the whole
- * file; 0 on failure. */
+/* Returns the number of frames in NAME, or 0 on failure. ffprobe reads the
+ * complete file. */
 long ffmpeg_count_frames(const char *name);
 
-/* Sets the colour properties of HEADER by the tags of VIDEO. For tags that
- * glint does not know HEADER is unchanged, and REPORT lists them: ", matrix
+/* Sets the colour properties of HEADER by the tags of VIDEO. A tag that glint
+ * does not support leaves HEADER unchanged and is appended to REPORT: ", matrix
  * ictcp". */
 void ffmpeg_set_y4m_colour_tags(const struct ffmpeg_video *video,
                                 struct glint_y4m_header *header,
                                 char report[FFMPEG_REPORT]);
 
-/* Reads the times of NAME's frames. Returns true if they deviate from a
- * constant VIDEO->rate. The caller frees times->at. */
+/* Reads the times of the frames of NAME. Returns whether the intervals differ
+ * from those of the constant rate VIDEO->rate. The caller frees times->at. */
 bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
                        const struct ffmpeg_video *video);
 
 /* Returns whether the file type of NAME stores a time for each frame. */
 bool ffmpeg_can_store_times(const char *name);
 
-/* Starts ffmpeg as CHILD, which writes NAME as y4m to child->fd: each frame
- * once if KEEPS_TIMES, else frames are repeated or dropped for a constant rate.
- * Returns GLINT_E_UNSUPPORTED if ffmpeg is not installed or NAME is longer than
- * about 4000 bytes, GLINT_E_IO if no process or descriptor is available. */
+/* Starts ffmpeg as CHILD, which decodes NAME and writes y4m to child->fd. If
+ * KEEPS_TIMES, each frame is written once, else frames are repeated or dropped
+ * to make the rate constant. Returns GLINT_E_UNSUPPORTED if ffmpeg is not
+ * installed or NAME is longer than about 4000 bytes, GLINT_E_IO if no process
+ * or descriptor is available. */
 enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
                                       const struct ffmpeg_video *video,
                                       bool keeps_times,
                                       struct glint_error *error);
 
-/* Starts ffmpeg as CHILD, which reads y4m from child->fd and writes TARGET.
- * VIDEO is the input, with empty members if unknown. Errors are as of
+/* Starts ffmpeg as CHILD, which reads y4m from child->fd and encodes TARGET.
+ * VIDEO has the properties of the input, empty if unknown. Errors: those of
  * ffmpeg_start_reader(), and GLINT_E_ARGUMENT if the command has more than 96
  * words. */
 enum glint_status ffmpeg_start_writer(struct child *child,
@@ -175,14 +182,14 @@ enum glint_status ffmpeg_start_writer(struct child *child,
                                       const struct ffmpeg_video *video,
                                       struct glint_error *error);
 
-/* Returns GLINT_E_OUTPUT if the first or the last frames of FILE cannot be
- * decoded. FILE was written by ffmpeg and will be renamed to NAME. */
+/* Checks FILE, which ffmpeg wrote and which will be renamed to NAME. Returns
+ * GLINT_E_OUTPUT if its first or last frames cannot be decoded. */
 enum glint_status ffmpeg_check_output(const char *file, const char *name,
                                       struct glint_error *error);
 
-/* Prints a warning that lists properties of VIDEO, the input, that are lost in
- * FILE: bits, chroma, alpha, fields, streams, tags and similar. FILE was
- * written by ffmpeg and will be renamed to NAME. */
+/* Prints a warning that lists the properties of VIDEO, the input, that FILE
+ * lacks: bits, chroma, alpha, fields, streams, tags and similar. ffmpeg wrote
+ * FILE, which will be renamed to NAME. */
 void ffmpeg_report_losses(const char *file, const char *name,
                           const struct ffmpeg_video *video);
 

@@ -38,10 +38,10 @@ struct live_output {
     enum live_output_kind kind;
     const char *path; /* device or file; NULL: the default */
     enum glint_panel_fit fit;
-    struct glint_sink *sink; /* open sink; NULL if closed */
+    struct glint_sink *sink; /* open sink; NULL: closed */
     union {
-        struct glint_sink sink; /* base of all types of output: the first member
-                                 * of each of them */
+        /* the common first member of all types of output */
+        struct glint_sink sink;
         struct glint_fbdev fb;
         struct glint_y4m_sink y4m;
         struct glint_v4l2_sink v4l2;
@@ -63,10 +63,10 @@ enum glint_status live_output_open(struct live_output *output,
                                    const struct glint_image *image, int fps_num,
                                    int fps_den, struct glint_error *error);
 
-/* Describe an open output. live_output_describe() writes a description to TEXT,
- * "" if the output's name suffices, and returns TEXT.
- * live_output_get_console_note() returns the description of a problem with the
- * output, or NULL. */
+/* Describe an open output. live_output_describe() writes a description to TEXT
+ * and returns TEXT; it is "" if the output's name says enough.
+ * live_output_get_console_note() returns why the text console of a framebuffer
+ * could not be switched off, or NULL if it could. */
 const char *live_output_describe(const struct live_output *output, char *text,
                                  size_t size);
 const char *live_output_get_console_note(const struct live_output *output);
@@ -84,20 +84,22 @@ enum glint_status live_output_close(struct live_output *output,
 enum { LIVE_NAME_BYTES = 1024 }; /* max bytes of the name of a snapshot */
 
 enum live_adaptive {
-    /* Adaptive for a camera without --budget only, as its frames do not wait.
-     * Results for a file must not depend on the clock. */
+    /* adaptive if the input is a camera, whose frames do not wait, and --budget
+     * is not given; the result for a file must not depend on the clock */
     LIVE_ADAPTIVE_CAMERA,
     LIVE_ADAPTIVE,
     LIVE_FIXED
 };
 
 struct live_options {
-    /* drawing; only its member line is set before live_run() */
+    /* options and state of the drawing; only its member LINE is set before
+     * live_run() */
     struct drawing drawing;
     struct live_wish input;
     const char *output, *snapshot;
     enum glint_panel_fit fit;
-    /* number of frames to show (0: no limit), and of frames to skip before */
+    /* number of frames to show (0: no limit), and number of frames to skip
+     * first */
     int count, skip;
     /* whether quality is reduced to keep the frame rate */
     enum live_adaptive adaptive;
@@ -105,13 +107,13 @@ struct live_options {
     enum live_report report;
 };
 
-/* Parses configuration and command line again into OPTIONS, on SIGHUP. Returns
- * -1, or an exit code after printing the error. */
+/* Called on SIGHUP: parses the configuration file and the command line again,
+ * into OPTIONS. Returns -1, or an exit code after printing the error. */
 typedef int live_reread_fn(void *ctx, struct tool *tool,
                            struct live_options *options);
 
-/* Runs until a signal, --count, the end of the input or an error. Returns an
- * exit code. */
+/* Draws and shows frames until a signal, --count, the end of the input or an
+ * error. Returns an exit code. */
 int live_run(struct tool *tool, struct live_options *options,
              live_reread_fn *reread, void *ctx);
 

@@ -5,19 +5,18 @@
 
 #include "glint/quality.h"
 
-/* busy fraction of a frame period above which quality is reduced */
+/* drawing time / frame period above which quality is reduced */
 #define TIGHT 0.9
-/* busy fraction of a frame period below which the quality may increase after
- * some time */
+/* drawing time / frame period below which quality may rise after HOLD_S */
 #define SPARE      0.55
 #define SETTLE_S   0.3 /* min seconds between two steps down */
 #define HOLD_S     2.0
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 
-/* Quality and max number of lights of each step. Steps descend in the table of
- * qualities from its middle, never above the requested quality; after its end
- * they reduce the number of lights. */
+/* Quality and max number of lights at each step. Quality falls from the middle
+ * of the scale of --quality to its end, and never exceeds the requested
+ * quality. The last steps only reduce the number of lights. */
 static const struct {
     double quality;
     int max_lights;
@@ -38,11 +37,11 @@ static bool change_quality_step(struct live_adapt *a, int by)
     a->below_s = 0;
     if (step < 0 || step > LIVE_MAX_STEP)
         return false;
-    /* A step down soon after a step up shows that the step up was too early,
-     * so the next step up waits longer. */
+    /* A step down soon after a step up shows that there was too little time for
+     * the better quality. So the next step up waits longer. */
     if (by > 0 && a->rose && a->since_s < 2 * HOLD_S)
         a->hold_s = fmin(MAX_HOLD_S, 2 * a->hold_s);
-    /* The last step up was not too early, so the wait becomes short again. */
+    /* The last step up has lasted, so the wait becomes short again. */
     if (by < 0 && a->rose)
         a->hold_s = HOLD_S;
     a->rose = by < 0;
@@ -52,8 +51,8 @@ static bool change_quality_step(struct live_adapt *a, int by)
     return true;
 }
 
-/* Returns the number of steps to go down at once if a frame takes PERIODS
- * frame periods. Each step saves about a third. */
+/* Returns the number of steps by which to reduce quality at once if a frame
+ * takes PERIODS frame periods. Each step saves about a third of the time. */
 static int count_steps_down(const struct live_adapt *a, double periods)
 {
     const int wanted = periods > 8 ? 4 : periods > 4 ? 3 : periods > 2 ? 2 : 1;

@@ -22,8 +22,8 @@ struct live_adapt {
     /* smoothed processing time of a frame, ms; -1: no frame since the last
      * step */
     double busy_ms;
-    /* below_s: seconds with spare time so far; hold_s: seconds with spare
-     * time that a step up requires */
+    /* below_s: seconds with spare time so far; hold_s: how many of these a step
+     * up requires */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
     /* whether the last change was a step up, to better quality */

@@ -81,8 +81,8 @@ static void init_timed_source(struct live_timed *timed,
              (double)f->fps_num / f->fps_den);
 }
 
-/* Returns the number of frames due now. The first is due at once; without a
- * timer one is due at every call. */
+/* Returns the number of frames that are due now. The first frame is due at
+ * once. Without a timer every call finds one frame due. */
 static uint64_t count_frames_due_by_now(struct live_timed *timed)
 {
     uint64_t n = 0;
@@ -92,8 +92,8 @@ static uint64_t count_frames_due_by_now(struct live_timed *timed)
     return read(timed->timer, &n, sizeof n) == (ssize_t)sizeof n ? n : 0;
 }
 
-/* Begins FRAME. Returns the number of frames due since the last call, 0 if
- * none. Only the last one is shown. */
+/* Begins FRAME. Returns the number of frames that became due since the last
+ * call; the caller shows only the last of them. */
 static uint64_t begin_timed_frame(struct live_timed *timed,
                                   struct glint_source_frame *frame)
 {
@@ -135,8 +135,8 @@ static uint32_t hash_32_bits(uint32_t x)
     return x ^ x >> 16;
 }
 
-/* Draws house number HOUSE from the bottom up. Some windows are lit, none so
- * bright that it would count as a lamp. */
+/* Draws house number HOUSE from the bottom up. Some of its windows are lit, but
+ * too dark to be detected as lamps. */
 static void draw_house_of_test_street(struct live_timed *s, int house)
 {
     const int w = s->image.width, h = s->image.height;
@@ -293,10 +293,11 @@ static enum glint_status allocate_test_images(struct live_timed *s)
     return GLINT_OK;
 }
 
-/* Opens the test image. WISH may set a size of 16 to GLINT_PANEL_SIDE pixels
- * per side, rate, range and matrix. SEED seeds the noise. The lamp circles
- * in eight seconds. IS_BLACK: all frames are black. On failure TEST is
- * closed. Errors: GLINT_E_UNSUPPORTED, GLINT_E_MEMORY, GLINT_E_DEVICE. */
+/* Opens the test image as TEST. WISH may set width and height, 16 to
+ * GLINT_PANEL_SIDE pixels, rate, range and matrix. SEED is the seed of the
+ * noise. The lamp circles in eight seconds. If IS_BLACK, all frames are black
+ * instead. On failure TEST is closed. Errors: GLINT_E_UNSUPPORTED,
+ * GLINT_E_MEMORY, GLINT_E_DEVICE. */
 static enum glint_status open_test_image(struct live_timed *test,
                                          const struct glint_v4l2_config *wish,
                                          uint32_t seed, bool is_black,
@@ -322,8 +323,8 @@ static enum glint_status open_test_image(struct live_timed *test,
     return GLINT_OK;
 }
 
-/* Reads the last frame due, or the last frame of the video if it ends earlier.
- * Skipped frames count as late. */
+/* Reads the last frame that is due, or the last frame of the video if there are
+ * fewer. Skipped frames are counted as late. */
 static enum glint_status read_next_video_frame(struct glint_source *source,
                                                struct glint_source_frame *frame,
                                                struct glint_error *error)
@@ -358,7 +359,7 @@ static void close_video_input(struct glint_source *source)
     glint_y4m_reader_close(&v->reader);
 }
 
-/* Opens the video that is the device of WISH, FILE.y4m or "-". WISH may
+/* Opens the video FILE.y4m or "-" that WISH names as its device. WISH may
  * override rate, range and matrix. On failure VIDEO is closed. */
 static enum glint_status open_video_input(struct live_timed *video,
                                           const struct glint_v4l2_config *wish,
@@ -440,8 +441,7 @@ void live_input_close(struct live_input *input)
     input->source = NULL;
 }
 
-/* Returns whether NAME has a file extension, which names of devices do not
- * have. */
+/* Returns whether NAME has a file extension; names of devices have none. */
 static bool has_file_extension(const char *name)
 {
     const char *const slash = strrchr(name, '/');

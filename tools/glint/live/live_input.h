@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * live_input.h - the sources of live frames, by name:
+ * live_input.h - opens the sources of live frames, which have these names:
  *   /dev/videoN, N   a camera (linux/v4l2.h)
  *   FILE.y4m, -      a video, or a pipe of one
- *   test             a lamp over a night street
+ *   test             a test image: a lamp over a night street
+ *   none             black frames, as a background for scenes
  *
  * A video is shown at its own rate, and late frames are dropped as from a
  * camera; from a pipe every frame is shown as it arrives. After the last frame,
- * the source's next() returns GLINT_E_CLOSED. The test picture has a night
- * street, a lamp with a halo that circles in eight seconds, and sensor noise;
- * frame N depends only on seed and size. "none" is black, as a background for
- * scenes. */
+ * the source's next() returns GLINT_E_CLOSED. The test image has a night
+ * street, a lamp with a halo that circles in eight seconds, and sensor noise.
+ * Frame N depends only on seed and size. */
 #ifndef GLINT_TOOLS_LIVE_LIVE_INPUT_H
 #define GLINT_TOOLS_LIVE_LIVE_INPUT_H
 

@@ -9,7 +9,8 @@
 #include "posix/clock.h"
 
 #define SECOND_US 1000000
-#define COLUMNS   79 /* columns of a terminal minus one for the cursor */
+/* width of a terminal line, without one column for the cursor */
+#define COLUMNS 79
 
 static const char *const stage_names[LIVE_N_STAGES] = {
     [LIVE_CONVERT] = "convert", [LIVE_FIND] = "find", [LIVE_PLAN] = "plan",
@@ -40,8 +41,8 @@ void live_stats_begin_second(struct live_stats *stats, int64_t now_us)
     reset_frame_sums(&stats->second, now_us);
 }
 
-/* Counts a latency of US microseconds. If a bin is full, all bins are
- * halved, which preserves percentiles; nonzero bins stay nonzero. */
+/* Counts a latency of US microseconds in S. If its bin is full, all bins are
+ * halved, but none to 0, which preserves percentiles. */
 static void add_latency_to_histogram(struct live_sums *s, int64_t us)
 {
     const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
@@ -239,7 +240,10 @@ char *live_stats_write_line(const struct live_stats *stats, int64_t now_us,
         return text;
     }
     append(&w, "\r");
-    w.room = 1 + COLUMNS + 1; /* a wrapped line could not be overwritten */
+    /* Limits the text to one terminal line, as a line that wraps could not be
+     * overwritten. The two more bytes are the carriage return and the
+     * terminator. */
+    w.room = 1 + COLUMNS + 1;
     append_summary_text(&w, stats, now_us);
     w.room = LIVE_STATS_TEXT;
     append(&w, "\033[K");

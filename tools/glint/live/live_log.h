@@ -26,7 +26,7 @@ enum live_stage {
                      on */
     LIVE_FIND,    /* finding and tracking of lamps */
     LIVE_PLAN,
-    LIVE_BIN, /* tracing of rays, edges, and their lists per tile */
+    LIVE_BIN, /* tracing of rays, and listing of edges per image tile */
     LIVE_DRAW,
     LIVE_SHOW,  /* passing frames to the sink */
     LIVE_SCENE, /* drawing of a scene; reported if there is a scene */
@@ -39,7 +39,7 @@ enum {
     LIVE_STATS_TEXT = 672 /* max bytes of a line of statistics, with its end */
 };
 
-/* Times of one frame, or only counts of lost frames. */
+/* Times of a frame that was shown, or only numbers of lost frames */
 struct live_frame_times {
     bool shown; /* false: only the three counts below are set */
     int n_dropped, n_late, n_corrupt; /* see struct glint_source_frame */
@@ -47,7 +47,7 @@ struct live_frame_times {
     int64_t stage_us[LIVE_N_STAGES];
     int lights, ghosts;
     size_t bytes;   /* bytes of the arena in use */
-    double quality; /* --quality of the frame, 0 .. 1 */
+    double quality; /* 1 - step / LIVE_MAX_STEP of the adaptive quality */
     bool reused;    /* whether the edges of the previous frame were reused */
 };
 
@@ -100,19 +100,19 @@ void live_stats_begin_second(struct live_stats *stats, int64_t now_us);
  * exceed, or -1 if there are no frames. */
 double live_stats_latency_ms(const struct live_sums *sums, int percent);
 
-/* Writes the statistics of the second to TEXT as a readable line, and returns
- * TEXT. For a TERMINAL the line has at most 79 characters and overwrites the
- * previous line; else it ends with a line feed and has the stages, too. Counts
- * of dropped, late and corrupt frames are since the start. */
+/* Writes the statistics of the last second to TEXT as a line for readers, and
+ * returns TEXT. If TERMINAL, the line has at most 79 characters and overwrites
+ * the previous one; else it also has the stages and ends with a line feed.
+ * Numbers of dropped, late and corrupt frames are totals of the run. */
 char *live_stats_write_line(const struct live_stats *stats, int64_t now_us,
                             bool terminal, char text[LIVE_STATS_TEXT]);
 
-/* Writes the statistics of the second, or of the run if TOTAL, to TEXT as a
- * JSON object without line feed, and returns TEXT: "t" (seconds since the
- * start), "fps", "frames", "drops", "late", "corrupt", "latency_ms_p50",
- * "latency_ms_p99", "ms" (mean of each stage), the most "lights", "ghosts" and
- * "bytes", mean "quality"; of the total also "total": true. Latencies and means
- * of no frames are null. */
+/* Writes the statistics of the last second, or of the run if TOTAL, to TEXT as
+ * a JSON object without line feed. Returns TEXT. Members: "t" (seconds since
+ * the start), "fps", "frames", "drops", "late", "corrupt", "latency_ms_p50",
+ * "latency_ms_p99", "ms" (mean time of each stage), the maxima "lights",
+ * "ghosts" and "bytes", the mean "quality", and for the run "total": true.
+ * Latencies and means are null if there are no frames. */
 char *live_stats_write_json(const struct live_stats *stats, int64_t now_us,
                             bool total, char text[LIVE_STATS_TEXT]);
 
@@ -128,8 +128,8 @@ int live_log_print_error(const struct live_log *log, enum glint_status status,
 /* Prints TEXT on a line of its own, unless -q is given. */
 void live_log_print_message(const struct live_log *log, const char *text);
 
-/* Counts a frame that, by its statistics OF, was drawn incompletely because
- * of the memory limit. Reports the first such frame. */
+/* Counts a frame if its statistics OF show that the memory limit made it
+ * incomplete. Prints a warning for the first such frame. */
 void live_log_warn_of_memory_limit(struct live_log *log,
                                    const struct glint_flare_stats *of);
 
@@ -137,9 +137,9 @@ void live_log_warn_of_memory_limit(struct live_log *log,
  * begins the next second. */
 void live_log_print_second(struct live_log *log, bool is_asked);
 
-/* Prints the statistics of the run, and how many of N_SHOWN frames were
- * incomplete or were refused by the output (N_REFUSED). IS_WELL: the run did
- * not fail. */
+/* Prints the statistics of the run. As text they include how many of N_SHOWN
+ * frames the output refused, N_REFUSED, and how many were incomplete. IS_WELL:
+ * the run did not fail; otherwise no text is printed. */
 void live_log_print_summary(struct live_log *log, bool is_well, int n_shown,
                             long n_refused);
 

@@ -12,7 +12,8 @@
 #include "posix/clock.h"
 
 #define RETRY_MS 500
-#define WAIT_MS  250 /* max wait, ms, before a silent input is checked */
+/* max time without a frame, ms, before the input is checked */
+#define WAIT_MS 250
 
 struct live {
     struct tool *tool;
@@ -21,9 +22,9 @@ struct live {
     void *ctx;
 
     struct live_input in;
-    /* Format of the input since it was opened or restarted */
+    /* format of the input, read when it was opened or restarted */
     struct glint_source_format format;
-    /* number of restarts of the input when FORMAT was read */
+    /* number of restarts of the input at the time FORMAT was read */
     int n_restarts;
     struct live_output output;
     /* buffer for copies of frames whose own memory is slow to read */
@@ -36,8 +37,10 @@ struct live {
     int n_shown, n_snapshots;
     /* error of the last attempt to open the camera */
     struct glint_error why;
-    int64_t time_us;  /* time of the last frame, microseconds */
-    int64_t retry_us; /* earliest time to reopen the output; 0: none so far */
+    int64_t time_us; /* time of the last frame, microseconds */
+    /* earliest time of the next attempt to open the output; 0: no attempt so
+     * far */
+    int64_t retry_us;
     bool had_signal;
 };
 
@@ -207,13 +210,13 @@ static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
     live_log_print_message(&l->log, text);
 }
 
-static int64_t convert_s_to_us(double ms)
+static int64_t convert_ms_to_us(double ms)
 {
     return (int64_t)(1e3 * ms);
 }
 
-/* Adds FRAME to the statistics. AT_US[4]: times at which it was received,
- * copied, drawn and shown; NULL: there was no frame to show. */
+/* Adds FRAME to the statistics. AT_US[4] are the times at which FRAME was
+ * received, copied, drawn and shown. AT_US is NULL if frames were only lost. */
 static void record_frame_statistics(struct live *l,
                                     const struct glint_source_frame *frame,
                                     const int64_t *at_us)
@@ -228,11 +231,11 @@ static void record_frame_statistics(struct live *l,
         t.captured_us = frame->time_us;
         t.shown_us = at_us[3];
         t.stage_us[LIVE_CONVERT] = at_us[1] - at_us[0];
-        t.stage_us[LIVE_FIND] = convert_s_to_us(drawing->run.find_ms);
-        t.stage_us[LIVE_SCENE] = convert_s_to_us(drawing->files.scene.ms);
-        t.stage_us[LIVE_PLAN] = convert_s_to_us(drawing->run.report.plan_ms);
-        t.stage_us[LIVE_BIN] = convert_s_to_us(drawing->run.report.bin_ms);
-        t.stage_us[LIVE_DRAW] = convert_s_to_us(drawing->run.report.draw_ms);
+        t.stage_us[LIVE_FIND] = convert_ms_to_us(drawing->run.find_ms);
+        t.stage_us[LIVE_SCENE] = convert_ms_to_us(drawing->files.scene.ms);
+        t.stage_us[LIVE_PLAN] = convert_ms_to_us(drawing->run.report.plan_ms);
+        t.stage_us[LIVE_BIN] = convert_ms_to_us(drawing->run.report.bin_ms);
+        t.stage_us[LIVE_DRAW] = convert_ms_to_us(drawing->run.report.draw_ms);
         t.stage_us[LIVE_SHOW] = at_us[3] - at_us[2];
         t.lights = drawing->run.report.drawn_lights;
         t.ghosts = drawing->run.report.ghosts;
@@ -247,9 +250,9 @@ static void record_frame_statistics(struct live *l,
 
 /* ------------------------------------------------------------- what is lost */
 
-/* Prints that device WHAT was lost. With --reconnect the run waits for the
- * device, and the panel shows the last image. Returns -1 to continue, or an
- * exit code. */
+/* Prints that the device WHAT was lost, with the reason WHY. With --reconnect
+ * the run continues, the panel shows the last image, and the device is retried.
+ * Returns -1 to continue, or an exit code. */
 static int report_device_loss(struct live *l, const char *what,
                               enum glint_status status, const char *why)
 {
@@ -299,8 +302,8 @@ static int retry_camera(struct live *l)
     return -1;
 }
 
-/* Returns the microseconds since the previous frame, at most 1e9; 40000 for
- * the first frame or if no time has passed. */
+/* Returns the time since the previous frame, microseconds, at most 1e9. Returns
+ * 40000 for the first frame, or if the time did not increase. */
 static int32_t compute_elapsed_us(struct live *l, int64_t time_us)
 {
     const int64_t before_us = l->time_us;
@@ -325,7 +328,8 @@ static int draw_and_show_frame(struct live *l,
     int64_t at_us[4];
     int code;
 
-    at_us[0] = taken_us; /* the drawing time includes the decoding of a JPEG */
+    /* From this time on, as the conversion includes the decoding of a JPEG. */
+    at_us[0] = taken_us;
     if (!frame->is_drawable)
         image = live_copy_image(&l->copy, image);
     code = image ? prepare_drawing(l, image)
@@ -368,8 +372,9 @@ static void report_stop_signal(struct live *l)
     l->had_signal = has;
 }
 
-/* Adapts drawing and output to the format that the input has negotiated again,
- * and starts the input. Returns -1 to continue, or an exit code. */
+/* Sets up drawing and output for the new format after the input has restarted
+ * with another one, then starts the input. Returns -1 to continue, or an exit
+ * code. */
 static int restart_input(struct live *l)
 {
     struct glint_error error = {""};
@@ -408,8 +413,9 @@ static int process_next_frame(struct live *l)
     return code;
 }
 
-/* Checks that FRESH has a lens option if the present options have one: a
- * configuration file may be partly written. */
+/* Checks FRESH, the options after a reload: if the present options name a lens,
+ * FRESH must name one, too. Otherwise the configuration file was probably read
+ * while it was being written. */
 static bool check_config_names_lens(const struct live *l,
                                     const struct live_options *fresh)
 {
@@ -421,8 +427,8 @@ static bool check_config_names_lens(const struct live *l,
     return false;
 }
 
-/* Reads configuration and lens again. Devices stay open and nothing is baked.
- * On an error the present configuration stays in use. */
+/* Reloads configuration and lens. Devices stay open, and no lens is baked. On
+ * an error the present configuration stays in use. */
 static void reload_config_and_lens(struct live *l)
 {
     struct live_options *fresh = calloc(1, sizeof *fresh);
@@ -485,8 +491,8 @@ static int start_live_run(struct live *l)
     code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
-    live_signals_install(); /* Until this call a signal kills the process at
-                             * once. */
+    /* Before this call a signal ends the process at once. */
+    live_signals_install();
     code = set_up_drawing_and_output(l);
     if (code != EXIT_OK)
         return code;

@@ -1,6 +1,8 @@
-/* SPDX-License-Identifier: MIT live_picture.h - copies live frames: into
- * memory, if the memory of the frames is slow or shared, and into files
- * (snapshots). */
+/* SPDX-License-Identifier: MIT
+ *
+ * live_picture.h - copies live frames: to memory, if the memory of the frames
+ * is slow or shared, and to files (snapshots).
+ */
 #ifndef GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 #define GLINT_TOOLS_LIVE_LIVE_PICTURE_H
 

@@ -48,15 +48,15 @@ bool live_signals_has_arrived(enum live_signal which)
 {
     const bool was = asked[which];
 
-    /* clear it only if it was set, so that a signal that arrives now is not
-     * lost */
+    /* The flag is reset only if it was set: a signal that arrives between the
+     * two would be lost otherwise. */
     if (was && which != LIVE_STOP)
         asked[which] = 0;
     return was;
 }
 
-/* Returns whether a signal must be handled now. A snapshot is handled with
- * the next frame instead. */
+/* Returns whether a signal must be handled before the next frame. A snapshot
+ * needs a frame, so it does not count. */
 static bool is_signal_pending(void)
 {
     for (int i = 0; i < LIVE_N_SIGNALS; i++)

@@ -23,9 +23,10 @@ void live_signals_install(void);
  * true. */
 bool live_signals_has_arrived(enum live_signal which);
 
-/* Waits until FD (unless -1) is readable, has an event or an error, until a
- * signal arrives that live_signals_has_arrived() has not returned yet (except
- * LIVE_SNAPSHOT, which needs a frame), or until MS milliseconds have passed. */
+/* Waits until FD (-1: none) is readable or has an event or an error, or for MS
+ * milliseconds. A signal ends the wait at once, also one that arrived before
+ * it, unless live_signals_has_arrived() has returned it already. LIVE_SNAPSHOT,
+ * which needs a frame, does not end it. */
 void live_signals_wait(int fd, int ms);
 
 #endif
