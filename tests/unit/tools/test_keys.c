@@ -84,7 +84,7 @@ TEST(rejects_wrong_key_files)
         {"", "k.csv: has no key frames"},
         {"frame,gain\n\n1\n", "k.csv:3: expected as many"},
         {"frame,gain\n1,2,3\n", "k.csv:2: expected as many"},
-        {"frame,gain\n1,a\n", "k.csv:2: each column must be a number"},
+        {"frame,gain\n1,a\n", "k.csv:2: each field must be a number"},
         {"frame,gain\n1,-1\n", "k.csv:2: gain must be"},
         {"frame,gain\n1,nan\n", "k.csv:2: "},
         {"frame,gain\n1.5,1\n", "k.csv:2: frame must be"},

@@ -14,8 +14,8 @@
 
 enum { WIDE = 288, DIMMED = 5 };
 
-/* linear light, 1 = white, to which the brightest 1 % of a ghost's pixels are
- * exposed on a sheet */
+/* Display exposure of a thumbnail: 99 % of a ghost's lit samples are at most at
+ * this linear light, 1 = white. */
 static const double shown = 0.7;
 
 static bool is_ghost_muted(const struct ghost_list *l, int ghost)
@@ -36,13 +36,12 @@ enum glint_status ghost_list_write_file(const struct ghost_list *l,
     enum glint_status status =
         glint_output_open(&out, path, GLINT_OUTPUT_TEXT, error);
     char text[300];
-    int n =
-        snprintf(text, sizeof text,
-                 "# Ghosts of one frame, the brightest first. A line may "
-                 "have solo or mute, gain (0 to\n"
-                 "# 1000) and tint R,G,B (0 to 4); what is not listed stays "
-                 "as it is, unless others are solo.\nlens %s\n",
-                 l->lens);
+    int n = snprintf(text, sizeof text,
+                     "# Ghosts of one frame, the brightest first. A line may "
+                     "have solo or mute, gain (0 to\n"
+                     "# 1000) and tint R,G,B (0 to 4); a ghost without a line "
+                     "does not change, unless others are solo.\nlens %s\n",
+                     l->lens);
 
     if (status == GLINT_OK)
         status = glint_output_write(&out, text, (size_t)n, error);
@@ -71,8 +70,8 @@ enum glint_status ghost_list_write_file(const struct ghost_list *l,
 /* --------------------------------------------------------------------- sheet
  */
 
-/* Reduces the image of the ghost drawn last to LIGHT[height][width][3] of a
- * thumbnail, by averaging pixels. */
+/* Averages pixels of the ghost drawn last down to the thumbnail
+ * LIGHT[HEIGHT][WIDTH][3]. */
 static void reduce_ghost_image(const struct glint_explain *e, int width,
                                int height, float *light)
 {
@@ -103,8 +102,8 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the display exposure of LIGHT[N]; ROOM is scratch memory of the
- * same size. */
+/* Returns the factor on LIGHT[N] by which its 99th percentile becomes SHOWN.
+ * ROOM is scratch memory of N floats. */
 static double find_display_exposure(const float *light, size_t n, float *room)
 {
     size_t lit = 0;
@@ -118,8 +117,8 @@ static double find_display_exposure(const float *light, size_t n, float *room)
     return shown / (double)room[lit - 1 - lit / 100];
 }
 
-/* Draws the thumbnail LIGHT, scaled by SCALE, over the dimmed image SMALL into
- * TO. */
+/* Draws LIGHT, multiplied by SCALE, over the dimmed image SMALL into TO. All
+ * have the size of a thumbnail. */
 static void draw_ghost_thumbnail(const struct glint_image *to,
                                  const struct glint_image *small,
                                  const float *light, double scale)

@@ -13,8 +13,7 @@
 struct ghost_list {
     struct glint_explain *explain;
     const char *lens;
-    /* indices of the ghosts in the order in which they are listed,
-     * [explain->n_ghosts] */
+    /* indices of ghosts, [explain->n_ghosts], in the order of the list */
     const int *ghosts;
     int top; /* max ghosts on a sheet */
     const struct glint_image *picture;

@@ -9,8 +9,8 @@
 
 enum { MAX_BYTES = 1 << 26 };
 
-/* Columns of a key file. Those without limits are engine options of the same
- * name, with the option's limits. */
+/* Columns of a key frame file. A column without limits is the engine option of
+ * the same name and has its limits. */
 static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_FRAME] = {"frame", 0, TEXT_MAX_FRAME,
                     "frame must be a whole number from 0"},
@@ -30,9 +30,10 @@ static const struct text_column columns[KEYS_COLUMNS] = {
 /* Parser state of a key file */
 struct reading {
     struct keys *keys;
-    /* column index of each field in a row; n_columns 0: no heading read yet */
+    /* index in COLUMNS of each field of a row; n_columns is 0 until the heading
+     * was read */
     int column[KEYS_COLUMNS], n_columns;
-    char range[160]; /* error message for an option's value out of range */
+    char range[160]; /* error message for values out of an option's range */
 };
 
 /* Parses the text FIELD as a value of column C. Returns NULL or an error
@@ -52,7 +53,7 @@ static const char *parse_key_frame_value(struct reading *r, int c,
                                       r->range};
     }
     return text_parse_value(&column, field,
-                            "each column must be a number or empty", value);
+                            "each field must be a number or empty", value);
 }
 
 static const char *add_key_frame(struct keys *keys, int column,

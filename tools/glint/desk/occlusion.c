@@ -13,8 +13,8 @@
 
 enum { POINTS = 61, LEAST_PX = 2 };
 
-/* min fraction of the level of a hidden lamp, as lists of lamps do not accept
- * 0 */
+/* Min level of a hidden lamp. Lists of lamps, which store the level, do not
+ * accept 0. */
 static const double least_level = 1e-6;
 
 /* ------------------------------------------------------------------- reading
@@ -150,7 +150,7 @@ static double read_mask_pixel(const struct occlusion *o, int x, int y)
 }
 
 /* Returns the mask at (X, Y) of an image of VIEW's size, interpolated
- * bilinearly; 1 off-screen. */
+ * bilinearly. Off-screen returns 1. */
 static double interpolate_mask(const struct occlusion *o,
                                const struct glint_view *view, double x,
                                double y)
@@ -177,7 +177,7 @@ static double compute_mean_mask_over_lamp(const struct occlusion *o,
                                           const struct glint_lamp *lamp)
 {
     const double pixel = glint_view_pixel_tangent(view, focal_mm);
-    /* With such a large pixel size every lamp counts as large and gets POINTS
+    /* The resolution in this rule is so high that every lamp gets all POINTS
      * sample points. */
     const struct glint_area_rule rule = {1e6 / pixel, POINTS, 1, 1};
     struct glint_lamp disc = *lamp;
@@ -199,8 +199,9 @@ static double compute_mean_mask_over_lamp(const struct occlusion *o,
     return fmin(sum, 1);
 }
 
-/* Returns the fraction of light of a lamp at (X, Y), pixels, in an image of
- * WIDTH x HEIGHT: off-screen lamps fade within FADE_PX. */
+/* Returns the factor on the light of a lamp at (X, Y), pixels, in an image of
+ * WIDTH x HEIGHT. It falls from 1 at the border to 0 at a distance of
+ * FADE_PX. */
 static double compute_off_screen_fade(double x, double y, int width, int height,
                                       double fade_px)
 {

@@ -22,14 +22,14 @@
 
 struct occlusion {
     const char *file; /* --mask: name of the mask file, or NULL */
-    /* distance from the image at which a lamp has faded out, pixels; 0: no
-     * fading */
+    /* distance from the image border at which the light of an off-screen lamp
+     * reaches 0, pixels; 0: no fading */
     double fade_px;
 
     /* Private. */
     /* mask of the current frame; planes are NULL if there is no mask */
     struct glint_image image;
-    double black, white; /* mask codes that transmit no light and all light */
+    double black, white; /* mask codes at which no light and all light passes */
     bool is_video, is_numbered, is_over;
     struct glint_y4m_reader video;
     long frame; /* frame number of IMAGE, or -1 */

@@ -8,7 +8,7 @@
 
 enum { SMALL = 320, MOST = 24 };
 
-/* Bounding boxes x0, y0, x1, y1 of the labels drawn so far. */
+/* Boxes x0, y0, x1, y1 of all labels drawn so far */
 struct labels {
     struct paint paint;
     int n, box[MOST][4];

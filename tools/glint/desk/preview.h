@@ -7,10 +7,10 @@
 
 #include "glint/engine.h"
 
-/* Draws on IMAGE the numbers of the brightest ghosts of N LAMPS, times
- * SCALE, each at the brightest point of its ghost. To find these points,
- * ENGINE draws each ghost at a small size. Returns GLINT_E_MEMORY on
- * failure. */
+/* Draws on IMAGE the number of each of the brightest ghosts, at the ghost's
+ * brightest point. ENGINE finds these points by drawing the ghosts of N LAMPS
+ * at a small size, with the lamps' power multiplied by SCALE. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status
 preview_draw_ghost_numbers(struct glint_engine *engine,
                            const struct glint_engine_lamp *lamps, int n,

@@ -18,9 +18,9 @@ static int compute_caption_stroke_width(int width)
     return width >= 960 ? 3 : width >= 200 ? 2 : 1;
 }
 
-/* Returns the number of bytes of TEXT in the next row of a caption below an
- * image of WIDTH: whole words, or a part of a word that is wider than the
- * row. */
+/* Returns the number of bytes of TEXT that fit into the next row of a caption
+ * below an image of WIDTH pixels. Rows break at blanks, or within a word that
+ * is wider than a row. */
 static size_t get_caption_row_length(int width, const char *text)
 {
     const int line = compute_caption_stroke_width(width);
@@ -140,8 +140,8 @@ static double convert_code_to_light(double code)
     return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
 }
 
-/* Sets PX to the mean of the light of BIG over columns X[0] .. X[1] - 1 and
- * rows Y[0] .. Y[1] - 1. */
+/* Sets PX to the sRGB codes of the mean light of BIG over the columns X[0] ..
+ * X[1] - 1 and rows Y[0] .. Y[1] - 1. LIGHT converts codes to linear light. */
 static void compute_mean_pixel(const struct glint_image *big,
                                const double light[256], const int x[2],
                                const int y[2], uint8_t *px)

@@ -40,9 +40,9 @@ void sheet_draw_caption(const struct sheet *sheet, int k, const char *text);
 
 void sheet_close(struct sheet *sheet);
 
-/* Makes SMALL, a copy of BIG scaled down to at most WIDTH pixels wide by
- * averaging linear light. Both are sRGB, GLINT_RGB24. The caller frees the
- * plane[0] of SMALL. Returns GLINT_E_MEMORY on failure. */
+/* Sets SMALL to a copy of BIG, scaled down to at most WIDTH pixels of width by
+ * averaging linear light. Both images are sRGB in GLINT_RGB24. The caller frees
+ * small->plane[0]. Returns GLINT_E_MEMORY on failure. */
 enum glint_status sheet_reduce_image(struct glint_image *small,
                                      const struct glint_image *big, int width);
 

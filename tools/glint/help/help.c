@@ -6,8 +6,8 @@
 
 enum { NAME_CHARS = 48, ABOUT = 22 /* column at which descriptions begin */ };
 
-/* Most common options, printed for commands whose help is longer than a
- * screen. */
+/* The most common options of each command with a help text longer than
+ * HELP_SCREEN lines. Without --help-all only these are printed. */
 static const struct {
     /* option names, each with a blank before and after */
     const char *command, *options;
@@ -81,8 +81,8 @@ static bool contains_option_name(const char *options, const char *name)
     return strstr(options, word) != NULL;
 }
 
-/* Prints the lines of TEXT that describe OPTIONS; INTRO: also the lines above
- * the first option. */
+/* Prints the lines of TEXT that describe OPTIONS. If INTRO, prints also the
+ * lines above the first option. */
 static void print_common_options(const char *text, const char *options,
                                  bool intro)
 {

@@ -13,16 +13,16 @@ enum {
     HELP_PARTS = 3
 };
 
-/* The help text of COMMAND: the concatenation of PART; NULL parts are
+/* Help text of COMMAND: the strings of PART, one after another. NULL parts are
  * skipped. */
 struct help {
     const char *command;
     const char *part[HELP_PARTS];
 };
 
-/* Print HELP. help_print_complete() prints all of it; help_print_screen()
- * prints only the synopsis and the most common options if it is longer than
- * HELP_SCREEN. */
+/* Print HELP. help_print_complete() prints all of it. If that has more than
+ * HELP_SCREEN lines, help_print_screen() prints only the synopsis and the most
+ * common options. */
 void help_print_complete(const struct help *help);
 void help_print_screen(const struct help *help);
 

@@ -8,12 +8,12 @@
 #include "glint/options.h"
 
 static const struct {
-    /* command to which the row applies; NULL: all commands */
+    /* command of the row; NULL: all other commands with the option */
     const char *command;
     const char *option, *takes;
 } table[] = {
-    /* A row for one command must precede the row of the same option for any
-     * command, as the first match is used. */
+    /* The first row that matches is used. So the row of a single command must
+     * precede the row of all commands. */
     {"bake", "max-angle", "degrees, 1 to 89"},
     {"bake", "lights", "a whole number, 0 to 16"},
     {"bake", "positions", "a whole number, 2 to 64"},
@@ -121,7 +121,8 @@ static const char *find_item_end(const char *text)
     return text;
 }
 
-/* Returns whether the list item at TEXT is a range of numbers. */
+/* Returns whether the list item at TEXT is a range of numbers, "LOW to
+ * HIGH". */
 static bool is_number_range(const char *text)
 {
     const char *const to = strstr(text, " to ");

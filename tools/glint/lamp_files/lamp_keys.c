@@ -23,8 +23,8 @@ uint32_t lamp_hash_id(const char *text)
 
 struct key {
     int row, frame;
-    /* id of the lamp; for a lamp without id 2^32 + its index among such lamps
-     * of the frame */
+    /* identity of the lamp: 2^32 + its id, or, without an id, its index among
+     * such lamps of the frame */
     uint64_t lamp;
 };
 
@@ -46,7 +46,7 @@ static int compare_lamp_ids(const void *a, const void *b)
     return compare_key_frames(a, b);
 }
 
-/* Sets the member lamp of all keys, which are sorted by frame. */
+/* Sets the member LAMP of KEY[N], which must be sorted by frame. */
 static void identify_lamps_of_keys(struct key *key, int n,
                                    const struct lamp_list *list)
 {

@@ -28,19 +28,19 @@
 #define LAMP_ID_TEXT (UINT32_C(1) << 31)
 uint32_t lamp_hash_id(const char *text);
 
-/* Links the rows of each lamp in order of frames, by their member next.
+/* Links the rows of each lamp, sorted by frame, through their member NEXT.
  * Returns GLINT_E_MEMORY on failure. */
 enum glint_status lamp_keys_link_rows(struct lamp_list *list);
 
-/* Sets ROW to the lamp of row I at FRAME. Returns false unless row I is for
- * FRAME or for every frame, or FRAME is between it and the next row of its
- * lamp. */
+/* Sets ROW to the lamp of row I at FRAME. Returns false if the lamp is not
+ * there: row I is neither for FRAME nor for every frame, and FRAME is not
+ * between row I and the lamp's next row. */
 bool lamp_keys_interpolate_at(const struct lamp_list *list, int i, int frame,
                               struct lamp_row *row);
 
-/* Returns whether FRAME and the previous frame both have lamps with ids, but
- * no id in common, as after a cut. Compares at most GLINT_ENGINE_MAX_LAMPS
- * lamps of each. */
+/* Returns whether FRAME is the first one after a cut: FRAME and the previous
+ * frame both have lamps with ids, but no id in common. Compares at most
+ * GLINT_ENGINE_MAX_LAMPS lamps of each frame. */
 bool lamp_keys_is_cut(const struct lamp_list *list, int frame);
 
 #endif

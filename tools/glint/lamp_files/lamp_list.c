@@ -21,7 +21,8 @@ enum {
     BLUE,
     SIZE,
     ID,
-    KEYS, /* number of JSON keys; plain lists have the columns before ID */
+    /* number of keys of a JSON row; a plain list has the columns above ID */
+    KEYS,
     SHAPE = KEYS,
     TURN,
     LEVEL,
@@ -55,7 +56,8 @@ static const char plain[] = "expected 4, 7 or 8 numbers separated by commas";
 /* Parser state of a lamp list */
 struct reading {
     struct lamp_list *list;
-    /* column index of each field; n 0: a plain list, whose heading has no id */
+    /* index in COLUMNS of each field of a row; n is 0 in a plain list, which
+     * has no "id" in its heading */
     int n, column[COLUMNS];
 };
 
@@ -75,8 +77,9 @@ static struct lamp_row make_lamp_row(const double *v)
                              .next = -1};
 }
 
-/* Parses the fields that are not NULL into V, which holds the defaults. Returns
- * OTHER if a field is not a number. */
+/* Parses the fields that are not NULL into V, which must contain the defaults.
+ * IS_OBJECT: fields are JSON values. Returns NULL or an error message: OTHER
+ * for a field that is not a number. */
 static const char *parse_row_fields(char *const field[COLUMNS], bool is_object,
                                     const char *other, double *v)
 {
@@ -138,7 +141,8 @@ static const char *parse_lamp_object(struct text_lines *lines, char *line,
     return parse_row_fields(field, true, "a value is not a number", v);
 }
 
-/* Sets the columns from the names in LINE if "id" is among them. */
+/* Sets the columns from LINE, a heading, if one of its names is "id". Returns
+ * NULL or an error message. */
 static const char *parse_column_heading(struct reading *r, char *line)
 {
     char *name[COLUMNS];

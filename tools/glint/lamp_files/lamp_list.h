@@ -18,10 +18,10 @@ struct lamp_row {
     double size;  /* RMS radius, pixels; 0: a point */
     double shape; /* minor axis / major axis, 0 .. 1 */
     double turn;  /* direction of the major axis, degrees from +x; 90 is up */
-    /* fraction of its power while the lamp fades in or out, else 1 */
+    /* fraction of the power that a lamp has while it fades in or out, else 1 */
     double level;
-    /* RMS radius of lamp and glare in an image that clips the lamp, pixels;
-     * 0: not clipped */
+    /* RMS radius of the lamp with its glare, pixels, in an image in which the
+     * lamp is clipped; 0: not clipped */
     double seen;
     uint32_t id; /* id of the lamp; 0: none */
     int next; /* index of the lamp's next row, set by lamp_keys_link_rows(), or
@@ -50,10 +50,10 @@ void lamp_list_free(struct lamp_list *list);
 enum glint_status lamp_list_add(struct lamp_list *list,
                                 const struct lamp_row *row);
 
-/* Sets LAMPS to the lamps of FRAME, at most MAX; in a linked list including
- * lamps interpolated between an earlier and a later row. Returns their
- * number. Lamps without an id get ids by their index in LAMPS, above all ids
- * of the list that are below LAMP_ID_TEXT. */
+/* Sets LAMPS to the lamps of FRAME, at most MAX. In a list with linked rows,
+ * lamps between two rows are interpolated. Returns the number of lamps. A lamp
+ * without an id gets one from its index in LAMPS, above all ids of the list
+ * below LAMP_ID_TEXT. */
 int lamp_list_get_frame(const struct lamp_list *list, int frame,
                         const struct glint_view *view, double focal_mm,
                         struct glint_engine_lamp *lamps, int max);

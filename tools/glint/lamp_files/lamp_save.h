@@ -25,8 +25,8 @@ struct lamp_save {
 enum glint_status lamp_save_open(struct lamp_save *save, const char *path,
                                  struct glint_error *error);
 
-/* Writes ROW. Skips lamps more than a million pixels away, which lists do
- * not allow. Errors are reported by lamp_save_finish(). */
+/* Writes ROW. Skips lamps that are more than a million pixels away, because
+ * lists do not accept them. lamp_save_finish() reports errors. */
 void lamp_save_write_row(struct lamp_save *save, const struct lamp_row *row);
 
 /* Completes the list and renames the file to its path, or returns the first

@@ -9,7 +9,8 @@
 
 #include "glint/glint.h"
 
-/* Rays of light at one angle through the lens, and the pupil of their path */
+/* Parallel rays at one angle through the lens, or along a ghost, and the pupil
+ * through which they pass */
 struct fan {
     struct glint_path path;
     struct glint_pupil pupil;
@@ -55,9 +56,9 @@ struct figure {
     int shown;
 };
 
-/* Initialises FAN for light at THETA_DEG in the plane at azimuth PHI_DEG, which
- * becomes the x-z plane of its rays. GHOST: NULL for the direct path. Returns
- * false if no light passes. */
+/* Initialises FAN for light at THETA_DEG in the plane at azimuth PHI_DEG about
+ * the axis. This plane becomes the x-z plane of the rays. GHOST is NULL for the
+ * direct path. Returns false if no light passes. */
 static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
                          const struct glint_ghost *ghost, double nm,
                          double phi_deg, double theta_deg)
@@ -76,7 +77,7 @@ static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
                             optics.stop_radius_mm, NULL);
 }
 
-/* Returns the x at which ray (U, 0) starts, mm. */
+/* Returns the x, mm, in the front vertex plane at which ray (U, 0) starts. */
 static double compute_ray_start_mm(const struct fan *fan, double u)
 {
     const struct glint_pupil *p = &fan->pupil;
@@ -84,8 +85,9 @@ static double compute_ray_start_mm(const struct fan *fan, double u)
     return 0.5 * (p->x0_mm + p->x1_mm) + 0.5 * u * (p->x1_mm - p->x0_mm);
 }
 
-/* Traces the ray that starts at (U, V) of the pupil, -1 .. 1 each. HITS: see
- * glint_trace(). Returns whether the ray passes. */
+/* Traces the ray that starts at (U, V) of the pupil, -1 .. 1 each. Stores in
+ * HITS the points at which it hits surfaces, as glint_trace() does. Returns
+ * whether the ray passes. */
 static bool trace_fan_ray(const struct fan *fan, double u, double v,
                           struct glint_ray *ray, double (*hits)[2])
 {
@@ -97,8 +99,8 @@ static bool trace_fan_ray(const struct fan *fan, double u, double v,
                fan->stop_radius_mm * (1 + 1e-9);
 }
 
-/* Sets U to the min and max U of rays (U, 0) that pass. Returns false if no ray
- * passes. */
+/* Sets U[0] and U[1] to the min and max U of rays (U, 0) that pass. Returns
+ * false if no ray passes. */
 static bool find_fan_edges(const struct fan *fan, double u[2])
 {
     enum { STEPS = 100, HALVINGS = 12 };
@@ -130,8 +132,9 @@ static bool find_fan_edges(const struct fan *fan, double u[2])
 
 static const double spot_nm[SPOT_COLOURS] = {450, 546, 650};
 
-/* Traces the rays of one ring and adds those that pass. The pupil's box is the
- * square -1 .. 1, whose corners lie on the outermost ring. */
+/* Traces the rays of one ring and adds those that pass to S. In U and V the
+ * bounding box of the pupil is the square -1 .. 1; the outermost ring passes
+ * through its corners. */
 static void gather_ring_rays(struct spots *s, const struct fan *fan, int colour,
                              int ring)
 {
@@ -188,8 +191,8 @@ static void gather_field_spots(struct spots *s,
     measure_spot_extent(s);
 }
 
-/* position of the outermost field angle as a fraction of the film's half size;
- * rays stay inside the film */
+/* image height of the outermost field, as a fraction of half the film; below 1,
+ * so that all rays stay inside the film */
 #define FIELD_ENDS 0.995
 
 static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
@@ -214,8 +217,8 @@ static double round_up_to_1_2_5(double value)
     return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
 }
 
-/* Returns the distance from the centre at which light at THETA_DEG is
- * imaged, mm, or a negative value if no light arrives. */
+/* Returns the distance from the image centre, mm, at which the lens images
+ * light at THETA_DEG, or a negative value if no light arrives. */
 static double compute_image_height_mm(const struct figure *f, double theta_deg)
 {
     double hits[GLINT_MAX_EVENTS + 1][2];
@@ -229,9 +232,10 @@ static double compute_image_height_mm(const struct figure *f, double theta_deg)
     return fabs(ray.sensor_x_mm);
 }
 
-/* Returns the angle, degrees, of light that the lens images HEIGHT_MM from the
- * centre, by rays through the centre of the pupil. If no light reaches that
- * height, returns the widest angle that passes. */
+/* Returns the angle, degrees, of light that the lens images at a distance of
+ * HEIGHT_MM from the image centre. Only the ray through the centre of the pupil
+ * is traced. If no light arrives there, returns the largest angle that
+ * passes. */
 static double find_angle_of_image_height(const struct figure *f,
                                          double height_mm)
 {
@@ -264,7 +268,8 @@ enum { PROFILE = 24 };
 
 /* ------------------------------------------------------------------ places */
 
-/* Sets AT to the point of surface K at the height X of the section's plane. */
+/* Sets AT to the x, y and z of surface K at height X in the plane of the
+ * section. */
 static void find_section_point(const struct figure *f, int k, double x,
                                double at[3])
 {
@@ -279,8 +284,8 @@ static void find_section_point(const struct figure *f, int k, double x,
     at[2] += f->vertex[k];
 }
 
-/* Sets AT to z and x of the point HIT on surface or stop EVENT; see
- * glint_trace() for HIT. */
+/* Sets AT to the z and x of HIT, the point where a ray meets EVENT, a surface
+ * or the stop. HIT is as glint_trace() stores it. */
 static void find_surface_hit(const struct figure *f,
                              const struct glint_event *event,
                              const double hit[2], double at[2])
@@ -291,8 +296,9 @@ static void find_surface_hit(const struct figure *f,
     if (event->kind == GLINT_STOP)
         at[0] = f->stop_z;
     else {
-        /* Hits of aspheric surfaces are in the surface's own coordinates, as
-         * X and Y are. */
+        /* glint_surface_point() expects a point in the frame of the surface.
+         * Hits of aspheric surfaces are in this frame; those of other surfaces
+         * are in the plane of the section. */
         if (!glint_surface_point(&lens->surface[event->surface],
                                  event->shaped ? f->drawing->plane_deg : 0,
                                  hit[0], hit[1], point))
@@ -320,8 +326,8 @@ static void place_surface_vertices(struct figure *f)
     f->sensor_z = z;
 }
 
-/* Sets the extent of the image in the section's plane: its whole diagonal,
- * unless the lens is not rotationally symmetric. */
+/* Sets half the image size in the plane of the section: half the diagonal for a
+ * rotationally symmetric lens, else half the width or height. */
 static void set_section_image_extent(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
@@ -358,7 +364,7 @@ static void begin_lens_figure(struct figure *f)
     f->z0 = least - 0.16 * length;
     f->z1 = f->sensor_z + 0.02 * length;
     f->scale = fmin(width / (f->z1 - f->z0), HEIGHT_PX / (2 * f->x1));
-    /* use the remaining width for the space in front of the lens */
+    /* The width that remains becomes space in front of the lens. */
     f->z0 = fmax(f->z1 - width / f->scale, least - 0.6 * length);
     f->height_px = 2 * f->x1 * f->scale;
     f->left = 0.5 * (f->drawing->width_px - f->scale * (f->z1 - f->z0)) -
@@ -369,7 +375,7 @@ static void begin_lens_figure(struct figure *f)
 
 /* ---------------------------------------------------------------- the lens */
 
-/* Writes the points of surface K from its lower to its upper rim, in the
+/* Writes the points of surface K from its lower to its upper rim, or in the
  * opposite order if SENSE is -1. */
 static void write_surface_profile(const struct figure *f, int k, int sense)
 {
@@ -383,8 +389,9 @@ static void write_surface_profile(const struct figure *f, int k, int sense)
     }
 }
 
-/* Writes the edge of the glass between surfaces K and K + 1 on one SIDE:
- * outwards to the wider of both rims, then parallel to the axis. */
+/* Writes the edge of the glass between surfaces K and K + 1 at its upper rim
+ * (SIDE 1) or lower rim (SIDE -1). The edge runs outwards to the wider of the
+ * two rims, then parallel to the axis. */
 static void write_glass_edge(const struct figure *f, int k, int side)
 {
     const struct glint_surface *s = &f->drawing->lens->surface[k];
@@ -641,8 +648,9 @@ static void draw_ray_path(struct figure *f, const struct fan *fan, double x,
         const bool stop = fan->path.event[e].kind == GLINT_STOP;
         double at[2];
 
-        /* A stop behind the front vertex but in front of the glass edge is
-         * crossed by the extended line of the ray, not by the ray itself. */
+        /* The stop lies behind the front vertex but in front of the rim of the
+         * glass. The ray crosses it only if it is extended, so no point is
+         * drawn. */
         if (stop && f->drawing->lens->stop_after == 0 &&
             f->drawing->lens->stop_thickness_mm < 0)
             continue;

@@ -15,9 +15,9 @@
 
 enum { LINE_CHARS = 200, PATH_CHARS = 1024 };
 
-/* Copies the cell at *AT, which follows a '|', to CELL without blanks at its
- * ends, and moves *AT after the next '|'. Returns false if there is no '|'
- * or the cell is too long. */
+/* Copies a cell of a Markdown table to CELL, without the blanks around it. *AT
+ * is the position after a '|', and is moved after the next '|'. Returns false
+ * if there is no '|' or the cell is too long. */
 static bool read_table_cell(const char **at, char *cell, size_t bytes)
 {
     const char *from = *at + strspn(*at, " "), *end = strchr(*at, '|');
@@ -82,13 +82,14 @@ enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
 static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
-/* Max ratio of the exposures of ghosts and starburst. Ghosts are exposed as in
- * images of ghosts alone; with faint ghosts the starburst would otherwise fill
- * the image. */
+/* Max ratio of a thumbnail's exposure to the automatic exposure of ghosts and
+ * starburst. Thumbnails have the exposure of the ghosts alone, by which the
+ * starburst of a lens with faint ghosts would fill the image. */
 #define BRIGHTER 40.0
 
-/* Returns the angle, degrees, at the fraction AT of the half diagonal by the
- * pinhole projection (f tan), which positions lamps in images. */
+/* Returns the angle, degrees, of a light at the fraction AT of the half
+ * diagonal. Images place lamps by the pinhole projection (f tan), so this does,
+ * too. */
 static double compute_field_angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =

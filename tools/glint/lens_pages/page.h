@@ -32,11 +32,11 @@ struct page_card {
 enum glint_status page_read_measured_times(const char *name,
                                            struct measured *measured);
 
-/* Writes to FILE three <img>: the flare of a lamp at 0.25, 0.5 and 0.8 of
- * the distance to the film's corner. SETTINGS must be the defaults. NAME is
- * the lens; rays are exact if its model is not baked. MODEL_BYTES receives
- * the size of the model, 0 if there is none. Returns an exit code, after
- * printing the reason on failure. */
+/* Writes to FILE three <img>: flares of a lamp at 0.25, 0.5 and 0.8 of the
+ * distance from the centre to a corner of the film. SETTINGS must be the
+ * defaults. NAME is the lens, whose rays are traced exactly if no model is
+ * cached. Sets *MODEL_BYTES to the size of the model, or 0. Returns an exit
+ * code, after printing the reason on failure. */
 int page_write_thumbnails(const struct tool *tool,
                           const struct settings *settings, const char *name,
                           FILE *file, size_t *model_bytes);

@@ -38,13 +38,13 @@ bool lens_has_words(const char *name, const struct glint_prescription *lens,
     return true;
 }
 
-/* Searched fields by priority: of two equally similar words, one in a name is
- * preferred to one in a sentence. */
+/* Fields to search, by priority. Of two words that are equally similar to the
+ * mistyped one, a word of a name is suggested rather than one of a sentence. */
 enum { OF_NAME, OF_SOURCE, OF_CHARACTER, N_PLACES };
 
 struct search {
     const struct tool *tool;
-    struct glint_prescription *lens; /* buffer for a table */
+    struct glint_prescription *lens; /* scratch memory for a lens table */
     const char *word;
     char small[SUGGEST_CHARS]; /* the word in lower case */
     struct suggest near[N_PLACES];

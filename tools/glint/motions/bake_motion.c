@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake of motions: computes the path of a body from a recording of the
- * foods that it observed.
+ * glint bake of recorded motions: computes the path of a body among food items
+ * from a recording of what its sensors detected.
  */
 #include "model/bake_line.h"
 #include "motions/motion_file.h"

@@ -89,7 +89,8 @@ enum glint_status motion_file_read(const char *path, const char *written,
     } else if (status == GLINT_OK) {
         status = glint_input_read_whole_file(&data, &file->bytes, path,
                                              MAX_FILE_BYTES, error);
-        file->data = data; /* malloc() aligns the data */
+        /* malloc() has aligned the data, as baked motions require */
+        file->data = data;
     }
     if (status != GLINT_OK ||
         glint_motion_open(&file->motion, file->data, file->bytes, &reason) ==
@@ -140,7 +141,7 @@ static int print_pose_line(struct motion_file *file, uint32_t k, char *text,
     struct glint_motion_frame f;
 
     if (glint_motion_frame(&file->motion, k, &f) != GLINT_OK)
-        return 0; /* cannot happen: a file in memory has all poses */
+        return 0; /* A file in memory has all poses, so this cannot happen. */
     return snprintf(
         text, bytes, "%u,%.9g,%.9g,%.9g,%.6f,%.6f,%.6f,%.6f\n", k,
         step * f.pose.at[0], step * f.pose.at[1], step * f.pose.at[2],

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens motions: bakes a recording or reads a baked file. */
+ * Opens recorded motions: bakes a recording, or reads a baked file.
+ */
 #ifndef GLINT_TOOLS_MOTIONS_MOTION_FILE_H
 #define GLINT_TOOLS_MOTIONS_MOTION_FILE_H
 
@@ -20,9 +21,9 @@ struct motion_file {
 bool motion_file_is_source(const char *argument);
 bool motion_file_is_baked(const char *argument);
 
-/* Open PATH: bake a recording, or read a baked file. They reject PATH if it
- * is the output file WRITTEN. motion_file_open() prints the reason of a
- * failure and returns an exit code. */
+/* Open PATH: bake a recording, or read a baked file. Reject PATH if it is
+ * WRITTEN, the output file. motion_file_open() prints the reason of a failure
+ * and returns an exit code. */
 enum glint_status motion_file_read(const char *path, const char *written,
                                    struct motion_file *file,
                                    struct glint_error *error);

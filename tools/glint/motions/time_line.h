@@ -9,7 +9,8 @@
 #include "glint/scene/motion.h"
 
 /* Draws a bar along the lower edge of IMAGE: the position of FRAME in MOTION,
- * marks at frames where foods were replaced, and the frame number. */
+ * ticks at the frames in which food items were replaced, and the frame
+ * number. */
 void draw_time_line(const struct glint_image *image,
                     struct glint_motion *motion, int frame);
 
