@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint overlay: adds the flare of the lamps in an image or video to it.
+ * glint overlay: adds to an image or video the flare that a lens would produce
+ * for the lamps in it.
  */
 #include <errno.h>
 #include <limits.h>
@@ -49,9 +50,10 @@ static const char help[] =
     "  --start-number N    first of a sequence (default: 0 or 1, as found)\n"
     "  --frames A-B        only these frames of a video, from 0; those before\n"
     "                      are searched for lamps, not drawn\n"
-    "  --warm-up N         with --frames: search only N of the frames before;\n"
-    "                      the same result after a cut, or when lamps have\n"
-    "                      settled\n"
+    "  --warm-up N         with --frames: search only the last N frames before "
+    "A\n"
+    "                      for lamps; the result is the same if N includes a\n"
+    "                      cut, or if tracks and exposure settle within N\n"
     "  --zoom A-B          zoom from A to B over a whole video, both mm or "
     "both 0\n"
     "                      to 1; needs a model of 'glint bake LENS --positions "
@@ -181,8 +183,9 @@ static int check_raw_video_options(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* For N inputs: rejects options that write a single file, and raw input, whose
- * name does not determine an output format. */
+/* Rejects options that do not allow an output folder. These are options that
+ * write a single file, if there are N > 1 inputs, and raw input, which does not
+ * determine the type of the output. Returns an exit code. */
 static int check_folder_options(const struct tool *tool,
                                 const struct overlay *o, int n)
 {
@@ -372,8 +375,8 @@ static int check_input_file(struct tool *tool, struct overlay *o)
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Rejects an output that cannot be written or does not fit the type of the
- * input before the work begins. */
+/* Checks, before the work begins, that the output can be written and that its
+ * type fits the input. Returns an exit code. */
 static int check_output_file(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
@@ -385,8 +388,9 @@ static int check_output_file(struct tool *tool, struct overlay *o)
         return code;
     if (!frames && !o->lists_shots &&
         o->is_video != overlay_is_video(o->output))
-        return tool_usage(tool, "write a video to a video (.y4m, - or a type "
-                                "of ffmpeg), and a picture to a picture");
+        return tool_usage(tool, "the output of a video must be a video (.y4m, "
+                                "- or a type of ffmpeg), that of a picture a "
+                                "picture");
     if (!o->is_video && (o->last < INT_MAX || o->lists_shots))
         return tool_usage(tool,
                           "--%s applies to videos only; %s is not a video",
@@ -424,9 +428,9 @@ static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
-/* Returns how to draw with a lens that has no model: a single picture by exact
- * rays; several pictures, or options that need a model, by a model that is
- * baked when a lamp is detected. */
+/* Returns how to draw with a lens that has no model. A single picture is drawn
+ * by exact rays unless an option needs a model. Several pictures need a model,
+ * which is baked when a lamp is detected. */
 static enum settings_unbaked
 choose_rendering_without_model(const struct overlay *o)
 {

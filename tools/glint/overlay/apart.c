@@ -42,8 +42,8 @@ void file_conflicts_add_drawing_files(struct apart *files,
     file_conflicts_add_output(files, "--save-lights", o->save_lights);
 }
 
-/* Returns whether writing OUTPUT would overwrite INPUT. Numbered patterns are
- * not existing files, so they are compared as text. */
+/* Returns whether writing OUTPUT would overwrite INPUT. A numbered pattern is
+ * not the name of a file, so patterns are compared as text. */
 static bool would_overwrite_input(const char *input, const char *output)
 {
     return glint_target_is_input(input, output) ||

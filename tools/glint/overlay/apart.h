@@ -4,8 +4,8 @@
  * another output.
  *
  *     struct apart files = {.n_read = 0};
- *     file_conflicts_add_drawing_files(&files, &drawing.line);  files of its
- * options file_conflicts_add_input(&files, NULL, "in.png");         the input
+ *     file_conflicts_add_drawing_files(&files, &drawing.line);
+ *     file_conflicts_add_input(&files, NULL, "in.png");
  *     file_conflicts_add_output(&files, "-o", "out.png");
  *     code = file_conflicts_check_outputs(&tool, &files);
  *
@@ -19,14 +19,16 @@ enum { APART_FILES = 16 };
 
 struct apart {
     struct apart_file {
-        const char *option; /* name with dashes, or NULL for the input */
+        /* name of the option with dashes; NULL: PATH is the input */
+        const char *option;
         const char *path;
     } read[APART_FILES], written[APART_FILES];
     int n_read, n_written;
 };
 
-/* Add PATH, the value of OPTION (NULL: the input), to the files that are read
- * or written, at most APART_FILES of each. Do nothing if PATH is NULL. */
+/* Add PATH, the value of OPTION (NULL: the input), to the list of input or
+ * output files, which have at most APART_FILES entries each. Do nothing if PATH
+ * is NULL. */
 void file_conflicts_add_input(struct apart *files, const char *option,
                               const char *path);
 void file_conflicts_add_output(struct apart *files, const char *option,
@@ -36,8 +38,8 @@ void file_conflicts_add_output(struct apart *files, const char *option,
 void file_conflicts_add_drawing_files(struct apart *files,
                                       const struct drawing_line *line);
 
-/* Rejects an output that is also an input, which would be overwritten, or also
- * another output. Returns an exit code. */
+/* Rejects a command line with an output file that is also an input, and would
+ * overwrite it, or that is also another output. Returns an exit code. */
 int file_conflicts_check_outputs(const struct tool *tool,
                                  const struct apart *files);
 

@@ -12,7 +12,7 @@
 #include "overlay/lamp_excess.h"
 #include "overlay/show_lights.h"
 
-/* --quality of a preview: that of the name draft */
+/* --quality of a preview, equal to that of the word draft */
 static const double preview_quality = 0.25;
 
 static double lens_focal_mm(const struct drawing *d)
@@ -22,8 +22,8 @@ static double lens_focal_mm(const struct drawing *d)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Lowers --quality for a preview unless the user set it. The baked model stays
- * the same. */
+/* Lowers --quality for a preview, unless the user set it. Does not change the
+ * tolerance, so that the same baked model is used. */
 static void lower_preview_quality(struct settings *s)
 {
     struct glint_options *const o = &s->options;
@@ -38,8 +38,8 @@ static void lower_preview_quality(struct settings *s)
         o->area_samples = 1;
 }
 
-/* Zooms the lens to ZOOM, mm or 0 .. 1. On GLINT_E_ARGUMENT the zoom does not
- * change. */
+/* Zooms the lens to ZOOM, a focal length in mm or 0 .. 1. On GLINT_E_ARGUMENT
+ * the zoom does not change. */
 static enum glint_status set_lens_zoom(struct drawing *d, double zoom,
                                        struct glint_error *error)
 {
@@ -55,8 +55,8 @@ static enum glint_status set_lens_zoom(struct drawing *d, double zoom,
     return GLINT_OK;
 }
 
-/* Sets option NAME to VALUE; called for each control line that sets an
- * option. */
+/* Sets the option NAME to VALUE, for a control line. Returns GLINT_E_ARGUMENT
+ * with the reason in ERROR if VALUE is invalid. */
 static enum glint_status set_option_by_control(void *ctx, const char *name,
                                                double value,
                                                struct glint_error *error)
@@ -93,8 +93,8 @@ static enum glint_status set_option_by_control(void *ctx, const char *name,
     return status;
 }
 
-/* Returns the max number of lamps from options, lists and the scene, without
- * those detected in the picture. */
+/* Returns the max number of lamps that options, lists and the scene define.
+ * Lamps detected in the picture are not included. */
 static int count_max_given_lamps(const struct drawing *d)
 {
     return d->line.n_hand + d->files.list.n +
@@ -150,8 +150,8 @@ void drawing_replace_settings_and_lens(struct drawing *drawing,
     const struct lamp_save save = drawing->files.save;
     const int n_frames = drawing->run.n_frames;
 
-    /* drawing_close() must not close the file of saved lamps, which SAVE now
-     * owns */
+    /* SAVE owns the file of saved lamps now, so drawing_close() must not close
+     * it. */
     drawing->files.save.is_open = false;
     drawing_close(drawing);
     *drawing = *fresh;
@@ -174,8 +174,8 @@ int drawing_finish_lamp_file(const struct tool *tool, struct drawing *drawing)
 
 /* ------------------------------------------------------------------- sizing */
 
-/* Shadow rays per light: points on the light's disc, for static pictures and
- * for video */
+/* Points on the disc of a light to which shadow rays are traced, for a single
+ * picture and for a frame of a video */
 enum { STILL_POINTS = 16, VIDEO_POINTS = 4 };
 
 static int allocate_scene(struct drawing *d, int width, int height)
@@ -204,7 +204,8 @@ static bool are_rays_exact(const struct drawing *d)
     return d->files.has_lens && !d->files.lens.model.data;
 }
 
-/* Shows the progress of exact rays, which take seconds per frame. */
+/* Shows the progress of drawing by exact rays, which takes seconds per
+ * frame. */
 static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
                                     struct glint_engine_config *cfg)
 {
@@ -215,17 +216,17 @@ static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
                 "first (slower for a zoom), then draws each frame\n",
                 tool->name, d->files.lens.table.name);
     tool_progress_start(&d->run.progress, tool, "exact rays");
-    /* The brightness measurement restarts the progress at 0 several times,
-     * which makes a time estimate wrong. So only the progress bar of a terminal
-     * is shown. */
+    /* While the brightness is measured, the progress restarts at 0 several
+     * times, so that an estimate of the time would be wrong. Only the bar of a
+     * terminal is shown. */
     d->run.progress.shown &= d->run.progress.is_terminal;
     d->run.progress.told = true;
     cfg->drawing.progress = tool_progress_show;
     cfg->drawing.progress_ctx = &d->run.progress;
 }
 
-/* Prints the min --memory of a picture if the given one is too small. Returns
- * an exit code. */
+/* Prints the reason of a failure. If --memory is too small, this includes the
+ * min value for a picture of this size. Returns an exit code. */
 static int report_sizing_failure(const struct tool *tool,
                                  const struct drawing *d,
                                  enum glint_status status,
@@ -257,7 +258,7 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
     opened_lens_configure_engine(tool, &d->files.lens, &line->settings,
                                  run->view.width, run->view.height, &cfg);
     cfg.search.more_lamps = count_max_given_lamps(d);
-    /* the flare gets the memory that the scene does not use */
+    /* The flare may use the memory that the scene leaves. */
     if (line->reserve_bytes && !d->files.lens.is_unbaked)
         cfg.arena_bytes =
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
@@ -321,9 +322,9 @@ int drawing_allocate(const struct tool *tool, struct drawing *drawing,
 
 /* --------------------------------------------------------------- key frames */
 
-/* Zooms the lens to the value of the key frames at FRAME. If the lens cannot
- * zoom so far, the zoom of the previous frame remains; opening the files has
- * ruled this out. */
+/* Zooms the lens to the value of the key frames at FRAME. An invalid zoom would
+ * leave the zoom unchanged, but opening the files has rejected invalid
+ * values. */
 static void set_zoom_by_keys(struct drawing *d, int frame)
 {
     const double before = d->line.settings.zoom.zoom;
@@ -335,8 +336,8 @@ static void set_zoom_by_keys(struct drawing *d, int frame)
         set_lens_zoom(d, zoom, &error);
 }
 
-/* Sets the f-number of the lens by the key frames at FRAME. The exposure stays
- * that of the widest stop. */
+/* Sets f-number, rotation and roundness of the stop to the values of the key
+ * frames at FRAME. The exposure remains that of the widest stop. */
 static enum glint_status set_f_number_by_keys(struct drawing *d, int frame)
 {
     const struct keys *const keys = &d->files.keys;
@@ -363,7 +364,7 @@ static enum glint_status set_f_number_by_keys(struct drawing *d, int frame)
     return status;
 }
 
-/* Moves the lamp of the key frames, which is the last lamp of LIST. */
+/* Moves the lamp that the key frames define, the last one of LIST. */
 static void move_lamp_by_keys(struct lamp_list *list, const struct keys *keys,
                               int frame)
 {
@@ -379,8 +380,8 @@ static void move_lamp_by_keys(struct lamp_list *list, const struct keys *keys,
         key_frames_interpolate_at(keys, KEYS_EV, frame, GLINT_LIGHT_AT_EV));
 }
 
-/* Sets zoom, f-number and brightness of the next frame: first by control lines,
- * then by key frames. */
+/* Sets the options that change in the next frame, such as zoom, f-number and
+ * brightness: first by control lines, then by key frames. */
 static enum glint_status apply_control_and_keys(struct drawing *d)
 {
     struct glint_options *const o = &d->line.settings.options;
@@ -408,12 +409,12 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Returns whether one of the N user-defined lamps GIVEN lies in the disc of
- * LAMP, a detected lamp, or within a hundredth of the picture's width: the
- * distance at which the detector merges lamps. */
-static bool is_lamp_given(const struct drawing_run *run, double focal_mm,
-                          const struct glint_engine_lamp *lamp,
-                          const struct glint_engine_lamp *given, int n)
+/* Returns whether one of the N user-defined lamps GIVEN is at the position of
+ * LAMP, a detected lamp: in its disc, or closer to it than 1 / 100 of the
+ * picture's width, the distance within which the detector merges lamps. */
+static bool is_at_given_lamp(const struct drawing_run *run, double focal_mm,
+                             const struct glint_engine_lamp *lamp,
+                             const struct glint_engine_lamp *given, int n)
 {
     const double reach_px =
         sqrt(2) * lamp->track.size_q8 / 256.0 + run->view.width / 100.0;
@@ -429,8 +430,8 @@ static bool is_lamp_given(const struct drawing_run *run, double focal_mm,
     return false;
 }
 
-/* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN. A
- * user-defined lamp replaces a detected one at the same position. Returns the
+/* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN,
+ * except detected ones at the position of a user-defined lamp. Returns the
  * total number. */
 static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                            int32_t elapsed_us, int n)
@@ -445,11 +446,11 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                                 GLINT_ENGINE_MAX_LAMPS);
     run->n_found = 0;
     for (int i = 0; i < n_found; i++)
-        if (!is_lamp_given(run, lens_focal_mm(d), &lamp[i], given, n))
+        if (!is_at_given_lamp(run, lens_focal_mm(d), &lamp[i], given, n))
             lamp[run->n_found++] = lamp[i];
     for (int i = 0; i < n; i++) {
-        /* ids of detected lamps start at 1; those of user-defined lamps at
-         * LAMP_ID_TEXT */
+        /* The ids of detected lamps start at 1, so user-defined lamps get other
+         * ids, from LAMP_ID_TEXT on. */
         given[i].id = LAMP_ID_TEXT + (uint32_t)i;
         lamp[run->n_found + i] = given[i];
     }
@@ -458,8 +459,8 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
     return run->n_found + n;
 }
 
-/* Collects the lamps of IMAGE: user-defined by angle, pixel, key frames or
- * list, and detected ones unless an option disables detection. */
+/* Collects the lamps of IMAGE: those defined by angle, by pixel, by key frames
+ * or in a list, and detected ones unless an option disables detection. */
 static void collect_image_lamps(struct drawing *d,
                                 const struct glint_image *image,
                                 int32_t elapsed_us)
@@ -488,8 +489,8 @@ static void collect_image_lamps(struct drawing *d,
     run->n_lamps = run->n_own = n;
 }
 
-/* Collects the lamps of IMAGE and reduces their power by masks and the edge
- * fade. */
+/* Collects the lamps of IMAGE. Reduces the power of lamps behind a mask and of
+ * off-screen lamps. */
 static enum glint_status find_image_lamps(struct drawing *d,
                                           const struct glint_image *image,
                                           int32_t elapsed_us)
@@ -513,8 +514,8 @@ void drawing_measure_clipped_lamps(struct drawing *drawing,
                     lens_focal_mm(drawing));
 }
 
-/* Returns the row of --save-lights for lamp I: its detected position, or the
- * position given by a list or option. */
+/* Returns the row of lamp I for --save-lights. Its position is where the lamp
+ * was detected or what a list or option sets. */
 static struct lamp_row make_saved_lamp_row(const struct drawing_run *run,
                                            double focal_mm, int i)
 {
@@ -570,8 +571,8 @@ enum glint_status drawing_detect_lamps_only(struct drawing *drawing,
 /* Min fraction of the time budget that is reserved for the flare */
 #define LEAST_SHARE 0.1
 
-/* Adds the lights and highlights of the scene to the lamps of RUN, and removes
- * the light of lamps that objects occlude. */
+/* Appends the lights and highlights of the scene to the lamps of RUN. Reduces
+ * the light of lamps by the fraction that objects occlude. */
 static void add_scene_lamps(struct drawing *d)
 {
     struct over_scene *const scene = &d->files.scene;
@@ -587,8 +588,8 @@ static void add_scene_lamps(struct drawing *d)
     glint_engine_apply_shares(run->lamp, run->n_lamps, d->line.is_still);
 }
 
-/* Draws the scene over IMAGE. The flare then gets the rest of the time
- * budget. */
+/* Draws the scene over IMAGE. Sets the time budget of the flare to the time
+ * that remains. */
 static enum glint_status draw_scene_on_image(struct drawing *d,
                                              const struct glint_image *image)
 {
@@ -659,8 +660,8 @@ int drawing_bake_for_lamps(const struct tool *tool, struct drawing *d,
                : code;
 }
 
-/* Prints the number of lamps of a static picture before exact rays are
- * traced. */
+/* Prints the number of lamps of a single picture before their rays are traced
+ * exactly. */
 static void print_exact_ray_notice(const struct drawing *d)
 {
     const struct tool *const tool = d->files.scene.tool;
@@ -684,9 +685,8 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
-    /* If brightness had to be measured, this was done when the engine was
-     * created. From here on every ray is traced once, so that the progress is
-     * steady. */
+    /* The brightness was measured, if at all, when the engine was created. From
+     * now on each ray is traced once, so the progress bar moves steadily. */
     if (run->is_progressing) {
         print_exact_ray_notice(drawing);
         tool_progress_start(&run->progress, drawing->files.scene.tool,
@@ -701,7 +701,8 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     return status;
 }
 
-/* Records the time of a flare whose drawing began at START, seconds. */
+/* Records the time of the flare. START is the time, seconds, at which its
+ * drawing began. */
 static void record_flare_time(struct drawing_run *run, double start)
 {
     if (run->is_progressing)
@@ -723,7 +724,8 @@ enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
     return status;
 }
 
-/* Sets the exposure, then adds the flare to IMAGE. */
+/* Sets the exposure, then adds the flare to IMAGE. For --layer other than
+ * composite, IMAGE is black before. */
 static enum glint_status draw_exposed_flare(struct drawing *d,
                                             const struct glint_image *image)
 {
@@ -758,7 +760,7 @@ enum glint_status drawing_draw_flare(struct drawing *drawing,
 
 /* -------------------------------------------------------------------- marks */
 
-/* Draws the mark of lamp I: a detected lamp with its track, another lamp with
+/* Marks lamp I on IMAGE: a detected lamp with its track, any other lamp with
  * its position and number. */
 static void draw_lamp_mark(const struct drawing_run *run, double focal_mm,
                            int i, const struct glint_image *image)
@@ -782,7 +784,7 @@ void drawing_draw_marks(const struct drawing *drawing,
     const struct drawing_line *const line = &drawing->line;
     const struct drawing_run *const run = &drawing->run;
     if (run->engine && line->settings.options.preview)
-        /* numbers are omitted if memory is short */
+        /* Without memory the numbers are omitted. */
         preview_draw_ghost_numbers(run->engine, run->lamp, run->n_lamps,
                                    drawing_get_exposure_factor(run), image);
     if (line->show_time_line)

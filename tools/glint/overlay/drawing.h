@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The flare that all commands and hosts draw on pictures: its options
- * (drawing_line.h), their files (drawing_files.h), and the run over the frames.
- * The stages of a frame are find -> scene -> expose -> draw -> marks.
+ * Draws flares on pictures, for all commands and hosts. A drawing has options
+ * (drawing_line.h), files that they name (drawing_files.h), and the state from
+ * frame to frame. Each frame has the stages: detect lamps, draw the scene, set
+ * the exposure, draw the flare, draw marks.
  *
  *     drawing_line_set_defaults(&d.line);          d is zeros
  *     drawing_line_set_option(&tool, &d.line, option, optarg);
@@ -20,35 +21,35 @@
 /* State while frames are drawn */
 struct drawing_run {
     struct glint_view view;
-    struct glint_engine *engine; /* NULL without a lens, or before
-                                    drawing_allocate() */
+    /* NULL if there is no lens, or before drawing_allocate() */
+    struct glint_engine *engine;
     struct glint_engine_cache cache;
-    /* progress of the first frame if rays are exact */
+    /* progress of the first frame that is drawn by exact rays */
     struct tool_progress progress;
     bool is_progressing, is_sized;
     int n_frames;
 
-    /* Set by the caller before drawing_detect_and_draw_scene(): linear light of
-     * the picture's white, and whether the picture has lamps brighter than
-     * white */
+    /* The caller sets both before drawing_detect_and_draw_scene(): the linear
+     * light of white in the picture, and whether the picture stores lamps
+     * brighter than white. */
     double white;
     bool is_measured;
 
-    /* The members below describe the last frame. */
-    /* all lamps of the frame: detected ones, those of options and lists, then
-     * those of the scene */
+    /* The following members describe the last frame. */
+    /* lamps in this order: detected ones, those of options and lists, those of
+     * the scene */
     struct glint_engine_lamp *lamp;
-    /* number of all lamps: first those detected in the picture, n_found, then
-     * other given ones up to n_own, then those of the scene */
+    /* n_found: number of lamps detected in the picture; n_own: number of these
+     * and those of options and lists; n_lamps: number of all lamps */
     int n_lamps, n_own, n_found;
-    bool is_followed; /* lamps are tracked from frame to frame */
+    bool is_followed; /* whether lamps are tracked from frame to frame */
     double find_ms, flare_ms;
     struct glint_engine_report report;
 };
 
 struct drawing {
-    struct drawing_line line; /* options of the flare; key frames change
-                               * line.settings in every frame */
+    /* options of the flare; key frames change line.settings */
+    struct drawing_line line;
     struct drawing_files files;
     struct drawing_run run;
 };
@@ -79,8 +80,8 @@ enum glint_status drawing_draw_flare(struct drawing *drawing,
 
 /* ------------------------------------------------------------------- stages
  *
- * The stages of drawing_draw_flare(), for pictures that are not a struct
- * glint_image: find, expose, a layer, marks. The caller counts run.n_frames. */
+ * The stages of drawing_draw_flare(), to be called one by one for a picture
+ * that is not a struct glint_image. The caller then counts run.n_frames. */
 
 /* Detects the lamps of IMAGE and draws the scene over it. Returns
  * GLINT_E_MEMORY on failure. */
@@ -89,24 +90,24 @@ enum glint_status drawing_detect_and_draw_scene(struct drawing *drawing,
                                                 int32_t elapsed_us);
 
 /* Corrects power, position and colour of lamps that were detected in a proxy,
- * the 8-bit copy of SAMPLES, by the light that the proxy clips. run.white is
- * the linear light of the proxy's code 255. */
+ * an 8-bit copy of SAMPLES, by adding the light that the proxy clips. The code
+ * 255 of the proxy has the linear light run.white. */
 void drawing_measure_clipped_lamps(struct drawing *drawing,
                                    const struct glint_samples *samples);
 
-/* Writes the lamps to the --save-lights file and sets the exposure of the flare
- * on IMAGE. Returns GLINT_E_MEMORY on failure. */
+/* Writes the lamps to the file of --save-lights and sets the exposure of the
+ * flare for IMAGE. Returns GLINT_E_MEMORY on failure. */
 enum glint_status drawing_set_exposure(struct drawing *drawing,
                                        const struct glint_image *image);
 
-/* Draws the flare into RGB, upright [height][width][3], linear light. IS_DEEP:
- * with the accuracy of floats; else with that of 8-bit codes, in half the time.
- * Returns GLINT_E_MEMORY on failure. */
+/* Draws the flare into RGB, [height][width][3] of the upright picture, linear
+ * light. If IS_DEEP, it has the accuracy of floats, else that of 8-bit codes in
+ * half the time. Returns GLINT_E_MEMORY on failure. */
 enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
                                      float *rgb);
 
-/* Draws the marks of lamps and the time line of a motion on IMAGE if the
- * options request them. */
+/* Draws on IMAGE the marks of lamps and the time line of a recorded motion, as
+ * far as the options request them. */
 void drawing_draw_marks(const struct drawing *drawing,
                         const struct glint_image *image);
 
@@ -129,8 +130,8 @@ double drawing_get_exposure_factor(const struct drawing_run *run);
  * example after a cut. */
 bool drawing_has_exposure_restarted(const struct drawing *drawing);
 
-/* Closes DRAWING and moves FRESH into it. FRESH must be open, without a call of
- * drawing_allocate(). An open output file of lamps stays open. */
+/* Closes DRAWING and moves FRESH into it. FRESH must be open, but not allocated
+ * by drawing_allocate(). The output file of lamps stays open. */
 void drawing_replace_settings_and_lens(struct drawing *drawing,
                                        const struct drawing *fresh);
 

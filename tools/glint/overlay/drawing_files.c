@@ -9,10 +9,10 @@
 
 /* --------------------------------------------------------------- key frames */
 
-/* Requests a model for the smallest f-number of the key frames (SIGN 1), or for
- * the largest (SIGN -1). */
-static void request_model_for_stop_keys(struct settings *s,
-                                        struct drawing_files *f, int sign)
+/* Sets the f-number of S to the smallest one (SIGN 1) or the largest one (SIGN
+ * -1) of the key frames. Stores the location of this key frame for errors. */
+static void set_f_number_to_key(struct settings *s, struct drawing_files *f,
+                                int sign)
 {
     const struct key_value *key = f->keys.key[KEYS_F_NUMBER];
 
@@ -25,7 +25,8 @@ static void request_model_for_stop_keys(struct settings *s,
     s->options.f_number = key->value;
 }
 
-/* Rejects key frames that change the f-number of a lens drawn by exact rays. */
+/* Rejects key frames that change the stop of a lens drawn by exact rays.
+ * Otherwise the lens is opened with the smallest f-number of the key frames. */
 static int check_stop_keys(const struct tool *tool, struct settings *s,
                            struct drawing_files *f)
 {
@@ -39,7 +40,7 @@ static int check_stop_keys(const struct tool *tool, struct settings *s,
         return tool_usage(tool, "--keys: changing the stop between frames "
                                 "needs a model, not --rays exact");
     if (is_stopped)
-        request_model_for_stop_keys(s, f, 1);
+        set_f_number_to_key(s, f, 1);
     return EXIT_OK;
 }
 
@@ -61,16 +62,16 @@ static int open_key_file(const struct tool *tool, struct drawing_line *line,
     if (key_frames_have_column(&f->keys, KEYS_EXPOSURE)) {
         if (line->dial == ENGINE_OPTION_OF(strength))
             return tool_usage(tool,
-                              "--strength sets the exposure; the column "
-                              "exposure of --keys %s does, too",
+                              "--strength excludes the column exposure of "
+                              "--keys %s, since both set the exposure",
                               o->keys);
         GLINT_OPTION_GIVEN(o, exposure) = true;
     }
     return check_stop_keys(tool, &line->settings, f);
 }
 
-/* Checks that the open lens can stop down to the largest f-number of the key
- * frames. Returns an exit code. */
+/* Checks that the open lens supports the largest f-number of the key frames.
+ * Returns an exit code. */
 static int check_narrowest_stop(const struct tool *tool, struct settings *s,
                                 struct drawing_files *f)
 {
@@ -80,7 +81,7 @@ static int check_narrowest_stop(const struct tool *tool, struct settings *s,
 
     if (!key_frames_have_column(&f->keys, KEYS_F_NUMBER))
         return EXIT_OK;
-    request_model_for_stop_keys(s, f, -1);
+    set_f_number_to_key(s, f, -1);
     if (opened_lens_set_stop(&f->lens, s, &error) != GLINT_OK)
         code = settings_report_bad_stop(tool, s, error.text);
     s->options.f_number = widest;
@@ -92,15 +93,15 @@ static int check_narrowest_stop(const struct tool *tool, struct settings *s,
 
 /* --------------------------------------------------------------------- zoom */
 
-/* Returns the column of key frames for the option that LINE sets, or -1 if LINE
- * sets no option. */
+/* Returns the key frame column of the option that LINE sets, or -1 if LINE sets
+ * no option. */
 static int find_key_column(const struct control_line *line)
 {
     return line->verb == CONTROL_OPTION ? key_frames_find_column(line->name[0])
                                         : -1;
 }
 
-/* Prints the error of control line I. Returns an exit code. */
+/* Prints CAUSE as an error in control line I. Returns an exit code. */
 static int report_bad_control_line(const struct tool *tool,
                                    const struct over_scene *scene, int i,
                                    const char *cause)
@@ -115,8 +116,8 @@ static int report_bad_control_line(const struct tool *tool,
     return tool_fail(tool, GLINT_E_FORMAT, shown.text);
 }
 
-/* Checks that the lens supports all values of the control lines, and restores
- * its zoom and f-number. Returns an exit code. */
+/* Checks that the lens supports each zoom and f-number of the control lines, by
+ * setting it, and then restores the lens. Returns an exit code. */
 static int check_control_lines(const struct tool *tool, struct settings *s,
                                struct drawing_files *f)
 {
@@ -146,8 +147,8 @@ static int check_control_lines(const struct tool *tool, struct settings *s,
     return code;
 }
 
-/* Rejects control lines that zoom a lens table. Called before the lens is
- * opened, which may bake it. */
+/* Rejects control lines that zoom a lens table. The check precedes the opening
+ * of the lens, which may take a bake. */
 static int reject_zoom_control_lines(const struct tool *tool,
                                      const struct settings *s,
                                      const struct over_scene *scene)
@@ -165,9 +166,9 @@ static int reject_zoom_control_lines(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Checks that the lens supports all zoom values of the key frames, and sets it
- * to the first. Errors have no line number if glint wrote the key frames
- * itself, for --zoom A-B. */
+/* Checks that the lens supports all zoom values of the key frames, and sets the
+ * lens to the first one. An error has no line number if glint made the key
+ * frames itself, for --zoom A-B. */
 static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
                            struct drawing_files *f)
 {
@@ -187,11 +188,11 @@ static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
     return EXIT_OK;
 }
 
-/* Rejects key frames that zoom a lens table, whose model would have a single
- * zoom position. Called before scene and lens are opened. */
-static int check_zoom_options(const struct tool *tool,
-                              struct drawing_line *line,
-                              struct drawing_files *f)
+/* If the lens is a table, checks that it supports all zoom values of the key
+ * frames, before scene and lens are opened. */
+static int check_table_zoom_keys(const struct tool *tool,
+                                 struct drawing_line *line,
+                                 struct drawing_files *f)
 {
     struct settings *const s = &line->settings;
     int code;
@@ -207,8 +208,8 @@ static int check_zoom_options(const struct tool *tool,
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Reads the list of lamps, links rows of one lamp if lamps move between rows,
- * and appends the lamps of --light-at. */
+/* Reads the list of lamps and appends the lamps of --light-at. With
+ * --interpolate links the rows of each lamp. */
 static enum glint_status open_lamp_list(const struct drawing_line *line,
                                         struct drawing_files *f,
                                         struct glint_error *error)
@@ -226,7 +227,7 @@ static enum glint_status open_lamp_list(const struct drawing_line *line,
     return status;
 }
 
-/* Appends the lamp of the key frames to the list. */
+/* Appends to the list the lamp that the key frames define. */
 static enum glint_status add_key_lamp(struct drawing_files *f)
 {
     const struct lamp_row row = {.frame = -1,
@@ -258,8 +259,8 @@ static enum glint_status open_lamp_inputs(const struct drawing_line *line,
 
 /* ---------------------------------------------------------------------- all */
 
-/* Opens the scene. Without a lens there must be a scene whose camera does not
- * need one. Returns an exit code. */
+/* Opens the scene. With --lens none there must be a scene, and its camera must
+ * not need a lens. Returns an exit code. */
 static int open_scene_file(const struct tool *tool,
                            const struct glint_options *o,
                            struct drawing_files *f)
@@ -308,7 +309,7 @@ int drawing_files_open(const struct tool *tool, struct drawing_line *line,
     set_file_names(line, files);
     code = open_key_file(tool, line, files);
     if (code == EXIT_OK)
-        code = check_zoom_options(tool, line, files);
+        code = check_table_zoom_keys(tool, line, files);
     if (code == EXIT_OK)
         code = open_scene_file(tool, &s->options, files);
     if (code == EXIT_OK && files->has_lens)

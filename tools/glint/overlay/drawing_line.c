@@ -5,8 +5,8 @@
 #include "desk/styles.h"
 #include "overlay/drawing_line.h"
 
-/* Adds the lamp TEXT of --light, whose syntax was checked. Returns false if
- * there are too many lamps. */
+/* Adds a lamp by the value of --light, TEXT, which must be valid. Returns false
+ * if there are too many lamps. */
 static bool add_lamp_by_angle(struct drawing_line *line, const char *text)
 {
     struct glint_lamp *const lamp = &line->hand[line->n_hand];
@@ -35,8 +35,8 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
            lamp_list_add(&line->at, &row) == GLINT_OK;
 }
 
-/* Adds the lamp TEXT of --light-at, whose syntax was checked. Returns false if
- * there are too many lamps. */
+/* Adds a lamp by the value of --light-at, TEXT, which must be valid. Returns
+ * false if there are too many lamps. */
 static bool add_lamp_by_pixel(struct drawing_line *line, const char *text)
 {
     double v[3];
@@ -81,8 +81,8 @@ int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,
         code = drawing_line_set_text(tool, line, style->set[i].option,
                                      style->set[i].value);
     drawing_line_end_file(line);
-    /* A baked model has fixed coatings; combining it with a style is not an
-     * error. */
+    /* A style may set coatings. If the lens is a model, whose coatings are
+     * fixed, that must not be an error as --coating is. */
     line->settings.coating.given = false;
     line->style = style->name;
     return code;
@@ -99,8 +99,9 @@ int drawing_line_apply_command_style(const struct tool *tool,
     return name ? drawing_line_apply_style(tool, line, name) : -1;
 }
 
-/* Records OPTION if it is --strength or --exposure. Returns false if the
- * command line, or the file, already set the other one. */
+/* Records OPTION if it is --strength or --exposure, which exclude each other.
+ * Returns false if the other one was set before, in the same file or on the
+ * command line. */
 static bool record_brightness_option(struct drawing_line *line, int option)
 {
     if (option != ENGINE_OPTION_OF(strength) &&
@@ -127,7 +128,8 @@ int drawing_line_set_option(const struct tool *tool, struct drawing_line *line,
         return tool_usage(
             tool, "--strength sets the exposure, so it excludes --exposure");
     if (option == ENGINE_OPTION_OF(style))
-        /* The style of a command line was applied before its other options. */
+        /* A style in a file is applied here. The style of the command line was
+         * applied before its other options. */
         return tool->where ? drawing_line_apply_style(tool, line, value) : -1;
     code = settings_apply_option(tool, &line->settings, option, value);
     if (code != -1)

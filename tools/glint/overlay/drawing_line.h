@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * The options of the flare, from a command line, a style or the parameters of a
+ * The options of a drawing, from a command line, a style or the parameters of a
  * host. No file is opened here. Strings are not copied and must outlive the
  * line.
  *
@@ -18,24 +18,29 @@
 struct drawing_line {
     struct settings settings;
     const char *style; /* name of the chosen style, or NULL */
-    /* Text of key frames that replaces the file of --keys, or NULL. Error
-     * messages then use the value of --keys as its name. */
+    /* text of key frames, used instead of the file of --keys; NULL: none. Error
+     * messages use the value of --keys as the name of the text. */
     const char *keys_text;
-    struct scene_dials scene_dials; /* quality parameters of the scene, set by
-                                       options; size and camera are set later */
-    struct lamp_list at;            /* lamps of --light-at */
-    int n_hand;                     /* number of lamps given by --light */
+    /* quality parameters of the scene that options set; the size of the picture
+     * and the camera are set later */
+    struct scene_dials scene_dials;
+    struct lamp_list at; /* lamps of --light-at */
+    int n_hand;          /* number of lamps given by --light */
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
-    /* bytes allocated for frames at the start; 0: allocated when needed */
+    /* bytes allocated for drawing at the start; 0: as many as needed */
     size_t reserve_bytes;
     bool show_lights, show_time_line;
-    bool is_unsearched; /* --lights none disables the detection of lamps */
-    bool is_still; /* frames are independent pictures; quality has priority over
-                      time */
-    bool is_live;  /* reads poses and control from a FIFO without waiting for
-                      data */
-    int dial; /* getopt code of the option that set the brightness, --strength
-                 or --exposure; 0: neither */
+    /* whether --lights none disables the detection of lamps */
+    bool is_unsearched;
+    /* whether frames are independent pictures, for which quality has priority
+     * over time */
+    bool is_still;
+    /* whether poses and control lines are read from a FIFO, without waiting for
+     * data */
+    bool is_live;
+    /* getopt code of the option that set the brightness, --strength or
+     * --exposure; 0: none */
+    int dial;
 };
 
 void drawing_line_set_defaults(struct drawing_line *line);
@@ -54,9 +59,9 @@ int drawing_line_set_text(const struct tool *tool, struct drawing_line *line,
 int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
                             const char *name, double value);
 
-/* Adds a lamp at pixel (X, Y) to all frames, EV stops above white, as
- * --light-at does. Returns false if there is no memory or there are too many
- * lamps. */
+/* Adds to all frames a lamp at pixel (X, Y) that is EV stops brighter than
+ * white, like --light-at. Returns false if there is no memory or there are too
+ * many lamps. */
 bool drawing_line_add_light(struct drawing_line *line, double x, double y,
                             double ev);
 
@@ -64,16 +69,16 @@ bool drawing_line_add_light(struct drawing_line *line, double x, double y,
 int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,
                              const char *name);
 
-/* Applies the style of a command line before all other options, wherever it
- * stands, so that they override it. The arguments are those of
+/* Applies the style that a command line names, so that all other options
+ * override it, wherever they stand. The arguments are those of
  * tool_find_option_value(). Returns -1 or an exit code. */
 int drawing_line_apply_command_style(const struct tool *tool,
                                      struct drawing_line *line, int argc,
                                      char **argv, const char *shorts,
                                      const struct option *options);
 
-/* Ends the options of a configuration file, so that the command line may again
- * set --strength or --exposure. */
+/* Marks the end of the options of a configuration file. The command line may
+ * then set --strength or --exposure again. */
 void drawing_line_end_file(struct drawing_line *line);
 
 #endif

@@ -36,8 +36,8 @@ bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
     return used > 0 && used < FOLDER_PATH;
 }
 
-/* Rejects options that name a stream, which can be read only once, if there are
- * several inputs. */
+/* Rejects options that read a stream, which is consumed by the first of several
+ * inputs. */
 static int check_stream_options(const struct tool *tool,
                                 const struct glint_options *o)
 {
@@ -55,7 +55,8 @@ static int check_stream_options(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Rejects inputs that are not single picture or video files. */
+/* Rejects standard input, folders, a sequence among several inputs, and inputs
+ * with equal file names. */
 static int check_folder_inputs(const struct tool *tool, char **input, int n)
 {
     struct stat file;
@@ -80,7 +81,7 @@ static int check_folder_inputs(const struct tool *tool, char **input, int n)
     return EXIT_OK;
 }
 
-/* Rejects an output in FOLDER that would overwrite another input. FILE is
+/* Rejects an output in FOLDER that would overwrite one of the N inputs. FILE is
  * scratch memory for N files. */
 static int check_output_overwrites_no_input(const struct tool *tool,
                                             const char *folder, char **input,

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The output folder of several inputs: each input is drawn to a file of the
- * same name in this folder. */
+ * Makes the output folder for several inputs. The output of each input has the
+ * input's file name in this folder.
+ */
 #ifndef GLINT_TOOLS_OVERLAY_FOLDER_H
 #define GLINT_TOOLS_OVERLAY_FOLDER_H
 
@@ -18,10 +19,11 @@ bool folder_is_path_a_folder(const char *path);
 bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
                              const char *input);
 
-/* Creates FOLDER unless it exists; *IS_NEW is set to whether it was created.
- * INPUT[N] are drawn with OPTIONS. Rejects inputs with the same name, outputs
- * that would overwrite an input, and streams that the first input would
- * consume. Returns an exit code. */
+/* Creates FOLDER if it does not exist, and sets *IS_NEW to whether it did so.
+ * The outputs of INPUT[N], drawn with OPTIONS, will be written there. Rejects
+ * inputs with equal file names, outputs that would overwrite an input, and
+ * options that read a stream, which the first input would consume. Returns an
+ * exit code. */
 int folder_create(const struct tool *tool, const char *folder, char **input,
                   int n, const struct glint_options *options, bool *is_new);
 

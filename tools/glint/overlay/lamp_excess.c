@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Rectangle of pixels around a lamp whose light above white is attributed to
- * this lamp */
+/* Pixels around a lamp whose light above white may belong to the lamp: a disc,
+ * and the rectangle around it */
 struct reach {
     double x, y, radius;
     int left, top, right, bottom;
@@ -34,8 +34,8 @@ static double distance_to_lamp(const struct reach *r, int x, int y)
     return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
 }
 
-/* Returns whether lamp OWN is the nearest of all N lamps whose reach includes
- * the pixel. */
+/* Returns whether pixel (X, Y) belongs to lamp OWN: it is within the lamp's
+ * radius, and no other of the N lamps is nearer. */
 static bool is_lamp_nearest(const struct reach *all, int n, int own, int x,
                             int y)
 {
@@ -92,8 +92,8 @@ static void add_excess_light(struct sum *sum,
         }
 }
 
-/* Returns the light of TRACK as detected in the proxy, scaled by WHITE, the
- * linear light of the proxy's white. */
+/* Returns the light of TRACK, a lamp detected in the proxy. WHITE is the linear
+ * light of the proxy's white. */
 static struct sum
 compute_light_seen_in_proxy(const struct glint_lamp_track *track, double white)
 {

@@ -23,8 +23,9 @@ enum {
 static const char *const names[LAYERS] = {"flare", "ghosts", "starburst",
                                           "veil"};
 
-/* Sets NAME to the file name of LAYER (NULL: "layer") in frame FRAME. Returns
- * false if the name is too long or the pattern has more than one %s or %d. */
+/* Sets NAME to the file name of LAYER in frame FRAME: PATH with the layer for
+ * its %s and the number for its %d. LAYER may be NULL for a check of PATH.
+ * Returns false if the name is too long or PATH has more than one %s or %d. */
 static bool make_layer_file_name(char name[NAME_ROOM], const char *path,
                                  const char *layer, int frame)
 {
@@ -44,8 +45,9 @@ static bool make_layer_file_name(char name[NAME_ROOM], const char *path,
     return numbered_is_pattern(whole) && numbered_make_name(name, whole, frame);
 }
 
-/* Returns whether the file type of NAME supports layers: .exr as parts of one
- * file or as single files; other float formats as single files only. */
+/* Returns whether the file type of NAME supports layers. An .exr file stores
+ * all layers, or one. Other float formats store a single layer, so the path
+ * needs a %s. */
 static bool can_file_hold_layers(const struct layers *layers, const char *name)
 {
     static const char *const kinds[] = {".exr", ".pfm", ".hdr", ".tif",
@@ -111,8 +113,8 @@ int layers_check_outputs(const struct tool *tool, const struct layers *layers,
 /* ------------------------------------------------------------------- drawing
  */
 
-/* Draws N_LAYERS layers of N samples each into RGB: first the sum, then the
- * components. */
+/* Draws N_LAYERS layers of N samples each into RGB. The first layer is the sum
+ * of the others, which are the components of the flare. */
 static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
                                          size_t n, float *rgb)
 {
@@ -125,8 +127,8 @@ static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
     struct glint_engine_report report;
 
     memset(rgb, 0, (size_t)n_layers * n * sizeof *rgb);
-    /* the veil is drawn first because drawing the other components discards the
-     * flare that it is computed from */
+    /* The veil is drawn first. It is computed from the flare that the engine
+     * drew last, which drawing another component replaces. */
     for (int k = n_layers - 1; k >= GHOSTS && status == GLINT_OK; k--)
         if (is_lit || k == VEIL)
             status = glint_engine_draw_layer(c->run.engine, c->run.lamp,

@@ -13,22 +13,23 @@
 #include "overlay/drawing.h"
 
 struct layers {
-    const char *path; /* output file, or NULL if no layers are requested */
-    bool is_float;    /* 32-bit floats; else half floats */
+    const char *path; /* output file or pattern; NULL: no layers are written */
+    /* whether files have 32-bit floats instead of half floats */
+    bool is_float;
 };
 
-/* Checks before drawing whether the LAYERS files can be written. IS_VIDEO: the
- * name must have a frame number. Returns an exit code. */
+/* Checks before drawing that the files of LAYERS can be written. If IS_VIDEO,
+ * their name must have a frame number. Returns an exit code. */
 int layers_check_file_names(const struct tool *tool,
                             const struct layers *layers, bool is_video);
 
-/* Calls file_conflicts_check_outputs() for FILES plus the output files of all
- * LAYERS. Returns its exit code. */
+/* Checks by file_conflicts_check_outputs() the files of FILES and the output
+ * files of LAYERS. Returns its exit code. */
 int layers_check_outputs(const struct tool *tool, const struct layers *layers,
                          const struct apart *files);
 
-/* Draws and writes the layers of the current frame of DRAWING, whose lamps and
- * exposure must be set. No-op if no layers are requested. Returns an exit
+/* Draws and writes the layers of the present frame of DRAWING, after its
+ * exposure was set. Does nothing if no layers are requested. Returns an exit
  * code. */
 int layers_write(const struct tool *tool, const struct layers *layers,
                  struct drawing *drawing);

@@ -12,8 +12,8 @@
 /* ------------------------------------------------------- lines of control
  */
 
-/* Checks whether the command of LINE can be executed, but not whether a flare
- * option accepts its value. */
+/* Checks that the command of LINE is valid, except for the value of a flare
+ * option, which the lens may not support. */
 static enum glint_status check_control_line(const struct over_scene *over,
                                             const struct control_line *line,
                                             const char *where,
@@ -79,8 +79,7 @@ static enum glint_status execute_control_line(struct over_scene *over,
                                        where, error);
 }
 
-/* Prints an error of a command, at most one per picture. No error ends the
- * run. */
+/* Errors do not end the run. At most one of them is printed per picture. */
 void over_scene_apply_control(struct over_scene *over, int frame)
 {
     const long before = over->control.n_bad;
@@ -112,8 +111,8 @@ static int count_scene_lights(const struct over_scene *over)
     return (int)over->baked.model.header->n_lights;
 }
 
-/* Returns the index of THING, an object, a light or the camera, in
- * over->poses.moved. */
+/* Returns the index in over->poses.moved of THING, the index of an object or
+ * light, or POSES_CAMERA. */
 static int find_pose_index(const struct over_scene *over, int thing)
 {
     return thing == POSES_CAMERA
@@ -159,7 +158,7 @@ int over_scene_open(struct over_scene *over, const struct tool *tool)
         return code;
     over->is_open = true;
     playback_init(&over->playback);
-    /* The data of the motion was validated with the scene. */
+    /* Opening the scene has validated the recorded motion, so this succeeds. */
     if (over->baked.model.motion) {
         const char *reason;
 
@@ -226,7 +225,8 @@ static void rotate_axes_by_quaternion(const int32_t q_q30[4],
     }
 }
 
-/* Moves the camera to pose TO, unless control lines have moved the camera. */
+/* Moves the camera to the pose TO, unless control lines have moved it
+ * before. */
 static enum glint_status move_camera_to_pose(struct over_scene *over,
                                              struct glint_scene *scene,
                                              const struct scene_moved *to)
@@ -261,8 +261,8 @@ static enum glint_status apply_pose(struct over_scene *over,
     return move_camera_to_pose(over, scene, to);
 }
 
-/* Applies all poses and changes again to SCENE, whose memory was just
- * initialised. */
+/* Applies all poses and recorded changes again, after SCENE was initialised in
+ * new memory. */
 static void apply_all_poses(void *ctx, struct glint_scene *scene)
 {
     struct over_scene *const over = ctx;
@@ -274,8 +274,7 @@ static void apply_all_poses(void *ctx, struct glint_scene *scene)
     steer_apply_state(&over->steer, scene);
 }
 
-/* Resets all objects to their poses in the scene file, as before the first line
- * of the pose file. */
+/* Resets objects, lights and camera to their poses in the scene file. */
 static void reset_all_poses(struct over_scene *over)
 {
     const struct glint_scene_model *const m = &over->baked.model;
@@ -295,7 +294,8 @@ static void reset_all_poses(struct over_scene *over)
         over->poses.moved[i].is_moved = false;
 }
 
-/* Reads and applies all poses of frames up to FRAME. */
+/* Applies the poses of all frames up to FRAME. If FRAME is earlier than before,
+ * starts again at the first line of the pose file. */
 static void apply_poses_up_to_frame(struct over_scene *over, int frame)
 {
     const struct pose *pose;
@@ -354,7 +354,7 @@ int over_scene_allocate(struct over_scene *over,
     return allocate_scene_frame(over, dials);
 }
 
-/* Sets the scene's quality parameters to those of LEVEL. */
+/* Draws the following frames with the quality parameters of LEVEL. */
 static enum glint_status set_scene_quality_level(struct over_scene *over,
                                                  int level)
 {
@@ -436,7 +436,8 @@ static void draw_scene_over_light(struct over_scene *over, int32_t light,
     glint_scene_draw(over->frame.scene, &image);
 }
 
-/* Coverage of an object = scene over black - (scene over white - white). */
+/* The coverage of a pixel is 1 + (scene over black) - (scene over white), where
+ * white is 1. */
 enum glint_status over_scene_make_layer(struct over_scene *over,
                                         struct over_scene_layer *layer)
 {
@@ -467,7 +468,8 @@ enum glint_status over_scene_make_layer(struct over_scene *over,
 /* --------------------------------------------------------------------- lamps
  */
 
-/* First id of highlights, above the hashes of most lamp names */
+/* First id of highlights. Lamps with names have larger ids, from LAMP_ID_TEXT
+ * on. Other lamps have smaller ids, unless a list sets very large ones. */
 #define HIGHLIGHT_IDS UINT32_C(0x7ffe0000)
 
 int over_scene_add_highlights(struct over_scene *over, bool follows,

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * over_scene.h - draws a scene over the pictures of a camera; its objects hide
- * lamps, its lights and highlights add lamps to the flare.
+ * over_scene.h - draws a scene over the pictures of a video. Its objects
+ * occlude lamps of the picture. Its lights and highlights become lamps of the
+ * flare.
  *
  *     over_scene_open(&over, tool);           scene and poses
  *     over_scene_allocate(&over, &dials);     when the size changes
@@ -23,16 +24,16 @@
 #include "scenes/scene_frame.h"
 #include "control/steer.h"
 
-/* Present pose of an object */
+/* Pose of an object, a light or the camera */
 struct scene_moved {
     bool is_moved;
     int32_t at[3], turn_q30[4];
 };
 
-/* A pose file, and the present pose of each object */
+/* A pose file, and the poses that it has set */
 struct scene_poses {
     struct poses file;
-    /* present poses: [objects, then lights, then the camera] */
+    /* poses in this order: objects, lights, camera */
     struct scene_moved *moved;
     int frame;       /* number of the frame whose poses are applied */
     bool has_warned; /* whether a warning about skipped lines was printed */
@@ -42,19 +43,20 @@ struct over_scene {
     /* Options. */
     const char *file;         /* scene file; NULL: no scene */
     const char *pose_file;    /* or NULL */
-    const char *control_file; /* or NULL; "-": standard input */
-    bool is_live; /* reads poses and control from a FIFO without waiting for
-                     data */
-    /* Sets the flare option NAME to VALUE for control lines. Returns
-     * GLINT_E_ARGUMENT with the reason in ERROR if the value is invalid. NULL:
-     * no flare. */
+    const char *control_file; /* control file or NULL; "-": standard input */
+    /* whether poses and control lines are read from a FIFO, without waiting for
+     * data */
+    bool is_live;
+    /* Sets the flare option NAME to VALUE, for a control line. Returns
+     * GLINT_E_ARGUMENT with the reason in ERROR if VALUE is invalid. NULL if
+     * there is no flare. */
     enum glint_status (*set_option)(void *ctx, const char *name, double value,
                                     struct glint_error *error);
     void *set_ctx;
 
-    double budget_ms;   /* time budget of a frame; 0: none */
-    int32_t elapsed_us; /* microseconds since the previous picture; 0:
-                           independent pictures */
+    double budget_ms; /* time budget of a frame; 0: none */
+    /* microseconds since the previous picture; 0: pictures are independent */
+    int32_t elapsed_us;
 
     /* Private. */
     const struct tool *tool;
@@ -62,7 +64,7 @@ struct over_scene {
     struct baked_scene baked;
     struct scene_poses poses;
     struct controls control;
-    /* playback position of poses and recorded motion */
+    /* playback position of the pose file and of the recorded motion */
     struct playback playback;
     int shown; /* number of the playback frame that was drawn last */
     /* recorded motion of the scene, if it has one */
@@ -74,20 +76,20 @@ struct over_scene {
 
     /* Statistics of the last frame */
     double ms;
-    int lights;       /* number of scene lights that cause a flare */
-    int lamps_hidden; /* number of lamps and scene lights that are fully
-                         occluded */
+    int lights; /* number of scene lights that add lamps to the flare */
+    /* number of lamps and scene lights that are completely occluded */
+    int lamps_hidden;
 };
 
 /* Opens the scene, pose and control files that the options name. Prints the
  * reason of a failure and returns an exit code. */
 int over_scene_open(struct over_scene *over, const struct tool *tool);
 
-/* Returns whether the scene's camera has the field of view of the lens. */
+/* Returns whether the scene's camera takes its field of view from the lens. */
 bool over_scene_needs_lens(const struct over_scene *over);
 
-/* Returns whether the scene has lights that cause no flare, as 'flare lights'
- * is missing. */
+/* Returns whether the scene has lights that do not add lamps to the flare
+ * because the scene file lacks 'flare lights'. */
 bool over_scene_has_lights_without_flare(const struct over_scene *over);
 
 /* Allocates the scene for pictures of the size in DIALS. No-op without a scene.
@@ -95,15 +97,15 @@ bool over_scene_has_lights_without_flare(const struct over_scene *over);
 int over_scene_allocate(struct over_scene *over,
                         const struct scene_dials *dials);
 
-/* Limits the quality of the next pictures to QUALITY, 0 .. 1 like --quality; 1:
- * as requested. No-op with a time budget, which controls the quality. Returns
- * GLINT_E_MEMORY on failure. */
+/* Limits the quality of the following pictures to QUALITY, 0 .. 1 like
+ * --quality; 1 sets no limit. Does nothing if there is a time budget, which
+ * determines the quality. Returns GLINT_E_MEMORY on failure. */
 enum glint_status over_scene_set_quality(struct over_scene *over,
                                          double quality);
 
-/* Executes the control lines up to FRAME. over_scene_draw() does so, too; call
- * this function earlier if control lines may zoom the lens, before lamps are
- * positioned. */
+/* Executes the control lines up to FRAME. over_scene_draw() does this, too.
+ * Call this function before lamps are positioned if control lines may zoom the
+ * lens. */
 void over_scene_apply_control(struct over_scene *over, int frame);
 
 /* Draws the scene of frame FRAME onto IMAGE. */
@@ -115,7 +117,7 @@ enum glint_status over_scene_draw(struct over_scene *over,
 void over_scene_draw_time_line(const struct over_scene *over,
                                const struct glint_image *image);
 
-/* The scene as a separate layer, for picture types other than struct
+/* The scene as a separate layer, for pictures that are not a struct
  * glint_image */
 struct over_scene_layer {
     float *rgb;         /* [height][width][3], linear light, 1 = white */
@@ -131,9 +133,9 @@ void over_scene_layer_free(struct over_scene_layer *layer);
 /* Max lamps from a scene: lights and highlights. */
 enum { OVER_SCENE_LAMPS = GLINT_SCENE_MAX_LIGHTS + GLINTS_MAX };
 
-/* Sets LAMPS[GLINTS_MAX] to the highlights of the scene drawn last, for a lens
- * of FOCAL_MM. FOLLOWS: highlights are tracked from picture to picture. Returns
- * the number of highlights. */
+/* Sets LAMPS[GLINTS_MAX] to the highlights of the scene drawn last, as lamps of
+ * a lens of FOCAL_MM. If FOLLOWS, highlights are tracked from picture to
+ * picture. Returns their number. */
 int over_scene_add_highlights(struct over_scene *over, bool follows,
                               const struct glint_view *view, double focal_mm,
                               struct glint_engine_lamp *lamps);

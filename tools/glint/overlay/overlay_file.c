@@ -16,15 +16,16 @@
 #include "overlay/drawing.h"
 
 struct overlay_file {
-    /* The 8-bit picture or proxy in which lamps are detected */
+    /* 8-bit picture in which lamps are detected: the file's samples, or a
+     * proxy */
     struct glint_image image;
 
     const char *from, *to;
     struct glint_kept kept;
-    /* float copy of the input's pixels, if the output file stores floats */
+    /* float copy of the input's samples, for an output file with floats */
     struct glint_samples work;
-    /* is_direct: IMAGE is the file's own samples and is drawn on in place.
-     * is_copied: the flare is added to WORK, not to the file's samples. */
+    /* is_direct: IMAGE is the file's samples, which are drawn on in place.
+     * is_copied: the flare is added to WORK instead of the file's samples. */
     bool is_direct, is_copied;
     double white; /* linear light of the proxy's code 255 */
     float *layer;
@@ -47,8 +48,8 @@ static int report_file_failure(const struct tool *tool,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets f->work to a float copy of the input, for an output with floats and an
- * input without. */
+/* Sets f->work to a float copy of the input. It is needed if the output file
+ * stores floats but the input does not. */
 static enum glint_status convert_input_to_float(struct overlay_file *f)
 {
     struct glint_samples *const from = &f->kept.samples;
@@ -121,8 +122,9 @@ static int open_picture_file(const struct tool *tool, struct overlay_file *file,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Max difference between the channels of a grey pixel after a JPEG file or a
- * colour profile, 8-bit codes: for 99 % of the pixels, and for every pixel */
+/* Max difference between the channels of a pixel that counts as grey, in 8-bit
+ * codes, as JPEG files and colour profiles cause it: for 99 % of the pixels,
+ * and for all of them */
 enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
 
 static int compute_max_channel_difference(const uint8_t px[3])
@@ -133,10 +135,10 @@ static int compute_max_channel_difference(const uint8_t px[3])
     return (px[2] > high ? px[2] : high) - (px[2] < low ? px[2] : low);
 }
 
-/* Returns whether IMAGE is a monochrome photograph: all pixels are grey within
- * AT_MOST_GREY, 99 % within NEARLY_GREY, and at least a tenth of them are
- * neither nearly black nor nearly white. A white-on-black drawing is not a
- * photograph, so its flare has colours. */
+/* Returns whether IMAGE is a monochrome photograph. All pixels are grey within
+ * AT_MOST_GREY and 99 % within NEARLY_GREY. At least a tenth of them are
+ * neither nearly black nor nearly white; otherwise IMAGE is a drawing, whose
+ * flare has colours. */
 static bool is_image_monochrome(const struct glint_image *image)
 {
     const int64_t all = (int64_t)image->width * image->height;
@@ -169,7 +171,7 @@ static void copy_green_channel(const struct glint_image *grey,
     }
 }
 
-/* Adds to all channels of IMAGE the difference of GREY from the green
+/* Adds to all channels of IMAGE the amount by which GREY exceeds the green
  * channel. */
 static void add_grey_difference(const struct glint_image *image,
                                 const struct glint_image *grey)
@@ -190,7 +192,7 @@ static void add_grey_difference(const struct glint_image *image,
     }
 }
 
-/* Draws on a monochrome picture: adds the luminance of the flare. */
+/* Draws scene and flare in grey on a monochrome picture. */
 static enum glint_status draw_on_grey_image(struct overlay_file *f,
                                             struct drawing *drawing,
                                             int32_t elapsed_us)
@@ -214,7 +216,7 @@ static enum glint_status draw_on_grey_image(struct overlay_file *f,
     return status;
 }
 
-/* Replaces N pixels RGB, linear light, by their luminance. */
+/* Replaces each of N pixels RGB, linear light, by its luminance. */
 static void convert_to_grey(float *rgb, size_t n)
 {
     for (; n > 0; n--, rgb += 3)
@@ -235,8 +237,9 @@ static bool is_flare_absent(const struct drawing *drawing)
             !(drawing_get_exposure_factor(&drawing->run) > 0));
 }
 
-/* Copies the pixels of DRAWN that differ from BEFORE, the codes before drawing
- * without row padding, to the upright pixels of S, which become opaque. */
+/* Copies the pixels of DRAWN that differ from BEFORE to the pixels of S, which
+ * become opaque. BEFORE is the image before marks were drawn, without row
+ * padding. */
 static void copy_marks_to_samples(struct glint_samples *s,
                                   const struct glint_image *drawn,
                                   const uint8_t *before)
@@ -274,7 +277,8 @@ static enum glint_status draw_marks_on_proxy(struct overlay_file *f,
     return GLINT_OK;
 }
 
-/* Composites the scene over pixel (X, Y): pixel * (1 - coverage) + RGB. */
+/* Composites the scene over pixel (X, Y): the new pixel is pixel * (1 - HIDDEN)
+ * + RGB. HIDDEN is the coverage by the scene. */
 static void composite_scene_pixel(struct glint_samples *s, int x, int y,
                                   double hidden, const double rgb[3])
 {
@@ -287,8 +291,8 @@ static void composite_scene_pixel(struct glint_samples *s, int x, int y,
     glint_samples_set_pixel(s, x, y, sum, hidden);
 }
 
-/* Composites the scene, which was drawn on the proxy, over the samples.
- * file->white is the linear light of the proxy's white. */
+/* Composites the scene drawn last over the samples of FILE. file->white is the
+ * linear light of the scene's white. */
 static enum glint_status draw_scene_on_samples(struct overlay_file *file,
                                                struct drawing *drawing,
                                                bool is_grey)
@@ -318,7 +322,7 @@ static enum glint_status draw_scene_on_samples(struct overlay_file *file,
     return GLINT_OK;
 }
 
-/* Prints a warning that objects and flare become grey in a file of one
+/* Prints a warning if scene and flare become grey because the file has a single
  * channel. */
 static void warn_of_grey_result(const struct overlay_file *file,
                                 const struct drawing *drawing)
@@ -334,8 +338,8 @@ static void warn_of_grey_result(const struct overlay_file *file,
                 tool->name, file->from);
 }
 
-/* Draws the flare in linear light into the file's layer; for a composite adds
- * the layer and the marks to the samples. */
+/* Draws the flare in linear light into the file's layer. If --layer is
+ * composite, adds the layer and the marks of lamps to the samples. */
 static enum glint_status draw_flare_layer(struct overlay_file *file,
                                           struct drawing *drawing, bool is_grey)
 {
@@ -364,8 +368,8 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
                : GLINT_OK;
 }
 
-/* Draws on samples other than 8-bit codes: detects lamps in the proxy, measures
- * them in the samples, then adds scene and flare. */
+/* Draws on samples that are not plain 8-bit codes. Detects lamps in the proxy,
+ * corrects their light by the samples, then adds scene and flare. */
 static enum glint_status draw_on_non_8_bit_samples(struct overlay_file *file,
                                                    struct drawing *drawing,
                                                    bool is_grey,
@@ -390,13 +394,14 @@ static enum glint_status draw_on_non_8_bit_samples(struct overlay_file *file,
     return status;
 }
 
-/* Adds the flare to the file CTX; an overlay_draw_fn. */
+/* Adds scene and flare to the overlay_file CTX. This is an overlay_draw_fn. */
 static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
                                             const struct glint_image *image,
                                             int32_t elapsed_us)
 {
     struct overlay_file *const file = ctx;
-    /* Objects keep their colours if the file has three channels. */
+    /* A scene over a file with three channels stays coloured, also over grey
+     * pixels. */
     const bool is_grey =
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !(drawing->files.scene.is_open &&
@@ -414,8 +419,8 @@ static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
 
 /* ------------------------------------------------------------------- saving */
 
-/* Sets ALONE to a picture of the flare only, with at least the bit depth of the
- * input. */
+/* Sets ALONE to a picture of only the flare, with floats if the output has
+ * floats or alpha, else with the samples of the input. */
 static enum glint_status make_flare_only_picture(const struct overlay_file *f,
                                                  const struct drawing *drawing,
                                                  struct glint_samples *alone)
@@ -452,8 +457,8 @@ static enum glint_status make_flare_only_picture(const struct overlay_file *f,
     return GLINT_OK;
 }
 
-/* Writes the output of F. Sets IS_COPIED to whether the input file was
- * copied. */
+/* Writes the output of F, or copies the input if nothing was drawn and the
+ * types are the same. Sets IS_COPIED to whether it was copied. */
 static enum glint_status write_picture(struct overlay_file *f,
                                        const struct drawing *drawing,
                                        struct glint_kept_options *options,
@@ -484,8 +489,8 @@ static enum glint_status write_picture(struct overlay_file *f,
     return status;
 }
 
-/* Writes the picture to its output file and reports losses. Returns an exit
- * code. */
+/* Writes the picture to its output file and prints which properties were lost.
+ * Returns an exit code. */
 static int save_picture(const struct tool *tool, struct overlay_file *file,
                         struct overlay *o)
 {

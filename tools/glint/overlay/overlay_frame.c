@@ -89,7 +89,8 @@ static void extend_value_range(struct overlay_span *of, double x)
     of->n++;
 }
 
-/* Extends the ranges of strength, exposure and gain by those of a frame. */
+/* Extends the ranges of strength, exposure and gain by the values O of a
+ * frame. */
 static void record_frame_brightness(struct overlay_figures *f,
                                     const struct glint_options *o)
 {

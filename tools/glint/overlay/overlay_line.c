@@ -7,11 +7,11 @@
 #include "glint/setup.h"
 #include "overlay/drawing.h"
 
-/* Linear light, 1 = white, of code 2 of 255 in sRGB, whose slope near black is
- * 12.92. A darker flare is invisible. */
+/* Linear light, 1 = white, below which a flare is invisible: that of sRGB code
+ * 2 of 255. Near black the sRGB curve has the slope 12.92. */
 static const double least_seen = 2 / 255.0 / 12.92;
-/* Peak light of a flare, linear, 1 = white, with the option that is suggested
- * if the flare is invisible. */
+/* Linear light, 1 = white, that the peak of an invisible flare would get by the
+ * option that is suggested for it */
 static const double well_seen = 0.25;
 
 /* --------------------------------------------------------------- the light */
@@ -23,8 +23,8 @@ static bool is_single_component_drawn(const struct drawing *drawing)
            drawing->line.settings.options.only == GLINT_ONLY_VEIL;
 }
 
-/* Sets LIGHT to the peak and mean of the layer drawn last. Returns false
- * without memory. */
+/* Draws the layer of the last frame again and sets LIGHT to its peak and mean.
+ * Returns false without memory. */
 static bool measure_layer_light(struct drawing *drawing,
                                 struct glint_response_light *light)
 {
@@ -137,7 +137,8 @@ static void print_lights(const struct drawing *drawing, int most, FILE *to)
             round_without_minus_zero(y));
 }
 
-/* Prints NAME and the range of its values; HAS_SIGN: with + or -. */
+/* Prints NAME and the range of its values OF. If HAS_SIGN, positive values have
+ * a plus. */
 static void print_value_range(const struct overlay_span *of, const char *name,
                               bool has_sign, FILE *to)
 {
@@ -162,8 +163,8 @@ static void print_brightness_options(const struct overlay_figures *f, FILE *to)
         print_value_range(&f->gain, ", gain", false, to);
 }
 
-/* Prints why the flare of LIGHT is invisible, and an option that makes it
- * visible. */
+/* Prints why the flare, whose light is LIGHT, is invisible, and which option
+ * makes it visible. */
 static void print_faint_flare_remedy(const struct overlay *o,
                                      const struct overlay_light *light,
                                      FILE *to)
@@ -212,8 +213,8 @@ static void print_faint_flare_remedy(const struct overlay *o,
                     sqrt(well_seen / light->peak));
 }
 
-/* Returns words for the result on a picture without lamps: only the veil, no
- * flare (but a scene), or nothing was drawn. */
+/* Returns what was drawn on a picture without lamps, for a message: "only the
+ * veil", "no flare" (but a scene), or "nothing". */
 static const char *describe_picture_without_lamps(const struct drawing *drawing)
 {
     return drawing->run.engine && glint_engine_has_veil(drawing->run.engine)
@@ -222,8 +223,9 @@ static const char *describe_picture_without_lamps(const struct drawing *drawing)
                                           : "nothing";
 }
 
-/* Returns whether a mask or the edge fade removed the light of all lamps. For
- * several frames this is derived from the flare's LIGHT and the last frame. */
+/* Returns whether --mask or --edge-fade removed the light of all lamps. If
+ * there were several frames, this is so if LIGHT, the light of all flares, is 0
+ * and all lamps of the last frame are hidden. */
 static bool are_all_lamps_hidden(const struct drawing *drawing,
                                  const struct overlay_light *light)
 {
@@ -255,8 +257,8 @@ static void print_hidden_lamps(const struct drawing *drawing, int most,
             describe_picture_without_lamps(drawing));
 }
 
-/* Prints the --light-at options that turn the brightest candidates into
- * lamps. */
+/* Prints up to three --light-at options. They make lamps of the brightest spots
+ * that detection rejected. */
 static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
 {
     struct glint_spot next;

@@ -1,27 +1,32 @@
 /* SPDX-License-Identifier: MIT
  *
- * The result line of glint overlay: lamps found, settings, brightness of the
- * flare, and options that help if the flare is invisible. */
+ * Prints the result of glint overlay in one line: lamps found, settings, and
+ * brightness of the flare. If the flare is invisible, a second line names an
+ * option that helps.
+ */
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_LINE_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_LINE_H
 
 #include "overlay/overlay.h"
 
-/* The light of the ghosts alone, or of the starburst or veil with --only; 1 =
- * white, largest channel. */
+/* Light of the drawn flare: of the ghosts, or of the starburst or veil if
+ * --only selects one of these. Linear, 1 = white, of the brightest colour
+ * channel. */
 struct overlay_light {
-    bool is_known; /* false for the starburst or veil over several frames */
-    /* Linear light, 1 = white. Single picture: exceeded by 1/10000 of the
-     * pixels. Several frames: mean of the brightest 1/1000 pixels of the
-     * brightest frame. */
+    /* whether the members below are known; false for the starburst or veil of
+     * several frames */
+    bool is_known;
+    /* Peak light. For a single picture 1 / 10000 of the pixels exceed it. For
+     * several frames it is the mean of the brightest 1 / 1000 of the pixels of
+     * the brightest frame. */
     double peak;
-    /* Mean linear light over all pixels of all frames */
+    /* mean light over all pixels of all frames */
     double mean;
 };
 
-/* Returns the light of the drawn flare. For a single picture it is measured by
- * drawing the ghosts again at small size, unless the exposure did so already;
- * for several frames it is estimated from the lens's response. */
+/* Returns the light of the drawn flare. For a single picture it draws the
+ * ghosts again at a small size, unless the exposure has measured them already.
+ * For several frames it estimates the light by the lens's response. */
 struct overlay_light overlay_measure_light(struct overlay *o);
 
 /* Returns the number of frames that were drawn. */
@@ -31,8 +36,8 @@ int overlay_count_frames(const struct overlay *o);
 void overlay_print_summary(const struct overlay *o,
                            const struct overlay_light *light, FILE *to);
 
-/* Prints that no lamp was found; if IS_COPIED, that the file was copied; for a
- * single picture also the brightest candidate. */
+/* Prints that no lamp was found. If IS_COPIED, prints that the file was copied.
+ * For a single picture, also prints the brightest spots that could be lamps. */
 void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
                                  FILE *to);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws numbered pictures as the frames of a video. Missing numbers are
- * reported; their frame times elapse.
+ * Draws numbered pictures as the frames of a video. A missing number is
+ * printed; it counts as a frame time in which nothing is drawn.
  */
 #include "options/numbered.h"
 #include "options/timed_text.h"
@@ -35,8 +35,8 @@ static bool add_frame_number(struct numbers *l, int number)
     return true;
 }
 
-/* Returns the number with which PATTERN gives the file name FILE, or -1 if
- * there is none. NAME is scratch memory. */
+/* Returns the number for which PATTERN gives the file name FILE, or -1 if there
+ * is none. NAME is scratch memory. */
 static int parse_number_of_file(const char *file, const char *pattern,
                                 char *name)
 {
@@ -63,8 +63,8 @@ static int compare_frame_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Lists in L the numbers >= FIRST of all existing files of PATTERN, ascending.
- * Returns false without memory. */
+/* Lists in L, ascending, the numbers >= FIRST for which a file of PATTERN
+ * exists. Returns false without memory. */
 static bool list_file_numbers(struct numbers *l, const char *pattern, int first)
 {
     const char *slash = strrchr(pattern, '/');
@@ -90,9 +90,9 @@ static bool list_file_numbers(struct numbers *l, const char *pattern, int first)
     return ok;
 }
 
-/* Lists the numbers from FIRST (-1: 0 or 1) up to the first missing file, for a
- * PATTERN whose folder name contains the number, too. Returns false without
- * memory. */
+/* Lists in L the numbers from FIRST (-1: 0 or 1) up to the first missing file.
+ * Used for a PATTERN with the number in the name of the folder. Returns false
+ * without memory. */
 static bool list_consecutive_numbers(struct numbers *l, const char *pattern,
                                      int first)
 {
@@ -123,8 +123,8 @@ static void print_missing_pictures(const struct tool *tool,
         if (first > last)
             continue;
         if (runs == 0)
-            fprintf(stderr,
-                    "glint overlay: %s: missing, and skipped: ", o->input);
+            fprintf(stderr, "glint overlay: %s: skips the missing numbers ",
+                    o->input);
         if (runs < RUNS_SAID)
             fprintf(stderr, "%s%d", runs ? ", " : "", first);
         if (runs < RUNS_SAID && last > first)
@@ -138,8 +138,8 @@ static void print_missing_pictures(const struct tool *tool,
 
 /* ------------------------------------------------------------------ frames */
 
-/* Draws picture number l->at[i]. The elapsed time follows from the difference
- * to the previous number. Returns an exit code. */
+/* Draws picture number l->at[i]. The difference to the previous number
+ * determines the elapsed time. Returns an exit code. */
 static int draw_numbered_picture(struct tool *tool, struct overlay *o,
                                  const struct numbers *l, int i)
 {
@@ -156,7 +156,7 @@ static int draw_numbered_picture(struct tool *tool, struct overlay *o,
                     : gap > 1000000000 / FRAME_US ? 1000000000
                                                   : (int32_t)(gap * FRAME_US);
     o->drawing.run.n_frames +=
-        (int)(gap - 1); /* lamp lists count missing pictures, too */
+        (int)(gap - 1); /* Lamp lists also number the missing pictures. */
     code = overlay_check_outputs(tool, o, from, to);
     if (code == EXIT_OK)
         code = overlay_draw_picture_file(tool, o, from, to);
@@ -188,8 +188,8 @@ static int draw_all_numbered_pictures(struct tool *tool, struct overlay *o,
     for (int i = 0; i < l->n && code == EXIT_OK; i++)
         code = draw_numbered_picture(tool, o, l, i);
     if (code == EXIT_OK)
-        o->drawing.run.n_frames = l->n; /* missing numbers do not count as
-                                         * frames */
+        /* Only pictures that exist are reported as frames. */
+        o->drawing.run.n_frames = l->n;
     return code;
 }
 

@@ -23,21 +23,25 @@ struct video {
     struct tool *tool;
     struct overlay *o;
     struct glint_error error;
-    bool reads, writes; /* reads: ffmpeg decodes the input; writes: ffmpeg
-                         * encodes the output */
+    /* reads: whether ffmpeg decodes the input; writes: whether ffmpeg encodes
+     * the output */
+    bool reads, writes;
     struct ffmpeg_video about;
     struct child reader, writer;
     struct glint_output file; /* temporary file that ffmpeg writes */
-    char pipe[32];            /* name of the pipe to ffmpeg, for OUT */
+    /* path of the pipe to ffmpeg, which OUT opens by name */
+    char pipe[32];
     struct glint_y4m_reader in;
     struct glint_y4m_writer out;
     struct ffmpeg_times times;
-    bool is_variable, keeps_times; /* frame intervals vary; the output preserves
-                                      the frame times */
-    bool is_closed; /* whether the program that reads the output pipe has closed
-                     * it */
-    bool has_ended; /* the input was read to its end, not only to the last frame
-                       of --frames */
+    /* is_variable: whether the intervals of the input's frames vary;
+     * keeps_times: whether the output has the frame times of the input */
+    bool is_variable, keeps_times;
+    /* whether the program that reads the output has closed the pipe */
+    bool is_closed;
+    /* whether the end of the input was read, rather than only the last frame of
+     * --frames */
+    bool has_ended;
 };
 
 static bool is_y4m_name(const char *name)
@@ -91,14 +95,15 @@ static ptrdiff_t read_ffmpeg_output(void *ctx, void *dst, size_t bytes)
 }
 
 /* Returns whether the output can have the sound, tags and frame times of the
- * input: not for a GIF, nor if --frames cuts the end off. */
+ * input. A GIF cannot, nor a video of which --frames omits the end. */
 static bool can_keep_other_streams(const struct overlay *o)
 {
     return !glint_has_extension(o->output, ".gif") && o->last == INT_MAX;
 }
 
-/* Sets range, matrix and transfer of the input by its tags. Prints a warning
- * for unknown tags, and for missing tags of a video with BT.2020 primaries. */
+/* Sets range, matrix and transfer of the input by its tags. Prints a warning if
+ * a tag is unknown, or if a video with BT.2020 primaries has no transfer
+ * tag. */
 static void set_input_colour_tags(struct video *v)
 {
     static const char *const matrices[] = {"601", "709", "2020"};
@@ -154,7 +159,7 @@ static int open_input_by_ffmpeg(struct video *v)
                                                             : GLINT_E_FORMAT);
 }
 
-/* Returns ffmpeg's name of the pixel format LAYOUT. */
+/* Returns ffmpeg's name of the pixel format with samples as in LAYOUT. */
 static const char *
 find_pixel_format_of_layout(const struct glint_y4m_layout *layout)
 {
@@ -168,7 +173,8 @@ find_pixel_format_of_layout(const struct glint_y4m_layout *layout)
                              : find_pixel_format(chroma, layout->bits);
 }
 
-/* Opens raw frames without headers, at 30 frames per second. */
+/* Opens raw frames, which have no headers, as a video of 30 frames per
+ * second. */
 static enum glint_status open_raw_input(struct video *v)
 {
     static const enum glint_pixel_format formats[] = {GLINT_I420, GLINT_I422,
@@ -239,7 +245,7 @@ static enum glint_status start_ffmpeg_encoder(struct video *v)
         return status;
     snprintf(v->pipe, sizeof v->pipe, "/proc/self/fd/%d", v->writer.fd);
     status = glint_y4m_writer_open(&v->out, v->pipe, &v->in.header, &v->error);
-    close(v->writer.fd); /* the y4m writer has opened the pipe by name */
+    close(v->writer.fd); /* The y4m writer has opened the pipe by its name. */
     v->writer.fd = -1;
     return status;
 }
@@ -303,9 +309,9 @@ static int draw_all_frames(struct video *v)
     return code;
 }
 
-/* Prints the first and last frame of each shot. A shot begins where lamps and
- * exposure restart. They restart in each frame without lamps; such frames form
- * one shot with the frames that follow. */
+/* Prints the first and last frame of each shot. A shot begins where tracking
+ * and exposure restart. They restart in every frame without lamps; these frames
+ * belong to the shot that follows. */
 static int print_shot_list(struct video *v)
 {
     const int *const at = &v->o->drawing.run.n_frames;
@@ -350,8 +356,8 @@ static int32_t compute_mean_frame_interval_us(const struct video *v)
 
 /* ------------------------------------------------------------------ ending */
 
-/* Waits until the decoder ends. Returns an exit code: an error if it did not
- * read the whole input. */
+/* Waits until the decoder has ended. Returns an exit code, an error if the
+ * input is truncated. */
 static int wait_for_decoder(struct video *v)
 {
     const int code = child_wait_for_exit(&v->reader);
@@ -359,7 +365,8 @@ static int wait_for_decoder(struct video *v)
     if (code == 0 && !v->reader.heard)
         return EXIT_OK;
     if (code != 0)
-        fprintf(stderr, "glint overlay: %s: ffmpeg could not read all of it\n",
+        fprintf(stderr,
+                "glint overlay: %s: ffmpeg could not read the complete file\n",
                 v->o->input);
     else
         fprintf(stderr,
@@ -378,8 +385,8 @@ static int finish_encoder(struct video *v)
                 v->o->output);
         return EXIT_OUTPUT;
     }
-    /* An encoder that stops early, for example by -frames:v, has written a
-     * valid file. */
+    /* An encoder that stops before the end, for example by -frames:v, has
+     * written a valid file. */
     if (v->writes && (status == GLINT_OK || status == GLINT_E_CLOSED)) {
         status = ffmpeg_check_output(v->file.tmp, v->o->output, &v->error);
         if (status == GLINT_OK && !v->o->encode && !v->tool->quiet)
@@ -390,14 +397,14 @@ static int finish_encoder(struct video *v)
     return status == GLINT_OK ? EXIT_OK : report_video_failure(v, status);
 }
 
-/* Prints a warning if ffmpeg repeated or dropped frames of a variable rate to
- * make it constant. */
+/* Prints a warning if ffmpeg repeated or dropped frames to make a variable
+ * frame rate constant. */
 static void warn_of_variable_rate(const struct video *v)
 {
     if (v->is_variable && !v->keeps_times && v->has_ended && !v->tool->quiet)
         fprintf(stderr,
-                "glint overlay: %s: %d frames of a variable rate become %d of "
-                "%d/%d a second; .mp4 .mov .mkv .webm preserve the time of "
+                "glint overlay: %s: %d frames of a variable rate become %d at "
+                "%d/%d per second; .mp4 .mov .mkv .webm preserve the time of "
                 "each frame\n",
                 v->o->output, v->times.n, v->o->drawing.run.n_frames,
                 v->in.header.fps_num, v->in.header.fps_den);

@@ -6,7 +6,7 @@
 
 #include "overlay/drawing.h"
 
-/* Buffers that all frames of a stream use */
+/* Memory that is used again for each frame of a video */
 struct overlay_y4m {
     struct glint_y4m_light light;
     uint8_t *planes; /* sample planes of the frame */

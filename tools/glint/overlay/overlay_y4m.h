@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Frames of a y4m video of any depth and layout. Plain 8-bit frames are drawn
- * on in place; in all other formats light is added to the planes. */
+ * Draws on the frames of a y4m video of any bit depth and layout. Plain 8-bit
+ * frames are drawn on in place. In all other formats light is added to the
+ * sample planes.
+ */
 #ifndef GLINT_TOOLS_OVERLAY_OVERLAY_Y4M_H
 #define GLINT_TOOLS_OVERLAY_OVERLAY_Y4M_H
 
@@ -11,8 +13,8 @@
 /* Returns the bytes of a frame of IN, all planes together. */
 size_t overlay_y4m_frame_bytes(const struct glint_y4m_reader *in);
 
-/* Draws the flare on the frame that IN read last; IMAGE is its 8-bit view.
- * Returns an exit code. */
+/* Draws the flare on the frame that IN read last. IMAGE is an 8-bit copy or
+ * view of this frame. Returns an exit code. */
 int overlay_y4m_draw(struct tool *tool, struct overlay *o,
                      struct glint_y4m_reader *in,
                      const struct glint_image *image);

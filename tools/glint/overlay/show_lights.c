@@ -41,8 +41,8 @@ static int compute_line_width(const struct glint_image *image)
     return 1 + side / 540;
 }
 
-/* Draws NUMBER, and STOPS below it, right of the box, or left of it near the
- * picture's right edge. */
+/* Draws NUMBER, with STOPS below it, to the right of the box around (X, Y).
+ * Near the right edge of the picture it is drawn to the left. */
 static void draw_lamp_number(const struct paint *p, int x, int y, int half,
                              const char *number, const char *stops)
 {
@@ -68,7 +68,7 @@ static void draw_mark_strokes(const struct paint *p, int x, int y, int half,
     draw_lamp_number(p, x, y, half, number, stops);
 }
 
-/* Draws a mark with a black shadow, which keeps it visible on bright lamps. */
+/* Draws a mark with a black shadow, by which it is visible on bright lamps. */
 static void draw_shadowed_mark(const struct glint_image *image,
                                const struct glint_lamp_track *track,
                                const char *stops)

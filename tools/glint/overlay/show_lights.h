@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Marks lights on pictures: a cross, a box whose half-width is twice the RMS
- * radius plus four line widths, and the light's number. */
+ * Marks lamps on pictures by a cross, a box and a number. Half the width of the
+ * box is twice the RMS radius of the lamp plus four line widths.
+ */
 #ifndef GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
 #define GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
 
@@ -10,8 +11,9 @@
 #include "glint/image.h"
 #include "glint/lamp_tracker.h"
 
-/* Draws the mark of TRACK on IMAGE, of any 8-bit format. Colours: green steady,
- * yellow rising, red fading, blue after the lamp left the picture. */
+/* Draws the mark of TRACK on IMAGE, of any 8-bit format. It is green if the
+ * lamp is steady, yellow if it fades in, red if it fades out, blue if it has
+ * left the picture. */
 void show_lamp_mark(const struct glint_image *image,
                     const struct glint_lamp_track *track);
 
@@ -21,9 +23,9 @@ void show_lamp_mark_with_power(const struct glint_image *image,
                                const struct glint_lamp_track *track,
                                double power);
 
-/* Draws a legend in the lower left corner: the meaning of numbers and, if
- * FOLLOWED (lamps are tracked), of colours. Draws nothing if the picture is too
- * small. */
+/* Draws a legend in the lower left corner: the meaning of the numbers and, if
+ * FOLLOWED (lamps are tracked), of the colours. Draws nothing if the picture is
+ * too small. */
 void show_mark_legend(const struct glint_image *image, bool followed);
 
 #endif

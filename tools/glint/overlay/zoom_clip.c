@@ -49,7 +49,8 @@ static long count_y4m_frames(const char *name, struct glint_error *error)
     return n;
 }
 
-/* Returns the text of key frames for N frames, allocated by malloc(). */
+/* Returns key frames that zoom by CLIP over N frames, as text allocated by
+ * malloc(). */
 static char *make_zoom_keys(const struct zoom_clip *clip, long n)
 {
     const bool is_mm = clip->from > 1;

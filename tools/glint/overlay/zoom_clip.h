@@ -14,18 +14,18 @@
 
 struct zoom_clip {
     bool is_asked;
-    double from, to; /* zoom at first and last frame, both mm or both 0 .. 1, as
-                        --zoom */
-    char label[80];  /* "--zoom A-B", used in error messages */
-    char *keys;      /* text of the key frames */
+    /* zoom in the first and last frame: both mm, or both 0 .. 1 */
+    double from, to;
+    char label[80]; /* "--zoom A-B", used in error messages */
+    char *keys;     /* text of the key frames */
 };
 
 /* Parses TEXT, "A-B". Returns false if it is malformed. */
 bool zoom_clip_parse(struct zoom_clip *clip, const char *text);
 
-/* If --zoom A-B was given, sets key frames in LINE over all frames of the video
- * INPUT; call it before the line is opened. INPUT is NULL if the input is not a
- * video, which is then an error. Returns an exit code. */
+/* If --zoom A-B was given, stores its key frames for the video INPUT in LINE,
+ * which must not be open yet. INPUT is NULL if the input is not a video; then
+ * --zoom A-B is an error. Returns an exit code. */
 int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
                    struct drawing_line *line);
 
