@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Renders the frames of an animated scene in linear light, with the flare that
- * a lens adds for the scene's lights. */
+ * Renders the frames of an animated scene in linear light, with the flare of
+ * the scene's lights if there is a lens.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,10 +30,10 @@ struct frames {
     /* 8-bit picture of the scene, from which exposure and veil are computed */
     struct glint_image seen;
     int32_t *light_q20; /* linear light of the scene, [height][width][3] */
-    float *flare; /* linear light of the flare, [height][width][3]; NULL: no
-                     lens */
+    /* linear light of the flare, [height][width][3]; NULL: there is no lens */
+    float *flare;
 
-    /* output video; y4m only */
+    /* output video; unused for numbered images */
     struct glint_y4m_header header;
     struct glint_y4m_writer writer;
     struct glint_image frame;
@@ -130,8 +131,8 @@ static void close_frame_buffers(struct frames *f)
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Adds the flare to the picture. Occlusion by objects reduces the light of
- * lamps. */
+/* Computes the exposure and adds the flare of the scene's lights to the
+ * picture. The lamps are already dimmed by the objects that occlude them. */
 static enum glint_status add_flare_of_lights(struct frames *f)
 {
     struct drawing *const c = f->c;
@@ -272,8 +273,8 @@ static int render_all_frames(struct frames *f)
     return code;
 }
 
-/* Rejects drawing options that render does not support. Returns an exit
- * code. */
+/* Rejects options of the drawing that glint render does not support for scenes.
+ * Returns an exit code. */
 static int check_drawing_options(const struct tool *tool,
                                  const struct drawing *c)
 {
@@ -310,7 +311,8 @@ int render_frames(struct tool *tool, struct render_scene *r, const char *path)
     if (r->is_video)
         f.elapsed_us = (int32_t)lrint(1e6 / r->fps);
     code = drawing_open(tool, c);
-    c->files.is_listed = true; /* no photograph to search for lamps */
+    /* no detection of lamps, because there is no photograph */
+    c->files.is_listed = true;
     if (code == EXIT_OK)
         code = drawing_allocate(tool, c, r->width, r->height);
     if (code == EXIT_OK)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint render of scenes: draws their objects, in linear light.
+ * glint render of scenes: draws the objects of a scene in linear light.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -38,11 +38,11 @@ static const char help[] =
     "                      not given, and the quality of the flare\n"
     "  --exposure EV       multiply all light by 2^EV (default 0)\n"
     "  --pose FILE         move objects and camera by FILE, see glint overlay\n"
-    "  --control FILE      change the scene by the commands in FILE, likewise\n"
+    "  --control FILE      change the scene by the commands in FILE, see\n"
+    "                      glint overlay\n"
     "  --frame N           draw frame N of --pose and --control (default 0)\n"
     "  --frames A-B        draw frames A to B; OUT is .y4m, - or has a %04d\n"
-    "  --fps N             frame rate of .y4m, and the rate at which a lens "
-    "follows\n"
+    "  --fps N             frame rate of .y4m, and of the tracking of lamps\n"
     "                      (default 25)\n"
     "  --lens LENS|none    add the flare of LENS for the lights of a scene "
     "that\n"
@@ -80,8 +80,8 @@ static bool parse_frame_range(struct render_scene *r, const char *text)
            tool_parse_integer(dash + 1, r->first, MOST_FRAME, &r->last);
 }
 
-/* Parses option C if it concerns animation. Returns -1, or -2 if it is another
- * option. */
+/* Parses option C if it belongs to the animation. Returns -1 on success, -2 for
+ * other options, else an exit code. */
 static int parse_animation_option(struct tool *tool, struct render_scene *r,
                                   int c)
 {
@@ -205,7 +205,8 @@ static int parse_command_line(struct tool *tool, int argc, char **argv,
 
 /* ---------------------------------------------------------- the run time */
 
-/* Returns the number of flare lights of the scene that are occluded. */
+/* Returns the number of scene lights that add to the flare but are completely
+ * occluded. */
 static int count_hidden_lights(const struct scene_frame *frame)
 {
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
@@ -237,8 +238,8 @@ static void print_frame_json(const struct tool *tool,
                count_hidden_lights(frame), ms);
 }
 
-/* Prints a note that shadows on catchers are invisible, as the scene is drawn
- * over black. */
+/* Prints a note if the scene has a shadow catcher. Its shadows are invisible
+ * here, because the scene is drawn over black. */
 static void print_catcher_note(const struct tool *tool,
                                const struct glint_scene_model *model)
 {

@@ -14,10 +14,11 @@ struct render_scene {
     int width, height;
     int samples; /* samples per pixel at outlines; 0: the default */
     double exposure_ev;
-    bool linear;     /* OUTPUT has floats, so linear light is written */
-    bool is_frames;  /* options --pose, --frame(s) or --lens were given:
-                        render_frames() draws */
-    bool is_lit;     /* a flare option was given */
+    bool linear; /* whether OUTPUT stores floats, and so linear light */
+    /* whether --pose, --frame, --frames or --lens was given, so that
+     * render_frames() draws */
+    bool is_frames;
+    bool is_lit;     /* whether an option of the flare was given */
     bool is_video;   /* --frames FIRST-LAST */
     int first, last; /* first and last frame number */
     double fps;
@@ -25,14 +26,14 @@ struct render_scene {
     struct glint_float_image image;
 };
 
-/* Returns whether a scene, text or baked, is among the arguments. */
+/* Returns whether one of the arguments is a scene, as a text or baked. */
 bool render_has_scene(int argc, char **argv);
 
 /* Runs the command; see options/tool.h for the arguments and the result. */
 int cmd_render_scene(int argc, char **argv);
 
-/* Draws frames r->first to r->last of the scene PATH to r->output, with the
- * flare of the lens if there is one. Returns an exit code. */
+/* Draws the frames r->first to r->last of the scene PATH to r->output, with the
+ * flare of the lens if a lens was given. Returns an exit code. */
 int render_frames(struct tool *tool, struct render_scene *r, const char *path);
 
 #endif

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * Collects statistics of a scene's frame: cost per object, coverage,
- * highlights. */
+ * Collects the statistics of a frame of a scene: cost of each object, coverage
+ * and highlights.
+ */
 #ifndef GLINT_TOOLS_SCENES_ACCOUNT_H
 #define GLINT_TOOLS_SCENES_ACCOUNT_H
 
 #include "options/json_writer.h"
 #include "scenes/scene_frame.h"
 
-/* Names of the counted types of work */
+/* names of the types of work that are counted */
 extern const char *const scene_item_name[GLINT_SCENE_ITEMS];
 
 /* Statistics of the frame drawn last. */
@@ -29,8 +30,8 @@ void scene_account_free(struct scene_account *account);
 /* Returns the number of pixels that objects cover in the frame drawn last. */
 int scene_count_covered_px(const struct scene_frame *frame);
 
-/* Writes members of a JSON object about the frame drawn last, without its
- * lights. BYTES is the size of the baked scene. */
+/* Writes the statistics of the frame drawn last as members of a JSON object,
+ * except those of lights. BYTES is the size of the baked scene. */
 void scene_account_write_json(struct json_writer *json,
                               const struct scene_frame *frame, size_t bytes);
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake NAME.scene: bakes a scene text into the format of the run time.
+ * glint bake NAME.scene: bakes the text of a scene into the file that is read
+ * when the scene is drawn.
  */
 #include "model/bake_line.h"
 #include "scenes/baked_scene.h"

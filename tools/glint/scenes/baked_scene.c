@@ -42,7 +42,8 @@ int baked_scene_open(const struct tool *tool, const char *path,
             return code;
         status = glint_input_read_whole_file(&data, &scene->bytes, path,
                                              MAX_SCENE_BYTES, &error);
-        scene->data = data; /* malloc() aligns the data */
+        /* malloc() has aligned the data, as baked scenes require */
+        scene->data = data;
     }
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
@@ -70,7 +71,7 @@ enum {
     ENVIRONMENT,
     STONE,
     OBJECT,
-    MESH, /* all mesh sections below, with their headers */
+    MESH, /* sum of the sections below, with the headers of meshes */
     VERTICES,
     NORMALS,
     UV,
@@ -121,8 +122,8 @@ static void count_mesh_bytes(const struct glint_scene_model *model,
     b[MESH] += sizeof *m;
 }
 
-/* Returns the bytes of translucent media and of the light maps of the
- * objects made of them. */
+/* Returns the bytes of all translucent media, and of the light maps of objects
+ * made of them. */
 static size_t count_medium_bytes(const struct glint_scene_model *model)
 {
     const struct glint_scene_header *h = model->header;

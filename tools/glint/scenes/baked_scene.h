@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens scenes: bakes a text or reads a baked file. */
+ * Opens scenes: bakes the text of a scene, or reads a baked file.
+ */
 #ifndef GLINT_TOOLS_SCENES_BAKED_SCENE_H
 #define GLINT_TOOLS_SCENES_BAKED_SCENE_H
 
@@ -20,7 +21,7 @@ struct baked_scene {
  * begins with the magic number of baked scenes. */
 bool baked_scene_is_file(const char *argument);
 
-/* Opens PATH as SCENE: bakes a text, reads a baked file. Returns an exit
+/* Opens PATH as SCENE: bakes a text, or reads a baked file. Returns an exit
  * code, after printing the reason on failure. */
 int baked_scene_open(const struct tool *tool, const char *path,
                      struct baked_scene *scene);

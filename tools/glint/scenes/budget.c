@@ -3,23 +3,25 @@
 
 #include <math.h>
 
-/* Number of frames drawn with a level before a finer one is tried; doubled by
- * each failed trial */
+/* Number of frames that are drawn with a level before a finer level is tried.
+ * Each failed trial doubles it, up to MAX_HOLD. */
 #define HOLD     8
 #define MAX_HOLD 512
-/* Fraction of the time limit below which a finer level is tried; a level takes
- * at least 1.3 times as long as the next coarser one */
+/* Fraction of the time limit below which a finer level is tried. A level takes
+ * at least 1.3 times as long as the next coarser one. */
 #define SPARE 0.75
-/* Fraction of the frame time for the scene if the flare needs the rest, and its
- * min fraction */
+/* Fraction of the frame time that the scene gets while the flare is drawn below
+ * its default quality, and the min fraction while the flare is drawn at its
+ * lowest quality */
 #define FRACTION     0.6
 #define MIN_FRACTION 0.1
 
-/* Quality levels. First shadow points and metal lookups are reduced, as
- * penumbrae cover little of an image and 4 lookups lose less than 2 dB; then
- * the number of shaded points, last the edge samples. QUALITY: min --quality at
- * which the level is used. PSNR falls from 48 dB to 36 dB (mean of three scenes
- * at revision e8a4a84c). */
+/* Quality levels, from fine to coarse. First they reduce shadow points and
+ * lookups in brushed metal, because penumbrae cover little of an image and 4
+ * lookups lose less than 2 dB. Then they reduce the number of shaded points,
+ * and at last the edge samples. QUALITY is the min --quality that uses the
+ * level. PSNR falls from 48 dB to 36 dB (mean of three scenes at revision
+ * e8a4a84c). */
 static const struct {
     int points, edge, samples;
     bool half;
@@ -101,13 +103,13 @@ static int find_next_quality_level(const struct scene_budget *budget, int by)
 bool scene_budget_update_level(struct scene_budget *budget, double ms,
                                double limit_ms)
 {
-    /* The smaller of two frame times, as a single slow frame may be caused by
-     * another program */
+    /* The lower one of two times, because another program may slow down a
+     * single frame. */
     const double low_ms = fmin(ms, budget->last_ms);
     const int before = budget->level;
 
     budget->last_ms = ms;
-    /* The first frame of a level is not timed, as it allocates memory. */
+    /* The first frame of a level is not timed: it allocates memory. */
     if (!(ms > 0) || ++budget->n_frames < 2)
         return false;
     if (low_ms > limit_ms) {
@@ -128,8 +130,9 @@ bool scene_budget_update_level(struct scene_budget *budget, double ms,
     return true;
 }
 
-/* The flare uses all the time that the scene leaves, so its time does not show
- * whether it needs more; its quality does. */
+/* The time of the flare does not show whether the flare needs more time,
+ * because it uses all the time that the scene leaves. The quality of the flare
+ * shows it. */
 double scene_budget_limit_flare(double all_ms, double flare_ms, double quality)
 {
     const double rest_ms = all_ms - flare_ms, part_ms = FRACTION * all_ms;

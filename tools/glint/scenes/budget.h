@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adapts the quality of a scene to a time limit per frame: one level coarser
- * after two frames above the limit, one level finer after some frames far below
- * it.
+ * Adapts the quality of a scene to a time limit per frame. After two frames
+ * above the limit the next coarser level is used. After some frames far below
+ * the limit the next finer level is tried.
  */
 #ifndef GLINT_TOOLS_SCENES_BUDGET_H
 #define GLINT_TOOLS_SCENES_BUDGET_H
 
 #include "scenes/scene_frame.h"
 
-/* Number of levels, from the finest, which has the requested quality, to the
- * coarsest */
+/* number of quality levels; level 0 has the requested quality, the last level
+ * is the coarsest */
 enum { SCENE_BUDGET_LEVELS = 5 };
 
 struct scene_budget {
@@ -20,9 +20,9 @@ struct scene_budget {
     /* Private. */
     int n_frames;   /* number of frames drawn with LEVEL */
     double last_ms; /* time of the last frame, ms */
-    int hold;    /* number of frames to draw with a level before a finer one is
-                    tried */
-    bool is_try; /* whether LEVEL is a finer level on trial */
+    /* number of frames to draw before a finer level is tried */
+    int hold;
+    bool is_try; /* whether LEVEL is on trial, as a finer level than before */
 };
 
 void scene_budget_init(struct scene_budget *budget,
@@ -32,25 +32,25 @@ void scene_budget_init(struct scene_budget *budget,
 struct scene_dials
 scene_budget_get_parameters(const struct scene_budget *budget, int level);
 
-/* Sets budget->level for the next frame, after a frame that took MS with a
- * limit of LIMIT_MS. Returns whether the level changed. */
+/* Sets budget->level for the next frame. MS is the time of the previous frame,
+ * LIMIT_MS is the limit. Returns whether the level changed. */
 bool scene_budget_update_level(struct scene_budget *budget, double ms,
                                double limit_ms);
 
-/* Returns the time, ms, that the scene may use of ALL_MS, the time limit of a
- * frame. FLARE_MS: time of the flare, drawn at QUALITY of --quality. Both are 0
+/* Returns how much of ALL_MS, the time limit of a frame, the scene may use, ms.
+ * FLARE_MS is the time of the last flare, and QUALITY its --quality; both are 0
  * before the first frame. */
 double scene_budget_limit_flare(double all_ms, double flare_ms, double quality);
 
-/* Sets the members of DIALS that are 0 to the values for QUALITY, a --quality.
- * At the default of 0.5 they stay 0. */
+/* Sets the members of DIALS that are 0 to the values of the level for --quality
+ * QUALITY. For the default quality, 0.5, they remain 0. */
 void scene_dials_set_quality(struct scene_dials *dials, double quality);
 
-/* Returns the highest --quality none of whose parameters is finer than that of
+/* Returns the highest --quality at which no parameter is finer than at
  * budget->level. */
 double scene_budget_get_flare_quality(const struct scene_budget *budget);
 
-/* Returns the finest level that is not finer than --quality QUALITY. */
+/* Returns the finest level that --quality QUALITY allows. */
 int scene_budget_find_level_of_quality(double quality);
 
 #endif

@@ -51,7 +51,8 @@ static enum glint_status read_environment_text(
     return status;
 }
 
-/* Bakes the picture FROM; the result has the name of the file NAMED. */
+/* Bakes the picture FROM as an environment that is called like the file NAMED,
+ * without folder and extension. */
 static enum glint_status
 bake_picture(const char *named, const char *from,
              const struct glint_environment_options *options,
@@ -96,7 +97,7 @@ bake_source(const char *path, const char *written,
     const char *picture = path;
     enum glint_status status = GLINT_OK;
 
-    /* clear the padding, which is part of the hashed key */
+    /* The key is a hash of all bytes of the options, so padding must be 0. */
     memset(&options, 0, sizeof options);
     glint_environment_defaults(&options);
     if (is_environment_text(path)) {
@@ -132,7 +133,8 @@ enum glint_status environment_file_read(
     } else if (status == GLINT_OK) {
         status = glint_input_read_whole_file(&data, &file->bytes, path,
                                              MAX_FILE_BYTES, error);
-        file->data = data; /* malloc() aligns the data */
+        /* malloc() has aligned the data, as baked environments require */
+        file->data = data;
     }
     if (status != GLINT_OK ||
         glint_environment_open(&file->environment, file->data, file->bytes,
@@ -166,8 +168,8 @@ void environment_file_close(struct environment_file *file)
 }
 
 struct counts {
-    /* number of texels: in all levels; as a mipmap; if all levels had the size
-     * of the first */
+    /* number of texels: stored in all levels; in a mipmap; in the same number
+     * of levels if all had the size of the first */
     long long texels, mips, full;
     size_t levels, irradiance, lights, header; /* bytes of each section */
 };

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens environments: bakes a picture or text, or reads a baked file. */
+ * Opens environment maps: bakes a picture or text, or reads a baked file.
+ */
 #ifndef GLINT_TOOLS_SCENES_ENVIRONMENT_FILE_H
 #define GLINT_TOOLS_SCENES_ENVIRONMENT_FILE_H
 
@@ -17,18 +18,20 @@ struct environment_file {
     bool is_baked_now;
 };
 
-/* Return whether ARGUMENT is a source (a picture of light, .exr, .hdr, .pfm
- * or .dds, or the text of an environment), or a file that begins with the
- * magic number of baked environments. */
+/* environment_file_is_source() returns whether ARGUMENT is a picture of light
+ * (.exr, .hdr, .pfm, .dds) or the text of an environment.
+ * environment_file_is_baked() returns whether ARGUMENT begins with the magic
+ * number of baked environments. */
 bool environment_file_is_source(const char *argument);
 bool environment_file_is_baked(const char *argument);
 
-/* Open the picture, text or baked file PATH. They reject PATH, or the picture
- * that a text names, if it is the output file WRITTEN. OVERRIDE, unless NULL,
- * is called after the options of a text were read and may change them. LEFT,
- * unless NULL, is the remaining bake work, see tool_count_bake_work(); a bake
- * costs the cube of its texels along a side. environment_file_open() prints the
- * reason of a failure and returns an exit code. */
+/* Open PATH, a picture, text or baked file. Reject PATH, or the picture that a
+ * text names, if it is the output file WRITTEN. OVERRIDE (may be NULL) is
+ * called after the options of a text were read, and may change them. LEFT (may
+ * be NULL) is the remaining bake work, see tool_count_bake_work(). The work of
+ * a bake is the cube of the number of texels along a side.
+ * environment_file_open() prints the reason of a failure and returns an exit
+ * code. */
 enum glint_status environment_file_read(
     const char *path, const char *written,
     void (*override)(void *ctx, struct glint_environment_options *), void *ctx,

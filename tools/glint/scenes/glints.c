@@ -16,8 +16,8 @@ enum glint_status glints_open(struct glints *glints, int width, int height)
     glint_lamp_tracker_defaults(&cfg, width, height);
     cfg.max_tracks = GLINTS_MAX;
     cfg.max_shown = GLINT_SCENE_MAX_HIGHLIGHTS;
-    /* Disables cut detection: rotating objects may show several highlights
-     * at once. */
+    /* Disables the detection of cuts: when objects rotate, several highlights
+     * may appear at once. */
     cfg.cut_q15 = (1 << 15) + 1;
     bytes = glint_lamp_tracker_bytes(&cfg);
     if (posix_memalign(&glints->mem, ALIGNMENT, bytes)) {
@@ -33,8 +33,8 @@ void glints_close(struct glints *glints)
     *glints = (struct glints){.n = 0};
 }
 
-/* Returns SPOT, a highlight of an independent picture, as a track at full
- * level. */
+/* Returns SPOT, highlight number NUMBER of an independent picture, as a track
+ * that does not fade. */
 static struct glint_lamp_track
 make_highlight_track(const struct glint_spot *spot, int number)
 {

@@ -19,15 +19,15 @@
 #include "glint/setup.h"
 #include "glint/view.h"
 
-/* Max number of tracks: twice the max number of highlights, as others may be
- * fading out */
+/* Max number of tracks. It is twice the max number of highlights, because just
+ * as many may be fading out. */
 enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
 
 struct glints {
     struct glint_scene_highlight found[GLINT_SCENE_MAX_HIGHLIGHTS];
     struct glint_lamp_track track[GLINTS_MAX];
-    int n_found, n; /* number of highlights in the last picture, and number of
-                     * tracks */
+    /* number of highlights in the last picture; number of tracks */
+    int n_found, n;
 
     /* Private. */
     struct glint_lamp_tracker *tracks;
@@ -39,13 +39,14 @@ struct glints {
 enum glint_status glints_open(struct glints *glints, int width, int height);
 void glints_close(struct glints *glints);
 
-/* Finds the highlights of the picture of SCENE drawn last, ELAPSED_US after the
- * previous picture; 0: an independent picture. Returns the number of lamps. */
+/* Finds the highlights in the picture of SCENE drawn last, and updates the
+ * tracks. ELAPSED_US is the time since the previous picture; 0 means that the
+ * picture is independent. Returns the number of lamps. */
 int glints_track_frame(struct glints *glints, const struct glint_scene *scene,
                        int32_t elapsed_us);
 
-/* Sets LAMP to highlight I as seen by a lens of FOCAL_MM. Returns its level, 0
- * .. 1: the fraction of its power while it fades in or out. */
+/* Sets LAMP to highlight I as a lens of FOCAL_MM sees it. Returns the level of
+ * the lamp, the fraction of its power while it fades in or out, else 1. */
 double glints_get_lamp(const struct glints *glints, int i,
                        const struct glint_view *view, double focal_mm,
                        struct glint_lamp *lamp);

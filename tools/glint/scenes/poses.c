@@ -25,7 +25,8 @@ static const struct text_column columns[COLUMNS] = {
 
 /* --------------------------------------------------------------------- line */
 
-/* Returns the index of the object NAME, or -2 with a cause in LINES. */
+/* Returns the index of the object, light or camera NAME. Returns -2 with an
+ * error message in LINES if there is none. */
 static int find_object_by_name(const struct glint_scene_model *m,
                                const char *name, struct text_lines *lines)
 {
@@ -54,8 +55,9 @@ static int find_object_by_name(const struct glint_scene_model *m,
     return -2;
 }
 
-/* Sets TO to the unit vector of X[N], Q30. For right-handed scenes negates z,
- * or x and y of a quaternion (N = 4). Returns false if the length is 0. */
+/* Sets TO to X[N] divided by its length, Q30. For a right-handed scene negates
+ * z of a vector (N = 3), or x and y of a quaternion (N = 4). Returns false if
+ * the length is 0. */
 static bool set_unit_vector_q30(const struct glint_scene_model *m,
                                 const double *x, int n, int32_t *to)
 {
@@ -88,7 +90,8 @@ static bool set_pose_position(const struct glint_scene_model *m,
     return true;
 }
 
-/* Sets POSE to the values V for the object NAME. */
+/* Sets POSE to the values V of a line for the object NAME. Returns NULL or an
+ * error message. */
 static const char *make_pose(const struct glint_scene_model *m,
                              struct text_lines *lines, const char *name,
                              const double v[COLUMNS], struct pose *pose)
@@ -114,7 +117,7 @@ static const char *make_pose(const struct glint_scene_model *m,
     return NULL;
 }
 
-/* Splits LINE into the columns FIELD. */
+/* Splits LINE into the columns FIELD. Returns NULL or an error message. */
 static const char *split_line_into_columns(struct text_lines *lines, char *line,
                                            char *field[COLUMNS])
 {
@@ -190,8 +193,8 @@ static int compare_pose_frames(const void *a, const void *b)
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-/* Inserts POSE: for a file at the end, for a pipe after the last pose of the
- * same frame. */
+/* Inserts POSE: at the end for a file, which is sorted later; for a pipe after
+ * the last pose of the same frame. Returns NULL or an error message. */
 static const char *insert_pose(struct poses *p, const struct pose *pose)
 {
     struct pose *more;
@@ -261,7 +264,8 @@ void poses_close(struct poses *poses)
 
 /* --------------------------------------------------------------------- pipe */
 
-/* Records CAUSE as the error of the last line, which is skipped. */
+/* Counts the last line as skipped. Records CAUSE as its error if it is the
+ * first such line. */
 static void record_line_error(struct poses *p, const char *cause)
 {
     if (p->n_bad++ == 0)

@@ -9,14 +9,15 @@
  *     poses_close(&poses);
  *
  * The text is CSV, "frame,object,x,y,z[,qw,qx,qy,qz]", of which the first line
- * may be this heading, or flat JSON objects with these keys. object is the name
- * of an object or light of the scene, or camera. Frames count from 0; * is
- * every frame until a later line for the object. x, y, z are scene units, for a
- * sun the direction to it, in the handedness of the scene's text. The
- * quaternion rotates from the object's own axes (camera: x right, y up, looking
- * in the direction of a camera that is not rotated) to those of the scene;
- * without it the rotation does not change. A pose is valid until the next pose
- * of its object.
+ * may be this heading, or flat JSON objects with these keys. "object" is the
+ * name of an object or light of the scene, or "camera". Frames count from 0. A
+ * frame "*" means every frame until a later line for the object. x, y, z are
+ * the position in scene units, or for a sun the direction to it. Their axes
+ * have the handedness of the scene text. The quaternion rotates the object's
+ * own axes to those of the scene. The own axes of a camera are x right, y up,
+ * and the view direction of a camera that is not rotated. Without a quaternion
+ * the rotation does not change. A pose is valid until the next pose of its
+ * object.
  */
 #ifndef GLINT_TOOLS_SCENES_POSES_H
 #define GLINT_TOOLS_SCENES_POSES_H
@@ -31,12 +32,13 @@ enum {
 };
 
 struct pose {
-    int frame, order; /* frame number, and index of the line, by which poses of
-                       * one frame are sorted */
-    int thing;        /* index of an object, n_objects + index of a light, or
-                         POSES_CAMERA */
+    /* frame number; index of the line, by which the poses of a frame are
+     * sorted */
+    int frame, order;
+    /* index of an object, n_objects + index of a light, or POSES_CAMERA */
+    int thing;
     bool has_turn;
-    /* position in scene steps; for a sun a unit vector, Q30 */
+    /* position, scene steps; for a sun the direction to it, Q30 */
     int32_t at[3];
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
 };
@@ -55,10 +57,10 @@ struct poses {
     int read_at; /* frame at which the pipe was last read */
 };
 
-/* Opens PATH. PATH and the data of MODEL must outlive POSES. If IS_LIVE, a
- * FIFO is read line by line without waiting for data; else the file is read
- * to its end. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT with
- * "FILE:LINE: cause" in ERROR. */
+/* Opens PATH. PATH and the data of MODEL must outlive POSES. If IS_LIVE and
+ * PATH is a FIFO, lines are read as they arrive, without waiting. Otherwise all
+ * lines are read now. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT
+ * with "FILE:LINE: cause" in ERROR. */
 enum glint_status poses_open(struct poses *poses, const char *path,
                              bool is_live,
                              const struct glint_scene_model *model,
@@ -68,12 +70,12 @@ enum glint_status poses_open(struct poses *poses, const char *path,
  * no more. FRAME must not decrease from call to call. */
 const struct pose *poses_next_pose(struct poses *poses, int frame);
 
-/* Restarts before the first frame. Returns false for a pipe, which cannot
- * restart. */
+/* Starts again before the first frame. Returns false for a pipe, which cannot
+ * do this. */
 bool poses_rewind(struct poses *poses);
 
-/* Counts POSE as skipped because it would move an object out of the scene's
- * range. */
+/* Counts the line of POSE as skipped, because it would move an object out of
+ * the range of the scene. */
 void poses_reject_line(struct poses *poses, const struct pose *pose);
 
 void poses_close(struct poses *poses);

@@ -14,8 +14,8 @@
 
 enum { TEXT_BYTES = 1 << 20 };
 
-/* Max work, in units of tool_count_bake_work(), of baking the files that a
- * scene names: about 30 s of processor time */
+/* Max work of baking the files that a scene names, in the units of
+ * tool_count_bake_work(). It corresponds to about 30 s of processor time. */
 #define MOST_WORK (INT64_C(1) << 28)
 
 bool tool_is_scene_text(const char *argument)
@@ -27,13 +27,14 @@ bool tool_is_scene_text(const char *argument)
 struct reading {
     const struct tool *tool;
     const char *path;
-    const char *written; /* output file, which must not be read, or NULL */
+    /* output file, which must not be an input; NULL: none */
+    const char *written;
     uint64_t key;
     int64_t left; /* remaining bake work, in units of tool_count_bake_work() */
 };
 
-/* Sets PATH to the file NAME, relative to the folder of the text. Errors as
- * tool_make_input_path(). */
+/* Sets PATH to the path of the file NAME, which is relative to the folder of
+ * the text. Errors are those of tool_make_input_path(). */
 static enum glint_status find_scene_file_path(const struct reading *reading,
                                               const char *name,
                                               char path[TOOL_PATH_BYTES],
@@ -43,8 +44,8 @@ static enum glint_status find_scene_file_path(const struct reading *reading,
                                 error);
 }
 
-/* If STATUS is GLINT_OK, sets *DATA and its size to FROM[N] and adds them to
- * the key. Returns STATUS. */
+/* If STATUS is GLINT_OK, moves FROM[N] to *DATA, sets *BYTES to N, and adds the
+ * data to the key. Returns STATUS. */
 static enum glint_status store_read_data(struct reading *reading,
                                          enum glint_status status, void *from,
                                          size_t n, uint8_t **data,
@@ -63,7 +64,7 @@ static bool is_obj_name(const char *name)
     return glint_has_extension(name, ".obj");
 }
 
-/* Reads a mesh as an OBJ text. */
+/* Reads a mesh, of any file type, as an OBJ text. */
 static enum glint_status read_obj_mesh(void *ctx, const char *name,
                                        uint8_t **data, size_t *bytes,
                                        struct glint_error *error)
@@ -81,7 +82,8 @@ static enum glint_status read_obj_mesh(void *ctx, const char *name,
         status = glint_assimp_read_mesh(data, bytes, path,
                                         GLINT_DESCRIPTION_MAX_MESH_BYTES,
                                         GLINT_DESCRIPTION_MAX_TRIANGLES, error);
-    /* returns the same status as for an error in an OBJ file */
+    /* A wrong OBJ file is found later, with GLINT_E_LENS. Other types of meshes
+     * return the same status. */
     if (status == GLINT_E_FORMAT)
         status = GLINT_E_LENS;
     if (status == GLINT_OK)

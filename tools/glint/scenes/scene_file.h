@@ -11,9 +11,9 @@
 bool tool_is_scene_text(const char *argument);
 
 /* Reads the scene text PATH and the files that it names, relative to its
- * folder. Rejects files that are the output of TOOL. Prints warnings unless
- * quiet. KEY, unless NULL, receives a hash of the contents of all files.
- * Returns an exit code, after printing the reason on failure; on EXIT_OK the
+ * folder. Rejects a file that is the output of TOOL. Prints warnings, unless
+ * TOOL is quiet. Sets *KEY (KEY may be NULL) to a hash of all these files.
+ * Returns an exit code, after printing the reason on failure. On EXIT_OK the
  * caller frees SCENE. */
 int tool_read_scene(const struct tool *tool, const char *path,
                     struct glint_description *scene, uint64_t *key);

@@ -82,8 +82,8 @@ static int report_scene_status(const struct tool *tool,
             : NULL);
 }
 
-/* Rejects a scene whose picture needs more than SCENE_TESTS intersection tests
- * at the poses of its model. */
+/* Rejects a scene if its picture needs more than SCENE_TESTS intersection tests
+ * with all objects at the poses of the scene file. */
 static int check_intersection_tests(struct scene_frame *frame)
 {
     const int64_t px = (int64_t)frame->cfg.width * frame->cfg.height;
@@ -93,8 +93,8 @@ static int check_intersection_tests(struct scene_frame *frame)
     int64_t tests;
 
     glint_scene_begin(frame->scene, &stats);
-    /* Each pixel of a tile that a triangle touches takes about as long as an
-     * intersection test. */
+    /* A triangle costs about one intersection test for each pixel of the tiles
+     * that it touches. */
     tests = (int64_t)stats.need_refs << 2 * frame->cfg.tile_log2;
     if (tests <= most)
         tests += glint_scene_count_tests(frame->scene, most - tests);

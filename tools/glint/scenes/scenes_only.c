@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Replaces scene_file.c in programs without the offline half (baking), which
- * read baked scenes only.
+ * Replaces scene_file.c in programs that read only baked scenes, without the
+ * code for baking.
  */
 #include "posix/ending.h"
 #include "scenes/scene_file.h"

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake of translucent media: bakes how light spreads below a surface into
- * the format of the run time.
+ * glint bake of translucent media: bakes how light spreads below a surface, for
+ * drawing objects made of the medium.
  */
 #include "model/bake_line.h"
 #include "options/command_line.h"
@@ -25,7 +25,7 @@ static const char help[] =
     "                      factored: a sum of terms, 3 bytes each\n"
     "                      albedo: one kernel, 3 bytes\n";
 
-/* Options of the command line; -1: not given. */
+/* options of the command line; -1: the option is not given */
 struct line {
     int model;
 };

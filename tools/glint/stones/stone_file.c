@@ -12,7 +12,8 @@
 #include "model/names.h"
 
 #define MAX_FILE_BYTES ((size_t)1 << 26)
-/* version of the bake; increase it if the same text bakes to another result */
+/* version of the bake, part of the key of cached media; must be increased if
+ * the same text is baked to another result */
 #define RECIPE UINT64_C(2)
 
 bool stone_file_is_text(const char *argument)
@@ -28,9 +29,11 @@ bool stone_file_is_baked(const char *argument)
 /* Reader state of a text and the files that it names */
 struct source {
     struct glint_stone_text text;
-    double *mask; /* coverage mask, one value per texel, owned */
-    struct glint_float_image rows; /* picture of measured rows; owned pixels */
-    long long held; /* count of values in the rows that were clamped to 0 */
+    double *mask; /* coverage of each texel by the medium, owned */
+    /* measured rows, read from a picture; owned */
+    struct glint_float_image rows;
+    /* number of negative or non-finite values in the rows, set to 0 */
+    long long held;
     uint64_t key;
 };
 
@@ -42,7 +45,8 @@ static void close_medium_source(struct source *s)
 
 /* ------------------------------------------------------------------ reading */
 
-/* Sets MASK to the mean code of IMAGE over each texel, 1 = white. */
+/* Sets MASK[SIDE][SIDE] to the mean code of IMAGE over each texel, 1 =
+ * white. */
 static void reduce_mask_to_texels(const struct glint_image *image, int side,
                                   double *mask)
 {
@@ -140,8 +144,9 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-/* Sets *DB to the PSNR of STONE against ROWS under lamps, shadows and a
- * ramp. Returns GLINT_E_MEMORY if there is no memory. */
+/* Sets *DB to the PSNR of the light that leaves STONE, compared with the light
+ * by ROWS. The test light has lamps, shadows and a ramp. Returns GLINT_E_MEMORY
+ * on failure. */
 static enum glint_status measure_fit_psnr(const struct glint_scatter_rows *rows,
                                           const struct glint_translucent *stone,
                                           double *db)
@@ -206,8 +211,8 @@ static enum glint_status fit_scatter_rows(struct glint_scatter_rows *rows,
     return status;
 }
 
-/* Computes the scatter rows of the medium in S by simulation, or takes them
- * from its measured rows. */
+/* Sets ROWS to the measured rows of the medium in S. If it has none, computes
+ * ROWS by simulation. */
 static enum glint_status compute_scatter_rows(struct source *s,
                                               const struct glint_watch *watch,
                                               struct glint_scatter_rows *rows,
@@ -232,8 +237,8 @@ static enum glint_status bake_medium_source(const struct tool *tool,
                                       .ctx = &progress};
     struct glint_scatter_rows rows = {.side = 0};
     const clock_t began = clock();
-    /* measured fraction of the bake time that precedes the fit: small if the
-     * scatter rows are read from a picture, large if they are simulated */
+    /* Fraction of the bake time before the fit, as measured: small if the rows
+     * are read from a picture, large if they are simulated. */
     const double before = s->rows.rgb ? .05 : .8;
     enum glint_status status;
 
@@ -282,11 +287,11 @@ static void write_cached_medium(const struct tool *tool, char *path,
 
     if (cache_file_write(path, file->data, file->bytes, &error) != GLINT_OK &&
         !tool->quiet)
-        fprintf(stderr, "glint %s: the baked material cannot be cached: %s\n",
+        fprintf(stderr, "glint %s: the baked medium cannot be cached: %s\n",
                 tool->name, error.text);
 }
 
-/* Returns the number of values per channel in the rows of STONE. */
+/* Returns the number of values that the rows of STONE have per channel. */
 static int64_t count_row_values(const struct glint_stone *stone)
 {
     const int64_t side = stone->side, kernel = stone->kernel;
@@ -340,7 +345,8 @@ stone_file_read(const struct tool *tool, const char *path,
     } else if (status == GLINT_OK) {
         status = glint_input_read_whole_file(&data, &file->bytes, path,
                                              MAX_FILE_BYTES, error);
-        file->data = data; /* malloc() aligns the data */
+        /* malloc() has aligned the data, as baked media require */
+        file->data = data;
         if (status == GLINT_OK) {
             struct glint_error cause;
 

@@ -9,9 +9,9 @@
 #include "glint/scene/stone_bake.h"
 #include "options/tool.h"
 
-/* PSNR, dB, of a translucent medium against all of its measured or simulated
- * rows, under lamps, shadows and a ramp: of the fit, and of the baked
- * integers */
+/* PSNR, dB, of the light that leaves a medium, compared with the light by all
+ * its measured or simulated rows: for the fit, and for the baked integers. The
+ * test light has lamps, shadows and a ramp. */
 struct stone_errors {
     double fit_db, baked_db;
     double kernel_loss;
@@ -27,17 +27,18 @@ struct stone_file {
     struct stone_errors errors; /* errors of the bake, if is_baked_now */
 };
 
-/* Return whether ARGUMENT is the text of a translucent medium, or a file
- * that begins with the magic number of baked media. */
+/* stone_file_is_text() returns whether ARGUMENT is the text of a translucent
+ * medium. stone_file_is_baked() returns whether ARGUMENT begins with the magic
+ * number of baked media. */
 bool stone_file_is_text(const char *argument);
 bool stone_file_is_baked(const char *argument);
 
-/* Opens the text or baked file PATH. Rejects PATH, or a file that the text
- * names, if it is the output file of TOOL. OVER, unless NULL, is called to
- * override values of the text. REBAKE: bakes the text even if it is cached.
- * LEFT, unless NULL, is the remaining bake work, see tool_count_bake_work(); a
- * bake costs 8 for each number in its scatter rows. ERROR receives the reason
- * of a failure. */
+/* Opens PATH, a text or a baked file. Rejects PATH, or a file that the text
+ * names, if it is the output file of TOOL. OVER (may be NULL) is called after
+ * the text was read, and may change its values. If REBAKE, a text is baked even
+ * if its medium is cached. LEFT (may be NULL) is the remaining bake work, see
+ * tool_count_bake_work(); the work of a bake is 8 for each number in its rows.
+ * Sets ERROR to the reason of a failure. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,
                 void (*over)(void *ctx, struct glint_stone_text *), void *ctx,

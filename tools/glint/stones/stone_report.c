@@ -6,10 +6,10 @@
 #include "stones/stone_file.h"
 
 struct counts {
-    size_t codes, clusters, taps, all; /* bytes of each section of the baked
-                                        * medium */
-    double each;                       /* bytes per texel, without the kernel
-                                        * coefficients */
+    /* bytes of each section of the baked medium, and of all of it */
+    size_t codes, clusters, taps, all;
+    /* bytes per texel, without the coefficients of the kernels */
+    double each;
 };
 
 static struct counts count_medium_contents(const struct stone_file *file)

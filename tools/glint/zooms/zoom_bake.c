@@ -8,35 +8,38 @@
 #include "zooms/zoom_error.h"
 
 enum {
-    DEPTH = 4, /* max number of times that a step between positions is halved */
-    LAST = 2,  /* length of the smallest step, in places; its middle is not
-                * baked */
-    /* number of places: baked positions, and the middles of the smallest
-     * steps */
+    /* max number of times that the step between two even positions is halved */
+    DEPTH = 4,
+    /* length of the smallest step in places; nothing is baked in its middle */
+    LAST = 2,
+    /* Max number of places. A place is a zoom position where ghosts may be
+     * baked, or the middle of a smallest step, where only errors are
+     * measured. */
     PLACES = 2 * GLINT_MAX_ZOOM_MODELS - 1
 };
 
-/* Margin, dB, by which the error at the measured angles must be below the
- * requested error, as other angles may have larger errors */
+/* Margin, dB. The error at the measured angles must be below the requested
+ * error by this margin, because it may be larger at other angles. */
 #define MARGIN_DB 2
-/* Fraction of the requested error. A ghost whose max error in a step is below
- * it is not measured again when the step is halved. */
+/* If the max error of a ghost in a step is below this fraction of the requested
+ * error, it is not measured again when the step is halved. */
 #define SMALL 1e-3
-/* Shift of the measured angles from one place to the next, as a fraction of
- * their spacing. Its multiples, modulo 1, fill 0 to 1 evenly. */
+/* Shift of the measured angles from a place to the next, as a fraction of the
+ * interval between two angles. Its multiples, modulo 1, are evenly distributed
+ * from 0 to 1. */
 #define GOLDEN 0.6180339887
 
 struct place {
-    struct glint_bake_model model; /* model baked at this zoom position; without
-                                    * data if no ghost is baked here */
+    /* model of the ghosts baked at this place; has no data if there are none */
+    struct glint_bake_model model;
     bool *ghosts; /* whether each ghost is baked at this place, [n_ghosts] */
-    /* total error, in the step that begins here, of the ghosts that are not
-     * baked in its middle */
+    /* For the step that begins here: total error, in its middle, of the ghosts
+     * that are not baked there. */
     struct zoom_error left;
-    /* error of each ghost in the middle of the longer step, of which the step
-     * that begins here is one half */
+    /* error of each ghost in the middle of the previous step of double length,
+     * one half of which is the step that begins here */
     struct zoom_error *before;
-    bool is_half; /* whether that longer step was measured */
+    bool is_half; /* whether the errors BEFORE were measured */
 };
 
 struct run {
@@ -44,10 +47,10 @@ struct run {
     const struct zoom_bake *bake;
     struct zoom_baked *baked;
     struct glint_error *error;
-    struct tool_progress progress;  /* progress of the bake of all positions, or
-                                     * of one added  position */
+    /* progress of baking all even positions, or one position between them */
+    struct tool_progress progress;
     struct glint_prescription lens; /* lens at the present place */
-    /* lens one smallest step before and after the present place */
+    /* lens at one smallest step before and after the present place */
     struct glint_prescription beside[2];
     int n_ghosts, n_places, step;
     double start;
@@ -56,7 +59,7 @@ struct run {
     struct glint_zoom_lens zoom;
 };
 
-/* Sets LENS to the zoom lens of RUN at PLACE. */
+/* Sets LENS to the lens of RUN, zoomed to PLACE. */
 static enum glint_status
 set_lens_to_zoom_position(const struct run *run, int place,
                           struct glint_prescription *lens)
@@ -74,9 +77,10 @@ set_lens_to_zoom_position(const struct run *run, int place,
     return status;
 }
 
-/* Sets run->beside to the lens one smallest step before and after PLACE, and
- * OPTIONS to use both, also for ghosts that need only coarser steps. Not used
- * without added positions, as ghosts at even positions differ too much, nor for
+/* Sets run->beside to the lens at one smallest step before and after PLACE, and
+ * OPTIONS to bake ghosts in agreement with both. Ghosts that need only larger
+ * steps use the same neighbours. Sets none if no positions are added between
+ * the even ones, because ghosts of even positions differ too much, and none for
  * lenses without rotational symmetry. */
 static enum glint_status
 set_neighbour_lenses(struct run *run, int place,
@@ -95,7 +99,7 @@ set_neighbour_lenses(struct run *run, int place,
     return status;
 }
 
-/* Bakes the chosen ghosts at PLACE; WHOLE: all ghosts. */
+/* Bakes at PLACE the ghosts chosen there, or all ghosts if WHOLE. */
 static enum glint_status bake_zoom_position(struct run *run, int place,
                                             bool whole)
 {
@@ -155,9 +159,10 @@ static double compute_max_total_error(const struct run *run)
     return pow(10, -0.1 * (run->bake->halfway_db + MARGIN_DB));
 }
 
-/* Chooses the ghosts to bake at TO so that the error of all others is small
- * enough; chooses none in the smallest step. Sets LEFT to the total error of
- * the others. Returns the number of chosen ghosts. */
+/* Chooses the ghosts to bake at TO: those with the largest errors, until the
+ * total error of all others is small enough. In the smallest step none can be
+ * chosen. Sets LEFT to the total error of the others. Returns the number of
+ * chosen ghosts. */
 static int choose_ghosts_to_bake(struct run *run, struct place *to,
                                  struct zoom_error *left)
 {
@@ -198,8 +203,8 @@ static double find_max_angle_error(const struct zoom_error *error)
     return worst;
 }
 
-/* Prints the PSNR that corresponds to the error LEFT at the present zoom
- * position, and records it if it is the lowest so far. */
+/* Records the PSNR for the error LEFT at the present zoom position if it is the
+ * lowest so far. Prints N_ADDED, the number of ghosts to bake there. */
 static void record_lowest_position_psnr(struct run *run,
                                         const struct zoom_error *left,
                                         int n_added)
@@ -219,9 +224,9 @@ static void record_lowest_position_psnr(struct run *run,
                 n_added == 1 ? "" : "s", tool_clock_s() - run->start);
 }
 
-/* Marks the errors to be measured in the middle of the step from FROM to TO,
- * except those of ghosts with small errors. Returns whether any ghost is baked
- * at both ends. */
+/* Marks which errors to measure in the middle of the step from FROM to TO:
+ * those of ghosts baked at both ends, unless their error was small before.
+ * Returns whether any ghost is baked at both ends. */
 static bool mark_errors_to_measure(struct run *run, int from, int to)
 {
     const struct place *const p = &run->place[from];
@@ -240,8 +245,8 @@ static bool mark_errors_to_measure(struct run *run, int from, int to)
     return any;
 }
 
-/* Stores the errors of all ghosts at MIDDLE, the middle of the step from FROM
- * on, for both halves of the step. */
+/* Stores the errors of all ghosts, measured at MIDDLE of the step that begins
+ * at FROM, for both halves of this step. */
 static void store_ghost_errors(struct run *run, int from, int middle)
 {
     struct place *const p = &run->place[from], *const m = &run->place[middle];
@@ -251,8 +256,8 @@ static void store_ghost_errors(struct run *run, int from, int middle)
     p->is_half = m->is_half = true;
 }
 
-/* Measures the middle of the step that begins at FROM, and bakes there the
- * ghosts that need it. */
+/* Measures the errors in the middle of the step that begins at FROM, and bakes
+ * there the ghosts with large errors. */
 static enum glint_status halve_zoom_step(struct run *run, int from)
 {
     const int middle = from + run->step / 2, to = from + run->step;
@@ -284,8 +289,8 @@ static enum glint_status halve_zoom_step(struct run *run, int from)
     return bake_zoom_position(run, middle, false);
 }
 
-/* Bakes the evenly spaced positions. The total time is estimated from the
- * first. */
+/* Bakes all ghosts at the evenly spaced positions. The first one serves to
+ * estimate the total time. */
 static enum glint_status bake_even_positions(struct run *run)
 {
     struct tool_progress *const p = &run->progress;

@@ -20,12 +20,13 @@
 struct zoom_bake {
     /* zoom lens, as read from its table */
     const struct glint_prescription *lens;
-    /* bake options; ghosts are chosen here */
+    /* bake options; the choice of ghosts in them is ignored */
     const struct glint_bake_options *options;
     /* focus distance, m, and f-number; 0: those of the table */
     double focus_m, f_number;
     int positions; /* number of evenly spaced positions, at least 2 */
-    /* min PSNR half-way between positions, dB; 0: adds no positions */
+    /* min PSNR in the middle between positions, dB; 0: no positions are
+     * added */
     double halfway_db;
 };
 
@@ -35,8 +36,8 @@ struct zoom_baked {
     size_t bytes;
     int n_models; /* number of positions at which any ghost is baked */
     int n_bakes;  /* number of ghosts baked, summed over positions */
-    /* min PSNR of images half-way between positions, dB, and the focal
-     * length at which it occurs, mm; 0: not measured */
+    /* min PSNR in the middle between positions, dB, and the focal length where
+     * it occurs, mm; 0: not measured */
     double least_db, least_mm;
 };
 

@@ -10,38 +10,40 @@
 #include "glint/transfer.h"
 #include "model/picture_check.h"
 
-/* Size of the compared images, pixels: a quarter of the width of 1080p. Offsets
- * of outlines, as fractions of the image, are the same. */
+/* Size of the compared images, pixels; the width is a quarter of that of 1080p.
+ * Errors in the positions of outlines are the same fraction of the image as in
+ * larger images. */
 enum { WIDE = 480, MOST_HIGH = 480 };
 
-/* Max angle of lights: that of BEYOND * half diagonal of the field */
+/* Max angle of lights: where the lens images at BEYOND * half the diagonal of
+ * the field */
 #define BEYOND 1.5
 
-/* Azimuth of lights, degrees, not on a symmetry axis of the film */
+/* azimuth of lights, degrees; not on a symmetry axis of the film */
 #define AZIMUTH_DEG 33
 
-/* Wavelength of all images, nm; three wavelengths would take twice as long.
- * Near the middle of the visible band coatings leave ghosts too faint to
- * measure. */
+/* Wavelength of all images, nm. Three wavelengths would take twice as long.
+ * Near the middle of the visible band coatings make ghosts too faint to be
+ * measured. */
 #define WAVE_NM 450
 
-/* Min linear light of a visible ghost, 1 = white: a third of the first code */
+/* min linear light of a visible ghost, 1 = white; a third of that of code 1 */
 #define FAINT 1e-4
 
 enum { EACH = 4 }; /* the first pass measures every EACH-th angle */
 
-/* State of a ghost at an angle, as bits. */
+/* State of a ghost at an angle, as bits */
 enum {
     MEASURED = 1,
-    IN_MODEL = 2, /* visible in the image by the model */
-    IN_EXACT = 4, /* visible in the image by exact rays */
-    IN_RANGE = 8, /* the model has rays of the ghost, visible or not */
+    IN_MODEL = 2, /* the ghost is visible in the image by the model */
+    IN_EXACT = 4, /* the ghost is visible in the image by exact rays */
+    IN_RANGE = 8, /* the model has rays of the ghost, which may be invisible */
     WANTED = 16   /* the angle must be measured in the present pass */
 };
 enum { SEEN = IN_MODEL | IN_EXACT };
 
-/* Data shared by all jobs; each angle is one job, as its frames are too small
- * to be split */
+/* Data that all jobs use. The job for each angle is done by one thread, because
+ * its frames are too small to be divided. */
 struct measuring {
     const struct glint_setup *setup;
     const struct glint_zoom_lens *zoom;
@@ -49,8 +51,8 @@ struct measuring {
     double max_deg, shift;
     int n;
     struct zoom_error *error;
-    unsigned char (*known)[ZOOM_ANGLES]; /* states of each ghost at each angle,
-                                            [n][ZOOM_ANGLES] */
+    /* bits for each ghost at each angle, [n][ZOOM_ANGLES] */
+    unsigned char (*known)[ZOOM_ANGLES];
     enum glint_status status[ZOOM_ANGLES];
 };
 
@@ -62,17 +64,18 @@ static double compute_field_angle_deg(const struct measuring *m, int angle)
 
 /* ----------------------------------------------------------------- pictures */
 
-/* Images of one light: all ghosts by the zoom model, and one ghost by the
- * model and by exact rays; grey, as there is one wavelength. */
+/* Images of one light: ALL by the zoom model with all ghosts, MIXED by the zoom
+ * model with one ghost, TRACED by exact rays with this ghost. They are grey,
+ * because there is one wavelength. */
 struct pictures {
     struct picture_pair by;
     struct glint_float_image all, mixed, traced;
     double exposure;
 };
 
-/* Sets ERROR to the mean squared error of the whole image if only this ghost
- * were interpolated and all others exact. Returns the images in which the
- * ghost is visible. */
+/* Sets ERROR to the mean squared error that the image would have if only this
+ * ghost came from the interpolated model and all others were exact. Returns the
+ * bits of the images in which the ghost is visible. */
 static int compute_image_error_of_ghost(const struct pictures *p, double *error)
 {
     const size_t n = (size_t)p->all.width * (size_t)p->all.height;
@@ -176,7 +179,8 @@ static void measure_ghosts_at_angle_of_job(void *ctx, int angle, int worker)
 
 /* ------------------------------------------------------------------- angles */
 
-/* Records the angles at which the model has rays of the requested ghosts. */
+/* Sets IN_RANGE for the requested ghosts at each angle where the model has rays
+ * of them. */
 static bool find_ghost_angle_ranges(struct measuring *m)
 {
     struct glint_transfer *const transfer = malloc(sizeof *transfer);
@@ -197,9 +201,10 @@ static bool find_ghost_angle_ranges(struct measuring *m)
     return has_room;
 }
 
-/* Returns whether a ghost with the states KNOWN must be measured at ANGLE,
- * which lies between two measured angles: it is visible at only one of them or
- * in only one image, or has rays at ANGLE but at neither of them. */
+/* Returns whether to measure a ghost with the states KNOWN at ANGLE, which lies
+ * between two measured angles. It is measured if it is visible at only one of
+ * these, or in only one of the two images. It is also measured if it has rays
+ * at ANGLE but at neither of these. */
 static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
                                   int angle, int step)
 {
@@ -213,8 +218,8 @@ static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
            (known[angle] & ~(before | after) & IN_RANGE);
 }
 
-/* Marks each STEP-th angle of the requested ghosts as wanted; between
- * measured angles only those of is_measurement_wanted(). */
+/* Marks every STEP-th angle of the requested ghosts as wanted. If the angle
+ * lies between two measured ones, is_measurement_wanted() decides. */
 static void mark_angles_to_measure(struct measuring *m, int step)
 {
     for (int g = 0; g < m->n; g++)
@@ -225,7 +230,7 @@ static void mark_angles_to_measure(struct measuring *m, int step)
                 m->known[g][a] |= WANTED;
 }
 
-/* Interpolates the entries of ERROR that KNOWN does not mark as measured. */
+/* Interpolates ERROR at the angles that KNOWN does not mark as measured. */
 static void interpolate_angle_errors(const unsigned char known[ZOOM_ANGLES],
                                      struct zoom_error *error)
 {
@@ -246,8 +251,8 @@ static void interpolate_angle_errors(const unsigned char known[ZOOM_ANGLES],
     }
 }
 
-/* Returns the max angle of lights to measure with LENS, at most MAX_DEG,
- * degrees. */
+/* Returns the max angle, degrees, of lights to measure with LENS, at most
+ * MAX_DEG. */
 static double find_max_measured_angle_deg(const struct glint_prescription *lens,
                                           double max_deg)
 {
@@ -260,7 +265,8 @@ static double find_max_measured_angle_deg(const struct glint_prescription *lens,
                              atan(corner_mm / fabs(optics.focal_mm)));
 }
 
-/* Measures angles in passes, each with half the spacing of the previous one. */
+/* Measures the errors in passes. Each pass halves the interval between
+ * angles. */
 static enum glint_status measure_all_angles(struct measuring *m,
                                             struct glint_workers *workers)
 {

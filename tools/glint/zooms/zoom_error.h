@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Measures the error of a zoom lens's model between positions, per ghost, in
- * images.
+ * Measures, for each ghost, the error of a zoom lens's model at a position
+ * between the baked ones.
  *
  * Input: a zoom model set to some position, and the table zoomed to the same
  * position. Output: for each ghost and for lights at several angles, the mean
@@ -22,12 +22,12 @@ struct zoom_error {
     double of[ZOOM_ANGLES];
 };
 
-/* Measures those ghosts whose first error is below 0 among the N entries of
- * ERROR, one per ghost. Lights are at angles up to 1.5 times the half
- * diagonal of the field of LENS, at most MAX_DEG. SHIFT, 0 to 1, is the
- * position of each light within its interval of angles. Every fourth angle
- * is measured, others only near angles where a ghost appears or vanishes;
- * the rest are interpolated. */
+/* Measures the ghosts whose first error in ERROR[N], an entry for each ghost,
+ * is below 0. Lights are at angles up to that of 1.5 times the half diagonal of
+ * the field of LENS, at most MAX_DEG. SHIFT, 0 .. 1, is the position of each
+ * light within its interval of angles. Every fourth angle is measured. Other
+ * angles are measured only near those where a ghost appears or vanishes, and
+ * are otherwise interpolated. */
 enum glint_status zoom_error_measure_ghosts(
     const struct tool *tool, const struct glint_prescription *lens,
     const struct glint_zoom_lens *zoom, double max_deg, double shift, int n,
