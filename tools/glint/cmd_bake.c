@@ -165,8 +165,9 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-/* Prints why --strict does not write the model: its pictures at WHERE have only
- * PSNR_DB against exact rays, less than LEAST_DB. Returns an exit code. */
+/* Prints an error: --strict rejects the model, because its images WHERE have a
+ * PSNR of PSNR_DB against exact ray tracing, below LEAST_DB. Returns an exit
+ * code. */
 static int reject_inaccurate_model(const struct tool *tool, double psnr_db,
                                    double least_db, const char *where,
                                    const char *remedy)
@@ -174,14 +175,15 @@ static int reject_inaccurate_model(const struct tool *tool, double psnr_db,
     char text[200];
 
     snprintf(text, sizeof text,
-             "--strict: not written: %.1f dB against exact rays %s, less than "
-             "%g; %s",
+             "--strict: the model is not written, since its PSNR against exact "
+             "rays is %.1f dB %s, below %g dB; %s",
              psnr_db, where, least_db, remedy);
     return tool_fail(tool, GLINT_E_LENS, text);
 }
 
-/* Compares pictures of MODEL with exact rays. Returns an exit code: not 0 if
- * they are less accurate than --strict accepts, or on failure. */
+/* Compares images by MODEL with images by exact rays. Returns EXIT_OK if the
+ * PSNR is at least PICTURE_CHECK_DB, else an exit code after printing the
+ * reason. */
 static int check_accuracy_for_strict(const struct tool *tool,
                                      const struct bake *b,
                                      const struct glint_prescription *lens,
@@ -203,8 +205,8 @@ static int check_accuracy_for_strict(const struct tool *tool,
                                    where, "try a smaller --tolerance");
 }
 
-/* Compares pictures of MODEL, which is written, with exact rays for the report.
- * Prints a warning on failure. */
+/* Compares images by MODEL, whose file is already written, with images by exact
+ * rays, for the report. Prints a warning on failure. */
 static void measure_accuracy_for_report(const struct tool *tool,
                                         const struct bake *b,
                                         const struct glint_prescription *lens,
@@ -224,8 +226,8 @@ static void measure_accuracy_for_report(const struct tool *tool,
             b->output, error.text[0] ? error.text : glint_status_text(status));
 }
 
-/* Checks MODEL[BYTES], which took SECONDS to bake, writes it to OUT, which it
- * commits or aborts, and reports. Returns an exit code. */
+/* Checks MODEL[BYTES], commits it to OUT and prints a report. Aborts OUT if a
+ * check fails. SECONDS is the time of the bake. Returns an exit code. */
 static int write_model(struct glint_output *out, const struct tool *tool,
                        const struct bake *b,
                        const struct glint_prescription *lens,
@@ -312,8 +314,8 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
     }
     if (tool->quiet)
         return;
-    printf("%d zoom positions and single ghosts at %d positions between them, "
-           "%zu bytes, %.0f s\n",
+    printf("%d zoom positions with all ghosts, %d between them with single "
+           "ghosts, %zu bytes, %.0f s\n",
            b->positions, baked->n_models - b->positions, baked->bytes, seconds);
     if (baked->least_db > 0)
         printf("min PSNR halfway between positions, against exact pictures: "
@@ -324,8 +326,8 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
                b->halfway_db);
 }
 
-/* Bakes LENS at all zoom positions into OUT. LENS must be as read, at its
- * default position. Returns an exit code. */
+/* Bakes LENS at all zoom positions into OUT. LENS must be at the default
+ * position of its table. Returns an exit code. */
 static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
                                struct bake *b,
                                const struct glint_prescription *lens)
@@ -417,7 +419,8 @@ static int bake_lens(struct tool *tool, int argc, char **argv)
     return code;
 }
 
-/* Calls the bake command for the type of the first input that is not a lens. */
+/* Runs the bake command of scenes, environments, motions or translucent media
+ * if an input has that type, else that of lenses. */
 static int bake_by_file_type(struct tool *tool, int argc, char **argv)
 {
     static const struct {

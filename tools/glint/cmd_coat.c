@@ -45,11 +45,12 @@ static const double band_nm[2] = {380, 780};
 
 struct coat {
     const char *output;
-    int surface; /* surface of the lens, from 0; -1: a coating without a lens */
+    /* index of the coated surface, 0 is the front; -1: no lens given */
+    int surface;
     struct coating on_lens;
     double glass[2]; /* nd and Vd of the glass below the coating */
     struct glint_coating coating;
-    char name[MAX_TEXT]; /* coating or lens, for titles */
+    char name[MAX_TEXT]; /* name of the coating or lens, for plot titles */
 };
 
 /* Reflectances, 0 .. 1, of s and p polarised light, and their mean. */
@@ -118,11 +119,12 @@ static void print_reflectance_json(const struct coat *c)
 
 /* ------------------------------------------------------------------- plots */
 
-/* A curve in a panel: reflectance in percent as a function of X. */
+/* A curve of a plot: reflectance in percent over wavelength or angle. */
 struct curve {
     const struct coat *c;
-    double fixed; /* constant of the curve: angle, degrees, or wavelength, nm */
-    int kind;     /* 0: mean by wavelength; 1: s, 2: p polarisation by angle */
+    double fixed; /* the constant: angle, degrees (KIND 0), or wavelength, nm */
+    /* 0: mean polarisation over wavelength; 1: s, 2: p over angle */
+    int kind;
     double lo, hi;
 };
 
@@ -298,7 +300,8 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         c->coating = s->coating;
         snprintf(c->name, sizeof c->name, "%.60s, surface %d", lens->name,
                  c->surface);
-        /* with air behind surface K, the coated glass lies in front of it */
+        /* If surface K has air behind it, the coated glass is the one in front
+         * of it. */
         if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)

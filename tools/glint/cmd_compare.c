@@ -40,8 +40,8 @@ static const char help_end[] = COMMON_HELP;
 struct asked {
     const char *name[2];
     bool fit;
-    /* has_ev: --exposure is a number of stops; is_auto: it is "auto". If both
-     * are false, the image types decide. */
+    /* has_ev: whether --exposure is a number of stops; is_auto: whether it is
+     * "auto". If both are false, the image types determine the exposure. */
     bool has_ev, is_auto;
     double ev;
 };

@@ -226,7 +226,7 @@ static int print_motion_info(const struct tool *tool, const char *path,
 }
 
 struct asked {
-    double f_number; /* 0: f-number of the table */
+    double f_number; /* --f-number; 0: that of the table */
     struct coating coating;
     struct zoom_option zoom;
     const char *poses; /* --poses: file for the poses of a motion; NULL: none */
@@ -285,9 +285,9 @@ static int print_medium_info(const struct tool *tool, const char *path)
     return EXIT_OK;
 }
 
-/* Prints PATH if it is a model, scene, environment, medium or motion. STOP:
- * lens options were given, which is an error for such files. Returns an exit
- * code, or -1 if PATH is a lens. */
+/* Prints the contents of PATH if it is a model, scene, environment, medium or
+ * motion. STOP: whether lens options were given, which these files do not
+ * allow. Returns an exit code, or -1 if PATH is a lens. */
 static int print_file_that_is_not_lens(const struct tool *tool,
                                        const char *path, bool stop,
                                        const char *poses)

@@ -63,9 +63,10 @@ struct lenses {
     const char *folder; /* folder to write models to; NULL: none */
     const char *only[MAX_ONLY];
     int n_only, n, code;
-    bool names; /* --names: print names only */
-    bool exact; /* --rays exact: draw flares of lenses without a model by exact
-                   rays */
+    bool names; /* --names: whether only names are printed */
+    /* --rays exact: whether flares of lenses without a model are drawn by exact
+     * rays */
+    bool exact;
     char **words;
     int n_words;
     const char *html; /* HTML page to write, or NULL */
@@ -86,8 +87,8 @@ struct entry {
     bool is_baked;
 };
 
-/* Sets SETTINGS to the defaults of overlay, live and explain, or to those of
- * render if PLAIN. */
+/* Sets SETTINGS to the defaults of glint render if PLAIN, else to those of
+ * glint overlay, live and explain. */
 static void set_default_settings(struct settings *settings, bool plain)
 {
     if (plain)
@@ -115,8 +116,8 @@ static int load_lens_entry(const struct tool *tool, const char *name,
 
 /* ------------------------------------------------------------------ tables */
 
-/* Half field of view, degrees, above which the corner angle is computed by the
- * lens's projection (85 chief rays) instead of a pinhole */
+/* Max half field of view, degrees, for which the corner angle is that of a
+ * pinhole camera. For wider lenses 85 chief rays are traced. */
 #define WIDE_DEG 40.0
 /* max angle of a light that can be drawn, degrees */
 #define WIDEST_DEG 89.9
@@ -186,7 +187,8 @@ static void set_thumbnail_settings(struct settings *settings,
     settings_set_quality(settings, 0.25);
 }
 
-/* Writes thumbnails of the flare if the lens has a model or rays are exact. */
+/* Writes thumbnails of the flare of E, or a note if E has no model and --rays
+ * exact is not given. */
 static void write_flare_thumbnails(struct lenses *l, const char *name,
                                    const struct entry *e)
 {
@@ -264,8 +266,8 @@ static int save_model_to_folder(const struct tool *tool, const char *path,
                           model->bytes);
 }
 
-/* Copies the cached model of E to the folder, or bakes it, unless the folder
- * already has it. Returns an exit code. */
+/* Writes the model of E to the folder, from the cache or by a bake. Does
+ * nothing if the folder already contains it. Returns an exit code. */
 static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->table, &e->options);
@@ -306,9 +308,8 @@ static bool print_lens_name(struct lenses *l, const char *name)
     return true;
 }
 
-/* Lists lens NAME, or writes its model to the folder. Returns whether to
- * continue with the next lens; an error in a table is printed and does not end
- * the list. */
+/* Lists lens NAME, or writes its model to the folder. Returns false to end the
+ * list. An error in a table is printed, and the list continues. */
 static bool list_lens(void *ctx, const char *name)
 {
     struct lenses *l = ctx;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint lint: finds misprinted numbers in a lens table: single changes after
- * which the table has its stated focal length and back focus.
+ * glint lint: finds misprinted numbers in a lens table. It tries changes of a
+ * single number and lists those by which the lens gets the focal length and
+ * back focus that the table states.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -15,25 +16,25 @@
 enum slip { SLIP_SIGN, SLIP_SWAP, SLIP_DIGIT, SLIP_POINT };
 
 struct mend {
-    int line, column; /* position of the number in the file */
+    int line, column; /* position of the number in the file, from 1 */
     enum slip slip;
     char from[24], to[24];
     /* focal length and back focal length with the corrected number, mm */
     double focal_mm, back_mm;
-    /* whether the corrected glass is in the catalogue or used by another
-     * surface */
+    /* whether the catalogue or another surface of the table has the corrected
+     * glass */
     bool listed;
-    /* relative difference of focal length and back focus from the stated
-     * values */
+    /* relative difference of the focal length or back focus from its stated
+     * value, the larger of both */
     double off;
 };
 
 enum { MENDS = 8, LENS_TEXT = 1 << 16 };
 
-/* Limits of the map of glasses: min and max Vd for an index nd. They follow
- * fluorite, fluor crowns, lanthanum crowns and the densest glasses, and the
- * flints with and without lead, widened by twice a label's width on the makers'
- * maps. */
+/* Range of Vd that glasses of index nd have, by the makers' glass maps. The
+ * lower limit follows flints with and without lead, the upper one fluorite,
+ * fluor crowns, lanthanum crowns and the densest glasses. Both are widened by
+ * twice the width of a label on the maps. */
 static const struct {
     double nd, least, most;
 } ends[] = {{1.42, 60.0, 97.5}, {1.45, 56.0, 96.0}, {1.50, 48.0, 84.0},
@@ -44,9 +45,9 @@ static const struct {
 
 enum { N_ENDS = sizeof ends / sizeof *ends };
 
-/* Plastics of phone lenses have a lower Vd than flints of the same nd: from
- * (nd 1.529, Vd 45.4) over polycarbonate (1.585, 29.9) to the densest
- * (1.705, 14.0). */
+/* Returns whether ND and VD are those of a plastic of phone lenses. Plastics
+ * have a lower Vd than flints of the same nd, from 45.4 at nd 1.529 through
+ * polycarbonate (29.9 at 1.585) to 14.0 at 1.705. */
 static bool is_plastic(double nd, double vd)
 {
     const double slope = nd < 1.585 ? 270 : 125;
@@ -56,9 +57,9 @@ static bool is_plastic(double nd, double vd)
            vd <= fmax(least + 6.5, 35);
 }
 
-/* Returns whether a glass with nd and Vd can exist, between fluoride crowns and
- * flints. MOULDED: plastics are allowed, too. */
-static bool is_plausible_glass(double nd, double vd, bool moulded)
+/* Returns whether a glass with ND and VD can exist, according to ENDS. If
+ * MOULDED, plastics count, too. */
+static bool is_glass_possible(double nd, double vd, bool moulded)
 {
     int k = 0;
     double part;
@@ -74,9 +75,9 @@ static bool is_plausible_glass(double nd, double vd, bool moulded)
            vd <= ends[k].most + part * (ends[k + 1].most - ends[k].most);
 }
 
-/* Returns whether the glass behind surface K of LENS is in the catalogue, or is
- * also behind another surface and so is no misprint. */
-static bool is_glass_plausible(const struct glint_prescription *lens, int k)
+/* Returns whether the glass behind surface K of LENS is in the catalogue or
+ * also behind another surface. A misprint would hardly occur twice. */
+static bool is_glass_confirmed(const struct glint_prescription *lens, int k)
 {
     const struct glint_surface *s = &lens->surface[k];
     const struct glint_glass *glass;
@@ -99,8 +100,9 @@ static bool is_glass_plausible(const struct glint_prescription *lens, int k)
     return false;
 }
 
-/* Returns whether the element behind surface S, which must not be the last one,
- * has an aspheric side and so is moulded. */
+/* Returns whether the element between surface S and the next one has an
+ * aspheric surface, so that it must be moulded. S must not be the last
+ * surface. */
 static bool is_element_moulded(const struct glint_surface *s)
 {
     return glint_surface_is_shaped(&s[0]) || glint_surface_is_shaped(&s[1]);
@@ -113,9 +115,10 @@ static bool is_index_precise(double nd)
     return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
 }
 
-/* Returns the first surface of LENS whose glass does not exist, or has the
- * nd (four decimals or more) of another glass in the table but a different
- * Vd; -1 if there is none. Writes the reason to TEXT[BYTES]. */
+/* Returns the first surface of LENS whose nd or Vd is suspect, or -1, and
+ * writes the reason to TEXT[BYTES]. They are suspect if no glass has both, or
+ * if an earlier surface has the same nd, to four decimals or more, with another
+ * Vd. */
 static int find_suspect_glass(const struct glint_prescription *lens, char *text,
                               size_t bytes)
 {
@@ -124,7 +127,7 @@ static int find_suspect_glass(const struct glint_prescription *lens, char *text,
 
         if (!(s->vd > 0))
             continue;
-        if (!is_plausible_glass(s->nd, s->vd, is_element_moulded(s))) {
+        if (!is_glass_possible(s->nd, s->vd, is_element_moulded(s))) {
             snprintf(text, bytes, "no glass has nd %.6g and Vd %.4g", s->nd,
                      s->vd);
             return k;
@@ -148,8 +151,8 @@ struct search {
     size_t at, length; /* offset and length of the number in TEXT, bytes */
     int line, column;
     int surface; /* index of the surface defined by the line; -1: the stop */
-    /* index of the surface whose glass is the only error; -1: there are other
-     * errors */
+    /* index of the surface if its glass is the only error of the table, else
+     * -1 */
     int glass;
     struct mend *mend;
     int n;
@@ -179,9 +182,9 @@ static double compute_relative_deviation(double got, double stated)
     return stated > 0 ? fabs(got / stated - 1) : 0;
 }
 
-/* Returns whether correction A is likelier than B. Criteria in this order: an
- * existing glass; a sign or swapped digits before a wrong digit; the smaller
- * difference from the stated values. */
+/* Returns whether correction A is likelier than B. Known glasses rank first,
+ * then signs and swapped digits, then the smaller difference from the stated
+ * values. */
 static bool is_correction_likelier(const struct mend *a, const struct mend *b)
 {
     const bool first = a->slip <= SLIP_SWAP, second = b->slip <= SLIP_SWAP;
@@ -203,8 +206,8 @@ static void insert_correction(struct search *s, const struct mend *found)
         s->mend[k] = *found;
 }
 
-/* Replaces the current number by NUMBER and records the correction if the table
- * becomes consistent. */
+/* Replaces the current number by NUMBER. Records this correction if the table
+ * then has no errors. */
 static void try_replacement_number(struct search *s, const char *number,
                                    enum slip slip)
 {
@@ -226,7 +229,7 @@ static void try_replacement_number(struct search *s, const char *number,
     glint_optics_of(&lens, &optics);
     memcpy(found.from, s->text + s->at, s->length);
     memcpy(found.to, number, n);
-    found.listed = s->glass >= 0 && is_glass_plausible(&lens, s->glass);
+    found.listed = s->glass >= 0 && is_glass_confirmed(&lens, s->glass);
     found.focal_mm = optics.focal_mm;
     found.back_mm = optics.back_focal_mm;
     found.off = fmax(
@@ -322,10 +325,11 @@ static void try_misprints_of_line(struct search *s, size_t start, size_t end)
     }
 }
 
-/* Tries all misprints of one number of the surfaces and the stop: a sign,
- * two swapped digits, a wrong digit, the decimal point. If a glass is the
- * only error, tries only its nd and Vd. Fills MEND with those that make TEXT
- * correct, the likeliest first, at most MENDS; returns their total number. */
+/* Tries all misprints of each number of the surfaces and the stop: a sign, two
+ * swapped digits, a wrong digit, the decimal point. If a glass is the only
+ * error, tries only its nd and Vd. Stores in MEND up to MENDS corrections,
+ * likeliest first, that leave TEXT without errors. Returns the number of all
+ * such corrections. */
 static int find_corrections(const char *text, size_t bytes,
                             struct mend mend[MENDS])
 {
@@ -359,7 +363,8 @@ static int find_corrections(const char *text, size_t bytes,
         }
         at = end + 1;
     }
-    s.mend = NULL; /* the list of corrections belongs to the caller */
+    /* S is static and must not keep a pointer to the caller's array. */
+    s.mend = NULL;
     return s.n;
 }
 
@@ -401,7 +406,8 @@ static void print_lint_text(const char *file, const char *wrong,
     if (n == 0)
         puts("no correction of a single number makes the table consistent");
     for (int k = 0; k < n && k < MENDS; k++)
-        printf("%s:%d:%d: %s for %s? (%s; then f = %.3f mm, back focus %.3f "
+        printf("%s:%d:%d: %s instead of %s? (%s; then f = %.3f mm, back focus "
+               "%.3f "
                "mm)\n",
                file, mend[k].line, mend[k].column, mend[k].to, mend[k].from,
                get_misprint_name(mend[k].slip), mend[k].focal_mm,

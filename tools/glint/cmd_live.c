@@ -28,7 +28,7 @@ static const char help[] =
     "  --list-formats      list the formats of the camera\n"
     "Camera\n"
     "  -s, --size WxH      (default: as the camera is set)\n"
-    "  -r, --fps N[/D]     (default: likewise)\n"
+    "  -r, --fps N[/D]     (default: as the camera is set)\n"
     "  -f, --format NAME   YUYV, NV12 ...; default: the cheapest\n"
     "  -i, --input N       input of a camera with several\n"
     "  -n, --buffers N     2 to 32 (default 4)\n"
@@ -114,8 +114,8 @@ struct line {
     struct tool *tool;
     int argc;
     char **argv;
-    struct config config, again; /* configuration read at the start, and that of
-                                    the last reload */
+    /* configuration files read at the start, and by the last reload */
+    struct config config, again;
     struct live_options *into;
 };
 
@@ -359,7 +359,7 @@ static int reread_options(void *ctx, struct tool *tool,
     struct line *line = ctx;
 
     (void)tool;
-    /* Every drawing that used strings of AGAIN is closed by now. */
+    /* The drawings that used the strings of AGAIN are closed already. */
     config_free(&line->again);
     return parse_options(line, &line->again, into);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint sweep: measures time and error by quality parameter, single and
- * combined.
+ * glint sweep: measures time and error of frames as functions of the quality
+ * parameters, varied one by one and together.
  */
 #include <errno.h>
 #include <limits.h>
@@ -56,8 +56,8 @@ struct asked {
     int n_lights, lights[MAX_LIST];
     int n_angles;
     double angle[MAX_LIST];
-    bool plain; /* whether --size, --lights, --angle and --small are all missing
-                 */
+    /* whether none of --size, --lights, --angle, --small was given */
+    bool plain;
 };
 
 /* ------------------------------------------------------------------- cases */
@@ -68,9 +68,9 @@ static void add_sweep_case(struct sweep *s, struct sweep_case c)
         s->scase[s->n_cases++] = c;
 }
 
-/* For the first lens adds cases with a smaller image: one light, and 16 lights
- * that can merge. The image is smaller because the time of exact images grows
- * with the number of lights. */
+/* Adds cases with a small image for the first lens: one with a single light,
+ * and one with 16 lights that can merge. Exact images of 16 lights at full size
+ * would take too long. */
 static void add_smaller_cases(struct sweep *s)
 {
     const struct sweep_case c = {
@@ -175,9 +175,9 @@ static int run_sweep(struct sweep *s, const struct asked *a)
 
     for (int i = 0; i < s->n_lenses; i++)
         if (tool_is_model(s->lens[i]))
-            return tool_usage(s->tool,
-                              "%s is a model: exact pictures need the table",
-                              s->lens[i]);
+            return tool_usage(
+                s->tool, "%s is a model: exact pictures need the lens table",
+                s->lens[i]);
     if (mkdir(a->folder, 0777) != 0 && errno != EEXIST) {
         fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
         return EXIT_OUTPUT;

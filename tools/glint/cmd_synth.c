@@ -27,7 +27,7 @@
 
 enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 
-/* A file that every item has */
+/* A file that the set contains for each item */
 struct synth_file {
     const char *folder,
         /* folder and beginning of the file name, before the item number */
@@ -179,8 +179,8 @@ static int check_folder_contains_no_set(const struct tool *tool,
         set->folder, path);
 }
 
-/* Rejects a count below the number of items in SET. A set never shrinks, as
- * its manifest would be wrong. */
+/* Rejects a count that would omit existing items of SET from its manifest.
+ * Returns an exit code. */
 static int check_item_count(const struct tool *tool,
                             const struct synth_set *set)
 {
@@ -200,7 +200,8 @@ static int check_item_count(const struct tool *tool,
     }
     if (dir)
         closedir(dir);
-    if (set->count == 0 || last < set->count) /* a count of 0 draws nothing */
+    /* With a count of 0 no items are drawn. */
+    if (set->count == 0 || last < set->count)
         return EXIT_OK;
     return tool_usage(tool,
                       "%s has items up to %ld, and --count %d would leave some "
@@ -208,9 +209,9 @@ static int check_item_count(const struct tool *tool,
                       set->folder, last, set->count, last + 1);
 }
 
-/* Creates the folders of SET. SETTINGS: JSON line with the settings of all
- * items. Returns an exit code: EXIT_USAGE if the folder has other settings or
- * items beyond SET's count. */
+/* Creates the folders of SET. SETTINGS is a JSON line with the settings of all
+ * items. Returns an exit code: EXIT_USAGE if the folder contains a set with
+ * other settings, or with more items than SET's count. */
 static int open_item_set(const struct tool *tool, const struct synth_set *set,
                          const char *settings)
 {
@@ -242,7 +243,7 @@ static int open_item_set(const struct tool *tool, const struct synth_set *set,
                                 set->folder, path);
 }
 
-/* Writes SETTINGS to synth.json after they were validated. */
+/* Writes SETTINGS, which must be valid, to synth.json. */
 static int write_set_settings(const struct tool *tool,
                               const struct synth_set *set, const char *settings)
 {
@@ -340,7 +341,7 @@ static int write_item_files(const struct tool *tool,
 
 /* ---------------------------------------------------------------- manifests */
 
-/* Appends the file PATH to OUT. */
+/* Appends the contents of the file PATH to OUT. */
 static enum glint_status append_file_to_stream(struct glint_output *out,
                                                const char *path,
                                                struct glint_error *error)
@@ -361,8 +362,9 @@ static enum glint_status append_file_to_stream(struct glint_output *out,
     return status;
 }
 
-/* Writes the descriptions of items FIRST, FIRST + STEP, ... to the file NAME.
- * If an item is missing, writes nothing and sets *IS_WHOLE to false. */
+/* Writes the descriptions of items FIRST, FIRST + STEP, ... to the file NAME
+ * and sets *IS_WHOLE to true. If an item is missing, writes nothing and sets
+ * *IS_WHOLE to false. */
 static int write_item_descriptions(const struct tool *tool,
                                    const struct synth_set *set,
                                    const char *name, int first, int step,
@@ -404,15 +406,15 @@ static void remove_shard_manifests(const struct synth_set *set)
         closedir(dir);
 }
 
-/* Writes the shard's manifest if all its items exist. If all items of the set
- * exist, writes the set's manifest and removes those of the shards, and sets
- * *IS_WHOLE to true. Returns an exit code. */
+/* Writes the manifest of this shard if all items of the shard exist. If all
+ * items of the set exist, replaces the manifests of all shards by that of the
+ * set and sets *IS_WHOLE to true. Returns an exit code. */
 static int write_shard_manifest(const struct tool *tool,
                                 const struct synth_set *set, bool *is_whole)
 {
     char name[64];
     bool is_done = true;
-    /* check again, as another process may have drawn more items */
+    /* Another process may have drawn more items since the first check. */
     int code = check_item_count(tool, set);
 
     *is_whole = false;
@@ -522,7 +524,7 @@ struct synth {
     struct synth_lenses lenses;
     int n_lenses;
     char lens[SYNTH_MAX_LENSES][64];
-    struct synth_item all; /* values that all items share */
+    struct synth_item all; /* settings that are the same for all items */
     struct synth_drawing drawing;
     const char *line;
 };

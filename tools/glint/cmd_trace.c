@@ -37,18 +37,19 @@ static const char help[] =
     "                   in wide lenses a small fraction of the front element\n"
     "  --model MODEL    trace the rays by MODEL, baked from LENS, with the "
     "integers\n"
-    "                   of render and overlay. Status 1: outside the box and "
+    "                   of render and overlay. Status 1: the ray is outside "
     "the\n"
-    "                   angles of the ghost; rel_radius is that of the "
-    "limiting\n"
-    "                   barrels, 0 without any\n" ZOOM_HELP COATING_HELP;
+    "                   pupil or the angles of the ghost in MODEL; rel_radius\n"
+    "                   is that of the limiting barrels, 0 without "
+    "any\n" ZOOM_HELP COATING_HELP;
 
 struct options {
     const char *model;
     struct coating coating;
     struct zoom_option zoom;
     int ghost, grid;
-    bool pupil; /* the grid spans only the entrance pupil */
+    /* whether the grid covers only the entrance pupil, not the front element */
+    bool pupil;
     double angle_deg, wavelength_nm;
 };
 
@@ -105,16 +106,16 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* ----------------------------------------------------------------- by rays */
 
-/* Traces rays from (PX, PY) on the vertex plane of the front element to the
- * sensor, exactly or by a model. */
+/* Traces rays that start at (PX_MM, PY_MM) in the vertex plane of the front
+ * element to the sensor, exactly or by a model. */
 struct tracer {
     enum glint_ray_status (*trace)(const struct tracer *t, double px_mm,
                                    double py_mm, struct glint_ray *ray);
     double angle_deg;
-    /* surfaces that an exact ray meets, in this order */
+    /* surfaces that an exact ray passes or is reflected at, in this order */
     struct glint_path path;
-    /* Parts of the ghost's pupil for which the model has polynomials at this
-     * angle, allocated */
+    /* parts of the ghost's pupil for which the model has polynomials at this
+     * angle */
     struct glint_transfer *part;
     int n_parts;
     double stop_radius_mm;
@@ -151,8 +152,8 @@ static double compute_relative_stop_radius(const struct glint_transfer *t,
     return most;
 }
 
-/* Sets (U, V) to the coordinates of a ray in the bounding box of pupil part T,
- * -1 .. 1. Returns whether the ray lies in that part. */
+/* Sets (U, V) to the coordinates of a ray relative to the bounding box of pupil
+ * part T, which is -1 .. 1. Returns whether the ray is in the part. */
 static bool is_ray_in_pupil_box(const struct glint_transfer *t, double px_mm,
                                 double py_mm, double *u, double *v)
 {
@@ -164,9 +165,9 @@ static bool is_ray_in_pupil_box(const struct glint_transfer *t, double px_mm,
            fabs(*v) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Sets SIDE to the signs of x and y by which the ray is mirrored into pupil
- * part T: models of round lenses store angles and y >= 0 only, models of other
- * lenses only lights on one side of a symmetry plane. */
+/* Sets SIDE to the signs, 1 or -1, that mirror x and y of a ray into pupil part
+ * T. Models of round lenses store only angles >= 0 and rays with y >= 0. Models
+ * of other lenses store only lights on one side of a symmetry plane. */
 static void find_pupil_signs(const struct glint_transfer *t, double angle_deg,
                              double py_mm, double side[2])
 {
@@ -174,7 +175,6 @@ static void find_pupil_signs(const struct glint_transfer *t, double angle_deg,
     side[1] = t->whole ? t->side ? -t->sign : t->sign : py_mm < 0 ? -1 : 1;
 }
 
-/* Traces a ray by the model. */
 static enum glint_ray_status trace_model_ray(const struct tracer *t,
                                              double px_mm, double py_mm,
                                              struct glint_ray *ray)
@@ -207,8 +207,8 @@ static enum glint_ray_status trace_model_ray(const struct tracer *t,
     return GLINT_RAY_OK;
 }
 
-/* Returns whether A, a model's number with a 31-bit mantissa, equals B
- * within a relative error of 1e-8. */
+/* Returns whether A, stored in a model with a 31-bit mantissa, equals B up to a
+ * relative error of 1e-8. */
 static bool is_model_number_close(struct glint_real a, double b)
 {
     return fabs(model_convert_real_to_double(a) - b) <= 1e-8 * fabs(b);
@@ -221,8 +221,8 @@ static bool is_model_entry_of_ghost(const struct glint_lens *model,
            model->ghost[entry].j == model->ghost[ghost].j;
 }
 
-/* Sets tracer->part to those pupil parts of GHOST that the model has at this
- * angle and wavelength. Returns GLINT_E_MEMORY without memory. */
+/* Stores in TRACER the parts of GHOST's pupil for which MODEL has polynomials
+ * at the tracer's angle and at WAVE_Q24. Returns GLINT_E_MEMORY on failure. */
 static enum glint_status find_ghost_parts(const struct glint_lens *model,
                                           uint32_t ghost, int32_t sine_q30,
                                           int32_t wave_q24,
@@ -280,8 +280,8 @@ static int prepare_model_tracer(const struct tool *tool,
 
 /* --------------------------------------------------------------------- both */
 
-/* Sets AREA to the rectangle of ray origins on the front element's vertex
- * plane, mm. Returns an exit code. */
+/* Sets AREA to the rectangle, mm, in the vertex plane of the front element
+ * where the rays start. Returns an exit code. */
 static int find_ray_grid_area(const struct tool *tool, const struct options *o,
                               const struct glint_prescription *lens,
                               const struct tracer *tracer,

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Parses the command lines "glint bake INPUT -o OUT" of scenes, environments,
- * motions and translucent media: their options and their output file.
+ * motions and translucent media: the options and the names of the files.
  *
  *     code = bake_line_parse(&tool, help, argc, argv, options, take, &line,
  *                            "one input");
@@ -19,7 +19,8 @@
 #include "model/settings.h"
 #include "options/command_line.h"
 
-/* Options of all these commands, to begin their OPTIONS with */
+/* Options of all these commands; each command begins its own option table with
+ * them. */
 #define BAKE_LINE_OPTIONS                      \
     {                                          \
         "output", required_argument, NULL, 'o' \
@@ -30,16 +31,16 @@
 typedef int bake_line_fn(struct tool *tool, void *line, int c,
                          const char *name);
 
-/* Parses the command line. TAKE, unless NULL, receives all options but -o.
- * Prints TEXT as an error unless there is exactly one input. Sets TOOL->written
- * to the output file and checks that it can be created. Returns -1, or an exit
- * code. */
+/* Parses the command line. Calls TAKE (may be NULL) with each option except -o.
+ * Prints TEXT as a usage error unless there is exactly one input. Sets
+ * TOOL->written to the output file and checks that it can be created. Returns
+ * -1, or an exit code. */
 int bake_line_parse(struct tool *tool, const char *help, int argc, char **argv,
                     const struct option *options, bake_line_fn *take,
                     void *line, const char *text);
 
-/* Returns whether a report may be printed to standard output: not if the baked
- * file is written there. */
+/* Returns whether a report may be printed to standard output. It may not if the
+ * baked file is written there. */
 bool bake_line_prints_report(const struct tool *tool);
 
 #endif

@@ -55,16 +55,17 @@ void cache_file_make_folders(char *path)
         }
 }
 
-/* Returns whether only this user, its group and root could have written the
- * file or folder with the status ST. */
+/* Returns whether nobody except this user, its group and root can have written
+ * the file or folder of status ST. */
 static bool is_writable_only_by_trusted_users(const struct stat *st)
 {
     return (st->st_uid == geteuid() || st->st_uid == 0) &&
            !(st->st_mode & S_IWOTH);
 }
 
-/* Returns whether only this user, its group and root may write to the folder of
- * PATH. Other users could store outdated models there under a valid name. */
+/* Returns whether nobody except this user, its group and root may write to the
+ * folder of PATH. Another user could store a wrong model there under a valid
+ * name. */
 static bool is_folder_trusted(const char *path)
 {
     char folder[CACHE_PATH_BYTES];
@@ -101,8 +102,9 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     return data;
 }
 
-/* Rejects links and files that are not regular. Removes a file that other users
- * own or may write to, so that its replacement gets new permissions. */
+/* Prepares PATH to be written: rejects it if it is a link or not a regular
+ * file. Removes a file that other users own or may write to, so that the new
+ * file gets safe permissions. */
 static enum glint_status remove_untrusted_file(const char *path,
                                                struct glint_error *error)
 {
@@ -113,7 +115,8 @@ static enum glint_status remove_untrusted_file(const char *path,
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
                                   "is not a regular file; remove it");
-    /* No error is reported: replacing the file fails later as well. */
+    /* A failure is not reported here, because then writing the file fails,
+     * too. */
     if (!is_writable_only_by_trusted_users(&st))
         unlink(path);
     return GLINT_OK;
@@ -168,9 +171,9 @@ int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
     return -1;
 }
 
-/* Removes the lock's name before it releases the lock: a process that opens the
- * name later creates a new file, and a process that waits for the lock finds
- * the model in the cache. */
+/* The name of the lock file is removed before the lock is released. A process
+ * that opens the name later creates another file. A process that already waits
+ * for the lock then finds the model in the cache. */
 void cache_file_unlock(const char *path, int lock)
 {
     char name[CACHE_PATH_BYTES + 8];

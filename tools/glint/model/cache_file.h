@@ -24,8 +24,8 @@ bool cache_file_find_folder(char *path, size_t bytes);
 bool cache_file_append_name(char *path, size_t bytes, const char *name,
                             uint64_t key, const char *suffix);
 
-/* Creates the folders above PATH. Failures are not reported, as writing the
- * file fails later. */
+/* Creates the folders above PATH. Failures are not reported, because writing
+ * the file then fails with an error. */
 void cache_file_make_folders(char *path);
 
 /* Returns the contents of the file PATH, malloc'ed, or NULL if the file is
@@ -37,9 +37,9 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);
 
-/* Locks the file PATH against creation by other processes. Calls WAITS with
- * CTX before waiting for a process that holds the lock. Returns a descriptor
- * for cache_file_unlock(), or -1 if locking fails; the caller then creates
+/* Locks PATH, so that only one process creates this file. Calls WAITS with CTX
+ * before it waits for another process that holds the lock. Returns a descriptor
+ * for cache_file_unlock(). Returns -1 if locking fails; the caller then creates
  * the file without a lock. */
 int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx);
 void cache_file_unlock(const char *path, int lock);

@@ -10,7 +10,7 @@
 enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_DEALT };
 
 struct coating {
-    /* where the films come from; by default from the table */
+    /* source of the films; by default the lens table */
     enum coating_kind kind;
     /* whether --coating is on the command line, even with the default value */
     bool given;
@@ -47,9 +47,9 @@ void coating_print(FILE *file, const struct glint_coating *coating);
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 
-/* Returns EXIT_OK if --coating was not given; else prints a usage error,
- * since the model PATH was baked with its own coatings, and returns the exit
- * code. */
+/* Rejects --coating for the model PATH, which was baked with its own coatings:
+ * prints a usage error and returns its exit code. Returns EXIT_OK if the option
+ * was not given. */
 int coating_reject_option_for_model(const struct tool *tool,
                                     const struct coating *coating,
                                     const char *path);

@@ -17,7 +17,8 @@ enum { MOST_BYTES = 1 << 20 };
 struct reading {
     const struct glint_setup *setup;
     const char *lens;
-    int n; /* number of ghosts, without parts of pupils */
+    /* number of ghosts; a ghost whose pupil has several parts counts once */
+    int n;
     struct glint_tint *tint;
     bool *solo, *mute;
 };
@@ -140,8 +141,8 @@ static const char *parse_ghost_line(void *ctx, struct text_lines *lines,
         word, r->n - 1);
 }
 
-/* Mutes all ghosts that are not solo if any ghost is solo, and copies the
- * tints of ghosts to the parts of their pupils. */
+/* If any ghost is solo, mutes all that are not. Copies the tint of each ghost
+ * to the parts of its pupil. */
 static void apply_solo_and_mute(struct reading *r)
 {
     bool any_solo = false;

@@ -18,9 +18,9 @@
 #include "glint/setup.h"
 #include "glint/status.h"
 
-/* Reads PATH and sets *TINTS to the colour factors of all ghosts and pupil
- * parts of SETUP; the caller frees it. If the file names a lens, the name
- * must be LENS. Errors: GLINT_E_IO, GLINT_E_MEMORY, GLINT_E_FORMAT. */
+/* Reads PATH and sets *TINTS to the colour factors of all ghosts of SETUP, and
+ * of the parts of their pupils. The caller frees *TINTS. If the file names a
+ * lens, it must be LENS. Errors: GLINT_E_IO, GLINT_E_MEMORY, GLINT_E_FORMAT. */
 enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
                                   const struct glint_setup *setup,
                                   const char *lens, struct glint_error *error);

@@ -19,9 +19,9 @@
 
 enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
-/* Sets PATH to the folder UP levels above the program or plug-in that
- * contains this code; 1 is its own folder. Returns false if all users may
- * write to that folder. */
+/* Sets PATH to a folder of the program or plug-in that contains this code: its
+ * own folder for UP = 1, the one above that for 2, and so on. Returns false if
+ * all users may write to that folder, as its lenses could not be trusted. */
 static bool find_folder_above_program(int up, char *path, size_t bytes)
 {
     struct stat st;
@@ -66,7 +66,7 @@ bool lens_find_folder(int i, const char *kind, char *path, size_t bytes)
     return true;
 }
 
-/* Subfolders of a lens folder that are searched; "" is the folder itself */
+/* subfolders of a lens folder that may contain tables; "": the folder itself */
 static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
                                     "/tele", "/vision",     "/wide",   "/zoom"};
 
@@ -142,8 +142,8 @@ static int compare_lens_names(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-/* Prints a warning if the folder $GLINT_LENSES cannot be read; otherwise its
- * lenses would be missing silently. */
+/* Prints a warning if the folder $GLINT_LENSES cannot be read. Without it the
+ * user would not learn why its lenses are missing. */
 static void check_user_folder(void)
 {
     const char *own = glint_process_get_setting("GLINT_LENSES");

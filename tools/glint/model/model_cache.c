@@ -34,8 +34,8 @@ static uint8_t *read_cached_model(const char *path, size_t *bytes)
     return cache_file_read(path, MAX_BYTES, bytes);
 }
 
-/* Reads an installed model. It is trusted like the program itself, whoever owns
- * the file. */
+/* Reads an installed model. It may belong to any user, because it is trusted as
+ * much as the program itself. */
 static uint8_t *read_installed_model(const char *path, size_t *bytes)
 {
     struct glint_error error;
@@ -47,8 +47,9 @@ static uint8_t *read_installed_model(const char *path, size_t *bytes)
                : NULL;
 }
 
-/* Reads the model PATH by READ and opens it. Returns false if it is damaged
- * or has another key. */
+/* Reads the file PATH by calling READ, and opens it as a model. Returns false
+ * if the file is missing or damaged, or if the model has another key than
+ * KEY. */
 static bool load_model_with_key(const char *path, uint64_t key,
                                 uint8_t *(*read)(const char *path,
                                                  size_t *bytes),
@@ -134,8 +135,8 @@ bool model_is_lens_from_file(const struct glint_prescription *lens,
             stat(file, &b) < 0 || a.st_ino != b.st_ino || a.st_dev != b.st_dev);
 }
 
-/* Adds WORK to the bake work done, from several threads. Returns false if the
- * sum exceeds MODEL_CACHE_WORK. */
+/* Adds WORK to the total bake work, CTX, and may be called by several threads.
+ * Returns false if the total exceeds MODEL_CACHE_WORK. */
 static bool count_bake_work(void *ctx, int work)
 {
     return __atomic_add_fetch((int *)ctx, work, __ATOMIC_RELAXED) <=
@@ -153,8 +154,9 @@ static int report_too_much_work(const struct tool *tool, const char *file)
     return EXIT_LENS;
 }
 
-/* Bakes the model of LENS, given as FILE, into MODEL and writes it to the cache
- * file PATH, unless that is NULL. Returns an exit code. */
+/* Bakes the model of LENS into MODEL and writes it to the cache file PATH
+ * (NULL: no cache). FILE is the lens as named on the command line. Returns an
+ * exit code. */
 static int bake_model(const struct tool *tool,
                       const struct glint_prescription *lens, const char *file,
                       struct glint_bake_options options, char *path,
@@ -240,7 +242,8 @@ int model_open_cached(const struct tool *tool,
         return EXIT_OK;
     if (tool->no_bake)
         return report_bake_refused(tool, lens);
-    /* Another process may be baking the same model. */
+    /* After a wait for the lock the model may be in the cache, baked by another
+     * process. */
     lock = cache_file_lock(path, report_bake_wait, &wait);
     if (!load_model_with_key(path, key, read_cached_model, model))
         code = bake_model(tool, lens, file, options, path, model);

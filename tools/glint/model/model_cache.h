@@ -12,19 +12,19 @@
 
 #include "model/model_file.h"
 
-/* Sets MODEL to the model of LENS baked with OPTIONS: the installed one, the
- * cached one, or a new one, which is baked and added to the cache. FILE: the
- * lens as named on the command line. A lens file outside glint's lens folders
- * is rejected if its bake exceeds MODEL_CACHE_WORK; glint bake has no such
- * limit. Overwrites workers, progress and allow of OPTIONS. Returns an exit
- * code, after printing the reason on failure. */
+/* Sets MODEL to the model of LENS with OPTIONS: the installed one, else the
+ * cached one, else a new one, which is baked and added to the cache. FILE is
+ * the lens as named on the command line. If it is a file outside glint's lens
+ * folders, it is rejected if its bake exceeds MODEL_CACHE_WORK; glint bake has
+ * no such limit. Replaces the members workers, progress and allow of OPTIONS.
+ * Returns an exit code, after printing the reason on failure. */
 int model_open_cached(const struct tool *tool,
                       const struct glint_prescription *lens, const char *file,
                       struct glint_bake_options options,
                       struct model_file *model);
 
-/* Max bake work, in units of allow() of struct glint_bake_options; about 30 s
- * of processor time */
+/* Max work of a bake, in the units that allow() of struct glint_bake_options
+ * counts. It corresponds to about 30 s of processor time. */
 enum { MODEL_CACHE_WORK = 750 };
 
 /* Returns whether FILE, the lens as named on the command line, is a lens file

@@ -76,7 +76,7 @@ int tool_open_model(const struct tool *tool, const char *path,
     *model = (struct model_file){.data = NULL};
     status = glint_input_read_whole_file(&data, &model->bytes, path,
                                          MAX_MODEL_BYTES, &error);
-    model->data = data; /* malloc() aligns the data */
+    model->data = data; /* malloc() has aligned the data, as models require */
     if (status == GLINT_OK) {
         status = open_model_data(model, &reason);
         if (status == GLINT_OK)
@@ -108,7 +108,7 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
                                       struct glint_error *error)
 {
     const int32_t whole_q30 = INT32_C(1) << 30;
-    /* tolerance: focal lengths engraved on barrels are rounded */
+    /* Tolerance for focal lengths: those engraved on barrels are rounded. */
     const double slack = 1.002;
     struct glint_zoom_lens *const z = model->zoom;
     const int32_t before_q30 = z->now_q30;

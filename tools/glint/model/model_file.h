@@ -18,14 +18,13 @@ struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
     size_t bytes;
-    /* zoom lens whose present position is LENS; NULL if the lens does not
-     * zoom */
+    /* the zoom lens at whose present position LENS is; NULL for other lenses */
     struct glint_zoom_lens *zoom;
 };
 
 /* Returns whether ARGUMENT is a file name: it contains a slash or ends in
- * .lens, .glint, .env or .motion. Any other name is that of a lens that
- * comes with glint, even if the current folder has a file of that name. */
+ * .lens, .glint, .env or .motion. Any other argument is the name of a lens that
+ * comes with glint, even if the current folder contains a file of that name. */
 bool tool_is_file_name(const char *argument);
 
 /* Returns whether PATH is a regular file that begins with the magic number
@@ -43,7 +42,7 @@ int tool_open_model(const struct tool *tool, const char *path,
 enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
                                       struct glint_error *error);
 
-/* Returns the number of baked positions of ZOOM that have all ghosts. */
+/* Returns the number of zoom positions at which all ghosts are baked. */
 int model_file_count_positions(const struct glint_zoom_lens *zoom);
 
 /* Closes MODEL; does nothing if it is closed. */

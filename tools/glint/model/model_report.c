@@ -30,7 +30,7 @@ static void write_errors_json(struct json_writer *json,
     json_write(json, "}");
 }
 
-/* Writes the JSON member "misses": a list of the ghosts that miss an error
+/* Writes the JSON member "misses": a list of the ghosts whose error exceeds a
  * target. */
 static void write_missed_targets_json(struct json_writer *json,
                                       const struct glint_lens *lens)
@@ -38,8 +38,7 @@ static void write_missed_targets_json(struct json_writer *json,
     json_write(json, "misses: [");
     for (uint32_t k = 0; k < model_count_ghosts(lens); k++) {
         const struct glint_model_ghost *g = &lens->ghost[k];
-        const struct model_miss miss =
-            model_find_zones_with_missed_targets(lens, k);
+        const struct model_miss miss = model_find_missed_zones(lens, k);
 
         if (miss.zones)
             json_write(json,
@@ -227,7 +226,7 @@ static void print_model_header(const struct model_file *model)
            model_convert_sine_to_deg(h->sine_hi_q30));
     printf("surfaces            %6lu\n", (unsigned long)h->n_surfaces);
     printf("ghosts              %6lu in %lu parts, %lu zones, "
-           "%.1f terms an output\n",
+           "%.1f terms per output\n",
            (unsigned long)model_count_ghosts(&model->lens),
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_compute_mean_terms(&sum));
@@ -259,8 +258,8 @@ static void print_ghost_table_title(const char *more)
            more);
 }
 
-/* Prints the table line of a ghost, or of one part of its pupil (marked by a
- * plus after the number), without a line feed. */
+/* Prints the table row of a ghost, or of a part of its pupil, which has a plus
+ * after the number. Prints no line feed. */
 static void print_ghost_row(const struct glint_lens *lens, uint32_t entry,
                             const struct model_summary *sum)
 {
@@ -349,8 +348,8 @@ static void print_model_info(const struct tool *tool,
         print_system_table(&model->lens);
 }
 
-/* Ends the table line of a ghost with the names of the outputs that miss their
- * error targets. */
+/* Completes the table row of a ghost by the names of the outputs whose error
+ * exceeds their target. */
 static void print_missed_targets_of_ghost(const struct model_summary *sum)
 {
     for (int kind = 0; kind < GLINT_OUT_KINDS; kind++)
@@ -375,7 +374,7 @@ static void print_output_details(const struct model_summary *sum)
     }
 }
 
-/* Prints the ghosts that miss a target; all ghosts if ALL. */
+/* Prints the ghosts whose error exceeds a target, or all ghosts if ALL. */
 static void print_fit_table(const struct glint_lens *lens, bool all)
 {
     bool titled = false;
@@ -407,13 +406,14 @@ static void print_bake_statistics(const struct tool *tool,
     print_ghosts_without_zones(lens);
     print_model_errors(&sum);
     printf("\n%s: %lu bytes, %lu ghosts in %lu parts, %lu zones, "
-           "%.1f terms an output, %.1f s\n",
+           "%.1f terms per output, %.1f s\n",
            h->name, (unsigned long)h->bytes,
            (unsigned long)model_count_ghosts(lens), (unsigned long)h->n_ghosts,
            (unsigned long)h->n_systems, model_compute_mean_terms(&sum),
            seconds);
-    printf("%u of %lu ghosts miss the error target in some zone; %d of %d rays "
-           "pass that should be cut; %d zones exceed the tolerance\n",
+    printf("%u of %lu ghosts miss the error target in some zone; %d rays pass "
+           "that the lens blocks, besides the %d measured ones; %d zones "
+           "exceed the tolerance\n",
            model_count_ghosts_with_missed_targets(lens),
            (unsigned long)model_count_ghosts(lens), report->intruders,
            report->rays, report->unmet);
@@ -426,14 +426,15 @@ static void print_picture_check(const struct picture_check *check)
     if (check->n == 0)
         return;
     if (check->psnr_db >= IDENTICAL_DB)
-        printf("%d pictures of the model are identical with exact rays\n",
+        printf("%d pictures of the model are identical to those by exact "
+               "rays\n",
                check->n);
     else
         printf("%d pictures of the model against exact rays: worst PSNR %.1f "
                "dB, with the light %.1f degrees off the axis\n",
                check->n, check->psnr_db, check->angle_deg);
     if (check->psnr_db < PICTURE_CHECK_DB)
-        printf("less than %g dB: bake with a smaller --tolerance, or draw "
+        printf("this is below %g dB: bake with a smaller --tolerance, or draw "
                "stills with --rays exact\n",
                PICTURE_CHECK_DB);
 }
@@ -443,8 +444,8 @@ void model_report_print_info(const struct tool *tool,
 {
     struct model_file shown = *model;
 
-    /* Between baked zoom positions there are no polynomial systems to report.
-     * */
+    /* Only a baked position has polynomial systems, so those of the first
+     * position are reported. */
     if (shown.zoom)
         shown.lens = shown.zoom->model[0];
     (tool->json ? write_info_json : print_model_info)(tool, &shown);

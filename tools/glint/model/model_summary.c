@@ -184,7 +184,8 @@ static bool is_model_entry_of_ghost(const struct glint_lens *lens,
            lens->ghost[entry].j == lens->ghost[ghost].j;
 }
 
-/* Adds zone SYSTEM to MISS if one of its outputs misses its target. */
+/* Updates MISS if an output of SYSTEM, the polynomials of a zone, exceeds its
+ * error target. */
 static void add_zone_with_missed_target(const struct glint_lens *lens,
                                         uint32_t system,
                                         struct model_miss *miss)
@@ -211,9 +212,8 @@ static void add_zone_with_missed_target(const struct glint_lens *lens,
     }
 }
 
-struct model_miss
-model_find_zones_with_missed_targets(const struct glint_lens *lens,
-                                     uint32_t ghost)
+struct model_miss model_find_missed_zones(const struct glint_lens *lens,
+                                          uint32_t ghost)
 {
     struct model_miss miss = {.zones = 0};
 
@@ -232,6 +232,6 @@ unsigned model_count_ghosts_with_missed_targets(const struct glint_lens *lens)
     unsigned n = 0;
 
     for (uint32_t k = 0; k < model_count_ghosts(lens); k++)
-        n += model_find_zones_with_missed_targets(lens, k).zones > 0;
+        n += model_find_missed_zones(lens, k).zones > 0;
     return n;
 }

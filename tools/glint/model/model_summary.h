@@ -11,9 +11,10 @@
 extern const char *const model_output_names[GLINT_OUT_KINDS];
 extern const char *const model_output_units[GLINT_OUT_KINDS];
 
-/* Error targets: a ghost meets a target if the 99th percentile of the error
- * is not larger. Positions: a quarter of a pixel at a width of 1920; other
- * outputs: errors of similar visibility. */
+/* Error targets of the outputs. An output meets its target if the 99th
+ * percentile of its error does not exceed it. The target of positions is a
+ * quarter of a pixel in images of 1920 pixels width. Errors of this size in
+ * other outputs are about as visible. */
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_get_basis_name(const struct glint_lens *lens);
@@ -22,8 +23,7 @@ double model_convert_sine_to_deg(int32_t sine_q30);
 /* Returns the wavelength in nm. WAVE_Q24: its inverse square, 1 / um^2. */
 double model_convert_wave_to_nm(int32_t wave_q24);
 
-/* A range of a model's polynomial systems, those with the numbers first ..
- * first + n - 1. */
+/* A range of a model's polynomial systems: numbers FIRST to FIRST + N - 1 */
 struct model_span {
     uint32_t first, n;
 };
@@ -45,12 +45,14 @@ size_t model_count_span_bytes(const struct glint_lens *lens,
 void model_find_span_angles(const struct glint_lens *lens,
                             struct model_span span, double range_deg[2]);
 
-/* Errors of one output, over the systems of a span that have this output. */
+/* Errors of one output. They are combined over the N systems of a span that
+ * have the output. */
 struct model_errors {
     uint32_t n;
-    double terms, mean2, p50; /* means over the systems: polynomial terms,
-                                 squared error, 50th percentile */
-    /* maxima over the systems, in the output's unit */
+    /* means over the systems: number of polynomial terms, squared error, and
+     * median error */
+    double terms, mean2, p50;
+    /* maxima over the systems, in the unit of the output */
     double p99, max, bound, rounding;
 };
 
@@ -74,28 +76,29 @@ bool model_misses_error_target(const struct model_summary *sum);
  * once. */
 uint32_t model_count_ghosts(const struct glint_lens *lens);
 
-/* Returns the number of the ghost to which ENTRY belongs; an entry is a
- * ghost or a part of a ghost's pupil. */
+/* Returns the number of the ghost of ENTRY. An entry of a model is a ghost or a
+ * further part of a ghost's pupil. */
 uint32_t model_find_ghost_of_entry(const struct glint_lens *lens,
                                    uint32_t entry);
 
-/* The zones in which a ghost misses its targets. A zone is a range of
- * angles. */
+/* Where the errors of a ghost exceed their targets. A zone is a range of field
+ * angles with polynomials of its own. */
 struct model_miss {
-    uint32_t zones;      /* number of zones and pupil parts in which the ghost
-                          * misses a target */
+    /* number of zones, counted for each part of the pupil, in which an error
+     * exceeds its target */
+    uint32_t zones;
     double angle_deg[2]; /* min and max angle of these zones */
-    int output;          /* output with the largest error / target */
-    double p99, over;    /* 99th percentile of that output's error, and its
-                          * ratio to the target */
+    int output;          /* output with the largest ratio of error to target */
+    /* 99th percentile of this output's error, and its ratio to the target */
+    double p99, over;
 };
 
-/* Returns where GHOST, with all parts of its pupil, misses targets. */
-struct model_miss
-model_find_zones_with_missed_targets(const struct glint_lens *lens,
-                                     uint32_t ghost);
+/* Returns where errors of GHOST, in any part of its pupil, exceed their
+ * targets. */
+struct model_miss model_find_missed_zones(const struct glint_lens *lens,
+                                          uint32_t ghost);
 
-/* Returns the number of ghosts with any part that misses a target. */
+/* Returns the number of ghosts with an error above its target. */
 unsigned model_count_ghosts_with_missed_targets(const struct glint_lens *lens);
 
 #endif

@@ -49,8 +49,8 @@ int stop_mask_read_image(const struct tool *tool, const char *file,
         tool, "%s is a picture; this program does not read pictures", file);
 }
 
-/* Returns an error, as there is no model. Never called, as every opened lens
- * has a model. */
+/* Returns an error. It is never called, because every lens that this program
+ * opens has a model. */
 enum glint_status
 opened_table_make_setup(struct opened_lens *lens,
                         const struct glint_engine_camera *camera,

@@ -11,9 +11,9 @@ bool tool_has_magic(const char *argument, uint32_t magic);
 
 enum { TOOL_PATH_BYTES = 4096 };
 
-/* Sets PATH to NAME, which is relative to the folder of the file TEXT.
- * Returns GLINT_E_IO if PATH is too long, GLINT_E_ARGUMENT if it is the
- * output file WRITTEN (may be NULL). */
+/* Sets PATH to the file NAME, relative to the folder of the file TEXT. Returns
+ * GLINT_E_IO if PATH is too long, or GLINT_E_ARGUMENT if it is the output file
+ * WRITTEN (may be NULL). */
 enum glint_status tool_make_input_path(const char *text, const char *name,
                                        const char *written,
                                        char path[TOOL_PATH_BYTES],
@@ -22,13 +22,13 @@ enum glint_status tool_make_input_path(const char *text, const char *name,
 /* Sets NAME to the name of the file PATH without folder and extension. */
 void tool_copy_base_name(const char *path, char name[64]);
 
-/* FNV-1a hash: start with TOOL_KEY_BEGIN; tool_hash_into_key() adds
- * DATA[BYTES]. */
+/* FNV-1a hash: a key starts as TOOL_KEY_BEGIN, and tool_hash_into_key() adds
+ * DATA[BYTES] to it. */
 #define TOOL_KEY_BEGIN UINT64_C(14695981039346656037)
 void tool_hash_into_key(uint64_t *key, const void *data, size_t bytes);
 
-/* Returns EXIT_OK unless the scene PATH is the output file of TOOL; then
- * prints a usage error and returns its exit code. */
+/* Prints a usage error and returns its exit code if the scene PATH is the
+ * output file of TOOL, which would overwrite it. Otherwise returns EXIT_OK. */
 int tool_check_scene_not_overwritten(const struct tool *tool, const char *path);
 
 #endif

@@ -104,7 +104,7 @@ static void warn_of_small_field(const struct tool *tool,
     if (!tool->quiet && 0.5 * diagonal > field)
         fprintf(stderr,
                 "glint %s: the model was baked for a field of radius %.1f mm; "
-                "flares in corners outside may be wrong (bake --field)\n",
+                "flares outside this field may be wrong (glint bake --field)\n",
                 tool->name, field);
 }
 
@@ -145,8 +145,8 @@ static int open_model_file(const struct tool *tool, struct opened_lens *lens,
     lens->table.film_width_mm = model_convert_real_to_double(h->film_width_mm);
     lens->table.film_height_mm =
         model_convert_real_to_double(h->film_height_mm);
-    lens->table.stop_is_circle = false; /* a model does not store whether the
-                                         * stop is a circle */
+    /* A model does not store whether the stop is a circle. */
+    lens->table.stop_is_circle = false;
     warn_of_small_field(tool, lens, &settings->camera);
     return EXIT_OK;
 }

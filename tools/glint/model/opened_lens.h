@@ -14,26 +14,28 @@
 #include "model/settings.h"
 #include "model/stop_mask.h"
 
-/* An opened lens. All zero bytes: closed. SETUP points to TABLE: see
- * opened_lens_update_table_pointer(). */
+/* An opened lens. Its value is all zero bytes while it is closed. SETUP points
+ * to TABLE; see opened_lens_update_table_pointer(). */
 struct opened_lens {
     /* lens table; for a model only its name and film are set */
     struct glint_prescription table;
     struct model_file model; /* baked model; closed if rays are exact */
-    bool is_unbaked; /* whether the table has no model and SETTINGS prevent a
-                        bake */
+    /* whether the lens is a table without a model, which SETTINGS forbid to
+     * bake */
+    bool is_unbaked;
     struct glint_setup setup;
     /* projection for --projection lens; else all zero */
     struct glint_projection projection;
-    struct glint_tint *tints;       /* tint factors of --ghosts */
-    struct stop_mask mask;          /* mask of --stop-mask */
-    struct glint_dirt *dirt;        /* dirt on the stop; SETUP uses it */
+    struct glint_tint *tints; /* tint factors of --ghosts */
+    struct stop_mask mask;    /* mask of --stop-mask */
+    /* dirt on the stop, to which SETUP points */
+    struct glint_dirt *dirt;
     struct glint_front_dirt *front; /* dirt on the front element; NULL: none */
 };
 
-/* Reads the table or model NAME and prepares LENS, which must be closed,
- * with SETTINGS. If a table has no model yet, it is baked, unless rays are
- * exact or settings->unbaked rules that out. Returns an exit code. Call
+/* Reads the table or model NAME and prepares LENS, which must be closed, as
+ * SETTINGS require. A table without a model is baked, unless rays are exact or
+ * settings->unbaked forbids it. Returns an exit code. The caller must call
  * opened_lens_close() also after a failure. */
 int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
                      const struct settings *settings, const char *name);
@@ -44,27 +46,29 @@ void opened_lens_close(struct opened_lens *lens);
  * copied to a new address. */
 void opened_lens_update_table_pointer(struct opened_lens *lens);
 
-/* Sets up LENS with the stop of SETTINGS. Returns GLINT_E_ARGUMENT if the
- * model was not baked for so wide a stop; ERROR states the limit. */
+/* Sets the stop of LENS to that of SETTINGS. Returns GLINT_E_ARGUMENT if the
+ * model was baked with a narrower stop; ERROR then states the limit. */
 enum glint_status opened_lens_set_stop(struct opened_lens *lens,
                                        const struct settings *settings,
                                        struct glint_error *error);
 
-/* Moves the zoom lens LENS to ZOOM, as model_file_set_zoom() does. Returns
- * GLINT_E_ARGUMENT with the reason in ERROR if that is impossible. */
+/* Moves the zoom lens LENS to ZOOM like model_file_set_zoom(). Returns
+ * GLINT_E_ARGUMENT with the reason in ERROR if the lens has no such
+ * position. */
 enum glint_status opened_lens_set_zoom(struct opened_lens *lens,
                                        const struct settings *settings,
                                        double zoom, struct glint_error *error);
 
-/* Sets the dirt on the front element of LENS: that of CAMERA and the mask in
- * the image FILE (NULL: none). Returns an exit code. */
+/* Sets the dirt on the front element of LENS from CAMERA and from the mask
+ * image FILE (NULL: none). Returns an exit code. */
 int opened_lens_set_front_dirt(const struct tool *tool,
                                struct opened_lens *lens,
                                const struct glint_engine_camera *camera,
                                const char *file);
 
-/* Returns the camera of SETTINGS with the stop mask of LENS. If the command
- * line does not set the stop's shape, it is a circle if the table says so. */
+/* Returns the camera of SETTINGS with the stop mask of LENS. If SETTINGS do not
+ * set the stop's shape and the lens table has a circular stop, the stop is a
+ * circle. */
 struct glint_engine_camera
 opened_lens_make_camera(const struct opened_lens *lens,
                         const struct settings *settings);

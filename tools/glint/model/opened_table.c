@@ -59,7 +59,7 @@ set_lens_projection(struct opened_lens *lens,
     return GLINT_OK;
 }
 
-/* Rejects an input that is not an image before the lens is baked. */
+/* Checks that the input PICTURE is an image, before a lens is baked. */
 static int check_input_picture(const struct tool *tool, const char *picture)
 {
     struct glint_error error = {""};
@@ -72,8 +72,8 @@ static int check_input_picture(const struct tool *tool, const char *picture)
     return EXIT_OK;
 }
 
-/* Sets the f-number of the table of LENS to that of SETTINGS, as exact rays are
- * traced through the stop itself. */
+/* Sets the table of LENS to the f-number of SETTINGS. This is needed for exact
+ * rays, which are traced through the stop of the table. */
 static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
                               const struct settings *settings)
 {
@@ -86,10 +86,10 @@ static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
     return settings_report_bad_stop(tool, settings, error.text);
 }
 
-/* Max number of ghosts * surfaces of a lens file outside glint's folders that
- * exact rays draw without --rays exact, and the number of surfaces for which a
- * non-spherical one counts. At this limit two lamps take about 30 s of
- * processor time. */
+/* Limit of ghosts * surfaces for exact rays of a lens file outside glint's
+ * folders, unless --rays exact is given. A surface that is not spherical counts
+ * as SHAPED surfaces. At this limit two lamps take about 30 s of processor
+ * time. */
 #define MOST_PATHS 50000
 enum { SHAPED = 7 };
 
@@ -113,8 +113,8 @@ static int check_path_count(const struct tool *tool,
     return EXIT_LENS;
 }
 
-/* Finds or bakes the model of LENS, given as NAME, for lights up to DEG off the
- * axis. */
+/* Opens the model of LENS, named NAME, for lights up to DEG off the axis. Bakes
+ * the model if there is none. */
 static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
                               const struct settings *settings, const char *name,
                               double deg)
@@ -155,8 +155,8 @@ int opened_table_open(const struct tool *tool, struct opened_lens *lens,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &lens->table);
-    /* A model can be drawn with any stop narrower than the one it was baked
-     * with. */
+    /* The f-number of a model may be larger than that of its bake, so only a
+     * smaller one changes the table. */
     if (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number)
         code = set_table_f_number(tool, lens, settings);
     if (code != EXIT_OK)

@@ -7,14 +7,14 @@
 #include "glint/exact.h"
 #include "glint/measure.h"
 
-/* Size of the pictures, pixels: a quarter of 1080p's width. */
+/* Max size of the images, pixels. The width is a quarter of that of 1080p. */
 enum { WIDE = 480, MOST_HIGH = 480 };
 
-/* azimuth of lights, degrees: on no symmetry axis of the film */
+/* azimuth of lights, degrees; not on a symmetry axis of the film */
 #define AZIMUTH_DEG 33
 
-/* Angles near the axis, degrees, where ghosts fold; further lights are at even
- * steps up to the corner. */
+/* Angles of lights near the axis, degrees, at which ghosts fold. STEPS more
+ * lights are evenly spaced up to the corner. */
 static const double near_deg[] = {0, 0.3, 2, 5};
 enum { NEAR = sizeof near_deg / sizeof *near_deg, STEPS = 6 };
 
@@ -32,8 +32,8 @@ enum glint_status picture_pair_open(struct picture_pair *pair,
     cfg.sets = 0;
     cfg.camera.setup = setup;
     cfg.camera.sensor_width_mm = view->sensor_width_mm;
-    cfg.camera.sensor_height_mm = /* twice what the picture needs, so that the
-                                   * width determines the scale */
+    /* Twice the height of the image: then the width determines the scale. */
+    cfg.camera.sensor_height_mm =
         2 * view->sensor_width_mm * view->height / view->width;
     cfg.light.by_hand = 1;
     cfg.search.max_found = 0;
@@ -52,7 +52,7 @@ void picture_pair_close(struct picture_pair *pair)
     glint_engine_destroy(pair->exact);
 }
 
-/* A light and its comparison. */
+/* A light, and the result of the comparison of its images */
 struct light {
     double angle_deg;
     struct glint_measure measure;
@@ -87,7 +87,7 @@ render_model_and_exact_pictures(const struct picture_pair *pair,
     return status;
 }
 
-/* Compares the pictures of light I. */
+/* Compares the two images of light I. */
 static void compare_pictures_of_light(void *ctx, int i, int worker)
 {
     struct job *const job = ctx;
@@ -116,7 +116,7 @@ static void compare_pictures_of_light(void *ctx, int i, int worker)
     free(image[1].rgb);
 }
 
-/* Sets the job's lights: at most MOST degrees off the axis. */
+/* Fills the list of lights of JOB, at angles up to MOST degrees. */
 static void list_test_lights(struct job *job, double most)
 {
     for (int i = 0; i < NEAR; i++)
@@ -156,11 +156,11 @@ enum glint_status picture_check_run(const struct tool *tool,
                                     struct glint_error *error)
 {
     const double *const band = baked->band_nm, span = band[1] - band[0];
-    /* of the default band: near 620, 540 and 460 nm */
+    /* near 620, 540 and 460 nm in the default band */
     const double wave_nm[] = {band[0] + 0.73 * span, band[0] + 0.47 * span,
                               band[0] + 0.2 * span};
     const double diagonal_mm = hypot(lens->film_width_mm, lens->film_height_mm);
-    /* fraction of the film in which the model has light */
+    /* fraction of the film for which the model was baked */
     const double part =
         baked->field_mm > 0 ? fmin(1, 2 * baked->field_mm / diagonal_mm) : 1;
     const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);

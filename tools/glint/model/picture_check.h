@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares pictures of a model with pictures by exact rays.
+ * Compares images drawn by a model with images drawn by exact rays.
  */
 #ifndef GLINT_TOOLS_MODEL_PICTURE_CHECK_H
 #define GLINT_TOOLS_MODEL_PICTURE_CHECK_H
@@ -10,10 +10,11 @@
 #include "glint/model.h"
 #include "options/tool.h"
 
-/* Min PSNR of a model that is called accurate, dB. */
+/* Min PSNR, dB, of a model that is reported as accurate */
 #define PICTURE_CHECK_DB 50.0
 
-/* Engines that draw the same lights by a model and by exact rays. */
+/* Two engines for the same lens: one draws by a model, the other by exact
+ * rays. */
 struct picture_pair {
     struct glint_engine *model, *exact;
 };
@@ -27,18 +28,19 @@ enum glint_status picture_pair_open(struct picture_pair *pair,
                                     struct glint_error *error);
 void picture_pair_close(struct picture_pair *pair);
 
-/* The largest difference between model and exact rays. */
+/* Result of picture_check_run(): the light with the lowest PSNR */
 struct picture_check {
-    double psnr_db;   /* PSNR of the sRGB codes, dB; exposed as by glint
-                       * compare; 999: all pictures are identical */
+    /* PSNR of the sRGB codes, dB, at the exposure of glint compare; 999: the
+     * images are identical */
+    double psnr_db;
     double angle_deg; /* angle of the light off the axis, degrees */
     int n;            /* number of lights whose pictures were compared */
 };
 
-/* Draws the ghosts of up to ten single lights on the axis, near it and up to
- * the corner of the film of LENS, by MODEL and by exact rays, and sets CHECK to
- * the picture with the smallest PSNR. Wavelengths, angles and film lie within
- * those of BAKED, the options of the model. */
+/* Compares images by MODEL with images by exact rays, for up to ten lights: on
+ * the axis of LENS, near it, and up to the corner of the film. Sets CHECK to
+ * the light with the lowest PSNR. Wavelengths, angles and film are limited to
+ * those of BAKED, the options with which the model was baked. */
 enum glint_status picture_check_run(const struct tool *tool,
                                     const struct glint_prescription *lens,
                                     const struct glint_lens *model,

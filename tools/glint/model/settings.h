@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Options common to all commands that draw flares: what is drawn, and how.
+ * The options that all commands that draw flares have in common, and the
+ * parameters derived from them.
  */
 #ifndef GLINT_TOOLS_MODEL_SETTINGS_H
 #define GLINT_TOOLS_MODEL_SETTINGS_H
@@ -16,8 +17,8 @@
 /* Max number of lamps on the command line; files may have more */
 enum { SETTINGS_MAX_LAMPS = 1024 };
 
-/* How to open a table without a model. BAKE: bake it; TRACE: use exact rays;
- * SEARCH: bake it when a lamp is detected. */
+/* What to do with a lens table that has no model. BAKE: bake it. TRACE: trace
+ * exact rays. SEARCH: bake it once a lamp is detected. */
 enum settings_unbaked { SETTINGS_BAKE, SETTINGS_TRACE, SETTINGS_SEARCH };
 
 struct settings {
@@ -26,8 +27,8 @@ struct settings {
     /* roundness of the aperture blades, 0 .. 1, unless --stop sets a shape */
     double roundness;
 
-    /* The members down to TOLERANCE are computed from OPTIONS whenever an
-     * option is set. */
+    /* All members down to TOLERANCE are derived from OPTIONS, again after each
+     * change of an option. */
     struct coating coating;
     struct zoom_option zoom;
     struct glint_engine_camera camera; /* camera of the engine, without masks */
@@ -35,21 +36,20 @@ struct settings {
     /* wavelengths of the camera, nm */
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
     int n_wavelengths;
-    /* quality parameters; max_lights and area_points are set by their own
-     * options */
+    /* quality parameters; options of their own set max_lights and
+     * area_points */
     struct glint_dials dials;
     double quantum;   /* dials.irradiance_steps, in percent */
     double tolerance; /* error tolerance of the bake */
 
-    /* max angle of lamps that the model is baked for, degrees */
+    /* max angle of a lamp, degrees, for which the model is baked */
     double max_deg;
-    /* The input image, which is validated before a lens is baked. NULL: not
-     * known yet. */
+    /* input image, which is checked before a lens is baked; NULL: unknown */
     const char *picture;
-    /* How to open a table without a model, an enum settings_unbaked */
+    /* what to do with a table without a model, an enum settings_unbaked */
     int unbaked;
-    const char *f_number_from; /* "FILE:LINE" that sets the f-number; NULL: the
-                                  command line */
+    /* "FILE:LINE" of the f-number; NULL: from the command line */
+    const char *f_number_from;
 };
 
 #define COMMON_HELP                                                           \
@@ -61,11 +61,11 @@ struct settings {
     "deterministic\n"                                                         \
     "  --json   -q   -v   --help   --help-all   --version\n"
 
-/* settings_set_defaults() sets the defaults of a plain image of a lens: no
+/* settings_set_defaults() sets the defaults for images of a lens alone: no
  * starburst, the table's coatings, straight blades, three wavelengths.
- * settings_set_photo_defaults() sets those of flares on photographs: the option
- * table's defaults, and blades of PHOTO_ROUNDNESS, as spikes of straight
- * blades are thinner and longer than those in photographs. */
+ * settings_set_photo_defaults() sets the defaults for photographs: those of the
+ * option table, and blades of PHOTO_ROUNDNESS. Straight blades would make the
+ * spikes thinner and longer than in photographs. */
 #define PHOTO_ROUNDNESS 0.2
 void settings_set_defaults(struct settings *settings);
 void settings_set_photo_defaults(struct settings *settings);
@@ -75,14 +75,14 @@ void settings_set_photo_defaults(struct settings *settings);
 int settings_apply_option(const struct tool *tool, struct settings *settings,
                           int option, const char *value);
 
-/* Prints TEXT, the reason why the f-number of S is impossible, and the line
- * of the file that requests it, if any. Returns an exit code. */
+/* Prints TEXT, why the lens cannot have the f-number of S, with the line of the
+ * file that sets the f-number, if any. Returns an exit code. */
 int settings_report_bad_stop(const struct tool *tool, const struct settings *s,
                              const char *text);
 
-/* Set the option NAME. TEXT is its value as text; VALUE is a number, the
- * index of a word, or 0 or 1 for a flag. Return false, without a change, if
- * the value is invalid. */
+/* Set the option NAME. TEXT is its value as a text. VALUE is its value as a
+ * number; for words it is the index, for flags 0 or 1. Return false, without a
+ * change, if the value is invalid. */
 bool settings_set_text(struct settings *settings, const char *name,
                        const char *text);
 bool settings_set_number(struct settings *settings, const char *name,
@@ -100,15 +100,16 @@ int settings_get_selected_ghost(const struct settings *settings);
 /* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
 
-/* Returns how a command that draws a single picture opens a table without a
+/* Returns how a command that draws a single image opens a table without a
  * model: with exact rays, unless an option requests or needs a model. */
 enum settings_unbaked
 settings_choose_method_without_model(const struct settings *settings);
 
-/* Returns the factor on the flare's light, gain * 2^EV. */
+/* Returns the factor on the light of the flare: gain * 2^exposure. */
 double settings_compute_brightness_scale(const struct settings *settings);
 
-/* Writes the report of a frame as members of a JSON object. */
+/* Writes REPORT, the engine's report of a frame, as members of a JSON
+ * object. */
 void settings_write_json(struct json_writer *json,
                          const struct glint_engine_report *report);
 
@@ -116,10 +117,9 @@ void settings_write_json(struct json_writer *json,
 void settings_write_light_counts(const struct glint_engine_report *report,
                                  char text[64]);
 
-/* Prints warnings to standard error: lights outside the model's angles, and
- * lights that were merged because there are too many; even with -q: ray
- * bundles are missing or the frame is drawn coarser; with -v: cells without
- * light. */
+/* Prints warnings: lights outside the model's angles; lights that were merged
+ * because of the max number of lights; ray bundles that were omitted, or a
+ * frame drawn coarser, even with -q; cells without light, only with -v. */
 void settings_print_light_warnings(const struct tool *tool,
                                    const struct glint_engine_report *report);
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * --stop-mask and --front-mask: an image that multiplies the light in the stop
- * or on the front element.
+ * --stop-mask and --front-mask: reads an image by which the light at the stop,
+ * or at the front element, is multiplied.
  */
 #include <stddef.h>
 #include <stdlib.h>

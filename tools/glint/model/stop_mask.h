@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * --stop-mask and --front-mask: an image that multiplies the light.
+ * --stop-mask and --front-mask: reads an image by which the light at the stop,
+ * or at the front element, is multiplied.
  */
 #ifndef GLINT_TOOLS_MODEL_STOP_MASK_H
 #define GLINT_TOOLS_MODEL_STOP_MASK_H

@@ -50,7 +50,7 @@ static int print_matching_lenses(const struct tool *tool, const char *name)
     if (m.n > 1)
         tool_error(
             tool,
-            "%s: %d lenses have this in their names (did you mean %.*s or %s)",
+            "%s: the names of %d lenses contain this (did you mean %.*s or %s)",
             name, m.n, (int)m.last - 2, m.text + 2, m.text + m.last + 2);
     return m.n;
 }
@@ -91,8 +91,8 @@ static bool is_importable_file(const char *name)
     return is && access(name, F_OK) == 0;
 }
 
-/* Reads the table in FILE. Rejects binary files such as pictures with a message
- * without line and column. */
+/* Reads the lens table FILE. If FILE is binary, such as an image, the error
+ * message has no line and column. */
 static enum glint_status parse_lens_table(const char *file,
                                           struct glint_prescription *lens,
                                           struct glint_error *error)

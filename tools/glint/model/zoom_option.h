@@ -8,11 +8,10 @@
 #include "options/tool.h"
 
 struct zoom_option {
-    /* focal length in mm, or 0 .. 1 from the table's first position to its
-     * last */
+    /* focal length, mm, or 0 .. 1 from the first position to the last */
     double zoom;
     double focus_m; /* focus distance from the sensor, m; 0: infinity */
-    /* whether --zoom was given; otherwise the table's first position is used */
+    /* whether --zoom was given; if not, the first position is used */
     bool is_zoomed;
     bool is_focused; /* whether --focus was given */
 };
@@ -36,13 +35,14 @@ struct zoom_option {
 bool zoom_option_parse(struct zoom_option *option, const char *text);
 bool zoom_option_parse_focus(struct zoom_option *option, const char *text);
 
-/* Moves the groups of LENS, which was just read, to zoom and focus. Returns
- * an exit code, after printing the reason on failure. */
+/* Moves the groups of LENS, which must be as read from its table, to zoom and
+ * focus of OPTION. Returns an exit code, after printing the reason on
+ * failure. */
 int zoom_option_apply(const struct tool *tool, const struct zoom_option *option,
                       struct glint_prescription *lens);
 
-/* Returns EXIT_OK if OPTION has neither --zoom nor --focus; else prints a usage
- * error that names the model PATH and returns its code. */
+/* Rejects --zoom and --focus for the model PATH: prints a usage error and
+ * returns its exit code. Returns EXIT_OK if OPTION has neither. */
 int zoom_option_reject_for_model(const struct tool *tool,
                                  const struct zoom_option *option,
                                  const char *path);

@@ -12,8 +12,8 @@
 #include "options/json_writer.h"
 #include "options/suggest.h"
 
-/* Enables the instruction sets of VALUE, a word of --kernels. Returns false if
- * the word is unknown or this CPU lacks the set. */
+/* Enables only the instruction sets of VALUE, a word of --kernels. Returns
+ * false if the word is unknown or this CPU lacks such a set. */
 static bool parse_instruction_sets(struct tool *tool, const char *value)
 {
     static const char *const words[] = {"c",    "sse41", "avx2",
@@ -31,7 +31,7 @@ static bool parse_instruction_sets(struct tool *tool, const char *value)
 }
 
 static char **line;
-/* option table of the command, for --options */
+/* option table of the command, which --options prints */
 static const struct option *taken;
 
 void tool_set_command_line(char **argv)
@@ -202,9 +202,9 @@ int tool_apply_option(struct tool *tool, int option, const char *value)
 const char *tool_find_option_value(int argc, char **argv, const char *shorts,
                                    const struct option *options, int option)
 {
-    /* Works on a copy, as getopt_long() reorders the words: an option at the
-     * end without its value would otherwise consume the input at the second
-     * pass. */
+    /* getopt_long() reorders the words, so it works on a copy. After
+     * reordering, a last option without its value would consume the input in
+     * the second pass. */
     char **const words = malloc(((size_t)argc + 1) * sizeof *words);
     const char *value = NULL;
     int c;
@@ -230,8 +230,8 @@ int tool_check_inputs(const struct tool *tool, int argc, char **argv, int n,
 
     if (optind + n == argc)
         return -1;
-    /* getopt_long() moves inputs after all options, so LAST is an option's
-     * value. */
+    /* getopt_long() has moved inputs behind all options. So LAST is the value
+     * of an option. */
     if (optind + n < argc || optind < 3 || last[0] == '-')
         return tool_usage(tool, "%s", text);
     return tool_usage(tool, "%s; '%s' is the value of %s", text, last,

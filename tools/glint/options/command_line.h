@@ -12,7 +12,7 @@
 /* getopt codes of options without a letter. */
 enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
 
-/* Options of every command, to end its struct option array with. */
+/* Options of every command; each option table ends with them. */
 #define TOOL_COMMON_SHORT "hVqvj:"
 #define TOOL_COMMON_OPTIONS                                                    \
     {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'V'},     \
@@ -27,36 +27,36 @@ enum { TOOL_HELP_ALL = 900, TOOL_OPTIONS };
         NULL, 0, NULL, 0                                                       \
     }
 
-/* Stores the command line, for suggestions of tool_apply_option() on unknown
- * options. */
+/* Stores the command line, in which tool_apply_option() finds an unknown option
+ * to suggest a similar one. */
 void tool_set_command_line(char **argv);
 
-/* Sets the GROUPS of engine options that TOOL accepts, and copies their
- * DEFAULTS. Returns an option array, valid until the next call: OWN, which must
- * end with a row without a name, the options of GROUPS, and the common options.
- * A name in both OWN and GROUPS is that of OWN. */
+/* Returns the option table of TOOL, valid until the next call: OWN, which must
+ * end with a row without a name, then the engine options of GROUPS, then the
+ * common options. An option of OWN hides that of GROUPS with the same name.
+ * Stores GROUPS and their DEFAULTS in TOOL. */
 const struct option *engine_build_options(struct tool *tool, unsigned groups,
                                           const struct glint_options *defaults,
                                           const struct option *own);
 
-/* Calls getopt_long(). Stores OPTIONS for --options, which shell completion
- * uses. */
+/* Calls getopt_long(). Stores OPTIONS for the option --options, which prints
+ * them for shell completion. */
 int tool_getopt(int argc, char *const *argv, const char *shorts,
                 const struct option *options, int *index);
 
-/* Applies a common option. Returns -1 to continue, else the exit code to end
- * with (EXIT_OK after --help and similar options). An unknown option is a usage
- * error. */
+/* Applies OPTION, a common option, with VALUE. Returns -1 to continue, else the
+ * exit code of the command: EXIT_OK after --help and similar options,
+ * EXIT_USAGE for an unknown option. */
 int tool_apply_option(struct tool *tool, int option, const char *value);
 
-/* Returns the value of the last occurrence of OPTION in ARGV, or NULL. Applies
- * no option, and resets getopt_long() to the first argument. */
+/* Returns the last value of OPTION in ARGV, or NULL if it is missing. No option
+ * is applied, and getopt_long() starts again at the first argument. */
 const char *tool_find_option_value(int argc, char **argv, const char *shorts,
                                    const struct option *options, int option);
 
-/* Checks that N arguments remain in ARGV after the options. Returns -1, or the
- * code of tool_usage() after printing TEXT; if arguments are missing, the
- * message also names the word that the last option consumed as its value. */
+/* Checks that N arguments of ARGV follow the options. Returns -1, or the code
+ * of tool_usage() after printing TEXT. If arguments are missing, the message
+ * also says that the last option consumed one as its value. */
 int tool_check_inputs(const struct tool *tool, int argc, char **argv, int n,
                       const char *text);
 

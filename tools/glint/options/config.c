@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads a configuration file: splits the text into lines and passes them to
- * inih one at a time. Otherwise inih would break long lines in two and treat an
+ * Reads a configuration file. It splits the text into lines and passes them to
+ * inih one by one, because inih would split long lines in two and treat an
  * indented line as a continuation of the previous value.
  */
 #include "options/config.h"
@@ -19,8 +19,8 @@
 #define MAX_OPTIONS 256       /* max number of options of a command */
 #define NAME_CHARS  100       /* max bytes of a file name in errors */
 
-/* One pass over a file: the first pass checks all lines, the second applies
- * them. */
+/* State of a pass over the file. The first pass checks all lines, the second
+ * one applies them. */
 struct pass {
     struct config *config;
     bool taking;
@@ -29,13 +29,13 @@ struct pass {
     int line, section_line;
     char section[64];            /* section of the previous entry */
     char where[NAME_CHARS + 32]; /* "FILE:LINE" */
-    char *value;                 /* free memory for values */
+    char *value;                 /* next free byte of config->values */
     bool stated[MAX_OPTIONS];
     int code; /* exit code; EXIT_OK: no error so far */
     struct glint_error *error;
 };
 
-/* Sets WHERE to "FILE:LINE", with only the end of a long file name. */
+/* Sets WHERE to "FILE:LINE". Of a long file name only the end is used. */
 static void set_error_location(struct pass *p, int line)
 {
     const size_t len = strlen(p->name);
@@ -44,8 +44,8 @@ static void set_error_location(struct pass *p, int line)
              p->name + (len > NAME_CHARS ? len - NAME_CHARS : 0), line);
 }
 
-/* Sets the error message to FORMAT, with ABOUT in place of its %s, and ends the
- * pass. Returns 0, which means failure to inih. */
+/* Sets the error message to FORMAT, whose %s is replaced by ABOUT, and ends the
+ * pass. Returns 0, by which inih stops. */
 static int report_config_error(struct pass *p, const char *format,
                                const char *about)
 {
@@ -89,8 +89,8 @@ static size_t read_next_line(struct pass *p, const char **line)
     return (size_t)(last - first);
 }
 
-/* Reads a line for inih, in place of fgets(). Comments are returned as empty
- * lines. */
+/* Reads a line for inih, which calls this function like fgets(). A comment
+ * becomes an empty line. */
 static char *read_line_for_inih(char *dst, int size, void *stream)
 {
     struct pass *const p = stream;
@@ -134,8 +134,9 @@ static void record_section(struct pass *p, const char *section)
         p->config->tool->name, p->where, section);
 }
 
-/* Returns the option NAME, or NULL if files must not contain it: help and
- * version are command line options, and files cannot be nested. */
+/* Returns the option NAME. Returns NULL if it does not exist or files must not
+ * contain it: options for help and version, and a further configuration
+ * file. */
 static const struct option *find_option(const struct config *config,
                                         const char *name)
 {
@@ -167,7 +168,7 @@ static int check_config_entry(struct pass *p, const struct option *option,
     return 1;
 }
 
-/* Applies OPTION with a copy of VALUE, as inih reuses its memory. */
+/* Applies OPTION with a copy of VALUE, whose memory inih uses again. */
 static int apply_config_entry(struct pass *p, const struct option *option,
                               const char *value)
 {
@@ -185,7 +186,7 @@ static int apply_config_entry(struct pass *p, const struct option *option,
     tool->where = NULL;
     p->value += bytes;
     if (code ==
-        EXIT_OK) /* an option that ends the command, such as --list-devices */
+        EXIT_OK) /* The option ends the command, such as --list-devices. */
         return report_config_error(
             p, "%s is an option of the command line only", option->name);
     if (code > 0)
@@ -243,7 +244,7 @@ int config_parse(struct config *config, const char *name, const char *text,
     run_config_parser_pass(&p, text, bytes);
     if (p.code != EXIT_OK)
         return p.code;
-    /* All values fit into BYTES, as each is shorter than its line. */
+    /* Each value is shorter than its line, so all values fit into BYTES. */
     p.value = config->values = malloc(bytes + 1);
     if (!p.value) {
         glint_error_report(error, GLINT_E_MEMORY, name, "no memory for it");

@@ -26,12 +26,12 @@
 
 #include "options/command_line.h"
 
-/* max bytes of a line; fits into the buffer of any build of inih */
+/* max bytes of a line; every build of inih has a buffer of this size */
 #define CONFIG_LINE 190
 
-/* Applies OPTION as from the command line; VALUE is NULL for a flag. Returns -1
- * to continue, else an exit code after printing the reason by tool_usage(),
- * which adds file and line. */
+/* Applies OPTION with VALUE, which is NULL for a flag, as from the command
+ * line. Returns -1 to continue. Otherwise prints the reason by tool_usage(),
+ * which adds file and line, and returns its exit code. */
 typedef int config_take_fn(void *ctx, const struct option *option,
                            const char *value);
 
@@ -40,18 +40,18 @@ struct config {
     const struct option *options; /* ends with a row without a name */
     config_take_fn *take;
     void *ctx;
-    char *values; /* private: values passed to TAKE; NULL before
-                     config_read() */
+    /* private: memory of the values passed to TAKE, or NULL */
+    char *values;
 };
 
-/* Reads the file PATH and applies its options. Option values stay valid until
- * config_free(). Returns an exit code, EXIT_INPUT for a bad file; on failure
- * prints the reason and frees CONFIG. */
+/* Reads the file PATH and applies its options. Their values stay valid until
+ * config_free(). On failure prints the reason, frees CONFIG and returns an exit
+ * code: EXIT_INPUT for an invalid file. */
 int config_read(struct config *config, const char *path);
 
-/* Applies the options in TEXT[BYTES]. NAME is used in errors. Returns EXIT_OK;
- * or EXIT_RUNTIME or EXIT_INPUT with ERROR set; or the exit code of TAKE, with
- * ERROR empty. */
+/* Applies the options in TEXT[BYTES]; NAME is the file's name in errors.
+ * Returns EXIT_OK; EXIT_RUNTIME or EXIT_INPUT with the reason in ERROR; or the
+ * exit code of TAKE, which has printed the reason. */
 int config_parse(struct config *config, const char *name, const char *text,
                  size_t bytes, struct glint_error *error);
 

@@ -68,8 +68,8 @@ static void write_explanation_words(struct page *page, const char *text)
     }
 }
 
-/* Sets VALUE and TEXT to the default of row I. TEXT is NULL if the option is
- * numeric or has no default. */
+/* Sets VALUE and TEXT to the default of row I of the option table. VALUE is NAN
+ * and TEXT is NULL if the default has not this type or does not exist. */
 static void find_option_default(const struct glint_options *defaults, int i,
                                 double *value, const char **text)
 {
@@ -93,8 +93,8 @@ static void find_option_default(const struct glint_options *defaults, int i,
         *value = NAN;
 }
 
-/* Returns the beginning of a range text for the lower limit LOW; START is its
- * buffer. */
+/* Returns the text that begins a range with the lower limit LOW: "LOW to ", or
+ * "above 0, up to ". START is memory for it. */
 static const char *format_range_start(double low, char start[32])
 {
     if (low > 0 && low < 1e-5)
@@ -103,8 +103,8 @@ static const char *format_range_start(double low, char start[32])
     return start;
 }
 
-/* Writes "(LOW to HIGH, default VALUE)" of row I, without values that the
- * help text already states. */
+/* Writes "(LOW to HIGH, default VALUE)" for row I of the option table. Omits
+ * values that its help text states already. */
 static void write_option_limits(struct page *page,
                                 const struct glint_options *defaults, int i)
 {

@@ -28,8 +28,9 @@ enum {
 #define ENGINE_ALL (~0U)
 
 /* Sets the option with getopt code CODE in VALUES to VALUE, which is NULL for a
- * flag. Returns -1; -2 if CODE is not an engine option; or an exit code after
- * printing which values the option accepts. */
+ * flag. Returns -1 on success and -2 if CODE is not an engine option. If VALUE
+ * is invalid, prints which values the option accepts and returns an exit
+ * code. */
 int engine_apply_option(const struct tool *tool, struct glint_options *values,
                         int code, const char *value);
 

@@ -28,7 +28,8 @@ static void write_json_text(FILE *file, const char *text)
     fputc('"', file);
 }
 
-/* Writes the next of VALUES, an integer whose size FORM states (l, ll or z). */
+/* Writes the next argument of VALUES, an integer, by the conversion FORM. Its
+ * size is that of l, ll or z in FORM, or int. */
 static void write_json_integer(FILE *file, const char *form, va_list *values)
 {
     const char *const size = form + strcspn(form, "lz");
@@ -43,7 +44,8 @@ static void write_json_integer(FILE *file, const char *form, va_list *values)
         fprintf(file, form, va_arg(*values, int));
 }
 
-/* Writes the next of VALUES by the conversion at FORMAT[N]. */
+/* Writes the next argument of VALUES by the conversion at FORMAT, which has N
+ * characters. */
 static void write_json_value(FILE *file, const char *format, size_t n,
                              va_list *values)
 {
@@ -76,8 +78,8 @@ static void write_json_comma(struct json_writer *json, const char *comma)
     json->is_due = false;
 }
 
-/* Writes the key, conversion or literal word at AT. Returns the format text
- * after it. */
+/* Writes the key, value or literal word that begins at AT in the format string.
+ * Returns the position after it. */
 static const char *write_json_word(struct json_writer *json, const char *at,
                                    va_list *values)
 {
@@ -117,7 +119,8 @@ void json_write(struct json_writer *json, const char *format, ...)
             json->is_due = true;
         } else if (*format == '\n') {
             n += strspn(format + 1, " ");
-            /* a closing bracket or the end of FORMAT needs no comma */
+            /* No comma is due before a closing bracket or at the end of
+             * FORMAT. */
             if (!strchr("]}", format[n]))
                 write_json_comma(json, ",");
             fwrite(format, 1, n, json->to);

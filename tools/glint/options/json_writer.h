@@ -18,8 +18,8 @@
 
 struct json_writer {
     FILE *to;
-    bool is_due; /* private: whether a comma must precede the next member or
-                    element */
+    /* private: whether the next member or element needs a comma before it */
+    bool is_due;
 };
 
 /* Writes FORMAT, which consists of

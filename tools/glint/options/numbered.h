@@ -17,10 +17,10 @@ bool numbered_is_pattern(const char *text);
  * Returns false if NAME is too long or PATTERN is not a pattern. */
 bool numbered_make_name(char *name, const char *pattern, int number);
 
-/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with the last run of N '#' of its
- * file name, as other programs name sequences, replaced by "%0Nd". Folders stay
- * as they are. Returns false if the name has no '#', or if PATTERN is too long
- * or not a pattern. */
+/* Sets PATTERN, NUMBERED_BYTES long, to TEXT with the last run of N '#' in its
+ * file name replaced by "%0Nd". Other programs name sequences by '#'. Returns
+ * false if the file name has no '#', or if PATTERN is too long or not a
+ * pattern. */
 bool numbered_convert_hashes(char *pattern, const char *text);
 
 #endif

@@ -11,9 +11,9 @@ static int min_of_three(int a, int b, int c)
     return ab < c ? ab : c;
 }
 
-/* Returns the edit distance from A to B: number of characters to insert,
- * remove, change or swap with the next one. Returns SUGGEST_CHARS if A or B has
- * that many characters or more. */
+/* Returns the edit distance from A to B: the min number of characters to
+ * insert, remove, change, or swap with the next one. Returns SUGGEST_CHARS if A
+ * or B has SUGGEST_CHARS characters or more. */
 static int compute_edit_distance(const char *a, const char *b)
 {
     const int n = (int)strlen(a), m = (int)strlen(b);

@@ -4,9 +4,9 @@
  *
  *     struct suggest s;
  *     suggest_begin(&s, "ovrelay");
- *     suggest_add_candidate(&s, "overlay", 7);                    each known
- * word if (suggest_find_best(&s)) printf("did you mean %s?",
- * suggest_find_best(&s));
+ *     suggest_add_candidate(&s, "overlay", 7);     each known word
+ *     if (suggest_find_best(&s))
+ *         printf("did you mean %s?", suggest_find_best(&s));
  */
 #ifndef GLINT_TOOLS_OPTIONS_SUGGEST_H
 #define GLINT_TOOLS_OPTIONS_SUGGEST_H
@@ -24,16 +24,16 @@ struct suggest {
 
 void suggest_begin(struct suggest *suggest, const char *word);
 
-/* Compares CANDIDATE[N] with the mistyped word. A candidate that contains the
- * word has at most distance 1 if the word has 3 letters or more. */
+/* Compares CANDIDATE[N] with the mistyped word. If the word has 3 letters or
+ * more and CANDIDATE contains it, the distance counts as at most 1. */
 void suggest_add_candidate(struct suggest *suggest, const char *candidate,
                            size_t n);
 
-/* Returns the nearest candidate if its distance is at most a third of its
- * letters, or 1; else NULL. */
+/* Returns the candidate with the smallest distance. Returns NULL if that
+ * distance exceeds 1 and a third of the candidate's letters. */
 const char *suggest_find_best(const struct suggest *suggest);
 
-/* Returns "; did you mean 'BEST'?", or "" if suggest_find_best() is NULL. */
+/* Returns "; did you mean 'BEST'?", or "" if no candidate is similar enough. */
 const char *suggest_from_words(struct suggest *suggest);
 
 #endif

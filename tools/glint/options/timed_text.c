@@ -15,7 +15,8 @@
 #include "options/tool.h"
 #include "posix/input.h"
 
-enum { READINGS = 16 }; /* max number of read() calls on a pipe per turn */
+/* max number of read() calls per turn, that is per picture */
+enum { READINGS = 16 };
 
 const char text_no_memory[] = "no memory";
 
@@ -128,7 +129,7 @@ static char *read_next_pipe_line(struct text_lines *l)
             else
                 l->is_cut = true;
         }
-        if (!read_from_pipe(l)) /* the last line may lack a line feed */
+        if (!read_from_pipe(l)) /* The last line may end without a line feed. */
             return l->has_ended && l->n_text ? terminate_line(l) : NULL;
     }
 }
@@ -261,7 +262,7 @@ const char *text_parse_json_object(struct text_lines *lines, char *line,
                                    const struct text_column *column, int n,
                                    char **field)
 {
-    /* at: position of the opening brace, later of each separator */
+    /* AT is the position of the opening brace or of the comma before a key. */
     char *at = line, mark = ',';
 
     while (mark == ',') {

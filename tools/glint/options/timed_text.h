@@ -9,8 +9,8 @@
  * or from a pipe, without waiting for data:
  *
  *     text_lines_open_pipe(&lines, path, &error);
- *     text_lines_reset_read_limit(&lines);                             each
- * picture while ((line = text_lines_read_next(&lines)))
+ *     text_lines_reset_read_limit(&lines);         each picture
+ *     while ((line = text_lines_read_next(&lines)))
  *         ...
  *     text_lines_close(&lines);
  */
@@ -24,16 +24,16 @@
 
 enum {
     TEXT_MAX_FRAME = 1000000000,
-    TEXT_PIPE_BYTES = 512 /* max bytes of a line from a pipe, including its
-                             end */
+    /* max bytes of a line of a pipe, with its end */
+    TEXT_PIPE_BYTES = 512
 };
 
 struct text_lines {
     const char *name; /* name of the file, for errors */
     int number;       /* number of the last line, counted from 1 */
     bool is_pipe;
-    bool is_long; /* whether the last line of the pipe was too long and was cut
-                   */
+    /* whether the last line of the pipe was truncated */
+    bool is_long;
     char cause[200]; /* text of text_lines_format_cause() */
 
     /* Private. */
@@ -42,13 +42,13 @@ struct text_lines {
     char text[TEXT_PIPE_BYTES], bytes[4096];
     size_t n_text, at, n_bytes;
     bool is_cut, has_ended;
-    int left; /* remaining number of read() calls in this turn */
+    int left; /* number of read() calls left in this turn */
 };
 
 /* ------------------------------------------------------------------- lines */
 
-/* Opens a copy of TEXT[BYTES], or, if TEXT is NULL, the file NAME, of at
- * most BYTES bytes (0: any size). NAME must outlive LINES. Errors:
+/* Opens a copy of TEXT[BYTES]. If TEXT is NULL, opens the file NAME, which must
+ * have at most BYTES bytes (0: any size). NAME must outlive LINES. Errors:
  * GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT if the text contains a zero
  * byte. */
 enum glint_status text_lines_open(struct text_lines *lines, const char *name,
@@ -58,25 +58,25 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
 /* Returns whether PATH is a FIFO. */
 bool text_is_named_pipe(const char *path);
 
-/* Opens the FIFO PATH, or the standard input if PATH is "-".
- * text_lines_reset_read_limit() begins a turn, in which at most 64 KiB are
- * read. Zero bytes become '?'. Error: GLINT_E_IO. */
+/* Opens the FIFO PATH, or standard input if PATH is "-".
+ * text_lines_reset_read_limit() begins a turn, such as the time of a picture,
+ * in which at most 64 KiB are read. Zero bytes become '?'. Error:
+ * GLINT_E_IO. */
 enum glint_status text_lines_open_pipe(struct text_lines *lines,
                                        const char *path,
                                        struct glint_error *error);
 void text_lines_reset_read_limit(struct text_lines *lines);
 
-/* Return the next line, which the caller may change, or NULL at the end of
- * the file or turn. text_lines_read_untrimmed() returns every line unchanged;
- * text_lines_read_next() trims lines and skips those that are empty or begin
- * with
- * #. */
+/* Return the next line, which the caller may change. Return NULL at the end of
+ * the file or if the turn has no more lines. text_lines_read_untrimmed()
+ * returns every line unchanged. text_lines_read_next() trims lines, and skips
+ * empty lines and those that begin with '#'. */
 char *text_lines_read_untrimmed(struct text_lines *lines);
 char *text_lines_read_next(struct text_lines *lines);
 
 /* Calls TAKE with each line until the end or the first failure, then closes
- * LINES. TAKE returns NULL, or the cause of a failure, which may be
- * text_no_memory. On failure ERROR is "FILE:LINE: CAUSE", and the result
+ * LINES. TAKE returns NULL on success, else a message, which may be
+ * text_no_memory. On failure sets ERROR to "FILE:LINE: MESSAGE" and returns
  * GLINT_E_FORMAT or GLINT_E_MEMORY. */
 typedef const char *text_take_fn(void *ctx, struct text_lines *lines,
                                  char *line);
@@ -90,7 +90,7 @@ enum glint_status text_lines_report_error(const struct text_lines *lines,
                                           struct glint_error *error,
                                           const char *cause);
 
-/* Formats a message into lines->cause and returns it. */
+/* Formats a message into lines->cause and returns lines->cause. */
 const char *text_lines_format_cause(struct text_lines *lines,
                                     const char *format, ...) GLINT_PRINTF(2, 3);
 
@@ -104,22 +104,23 @@ struct text_column {
     const char *range; /* error message for values out of range */
 };
 
-/* Splits LINE at commas into FIELD[MAX], trimmed. Returns the number of fields,
- * which is above MAX if there are more. */
+/* Splits LINE at commas into FIELD[MAX] without blanks around the fields.
+ * Returns the number of fields, or a number above MAX if they do not fit. */
 int text_split_fields(char *line, char **field, int max);
 
 /* Returns the index in COLUMN[N] of the column NAME, or -1. */
 int text_find_column(const struct text_column *column, int n, const char *name);
 
-/* Sets FIELD[N] to the values of LINE, a flat JSON object whose keys are names
- * of COLUMN[N]. String values keep their opening quote. Returns NULL, or the
- * cause of a failure. */
+/* Parses LINE, a flat JSON object with keys that are names in COLUMN[N]. Sets
+ * FIELD[K] to the value of column K; a string keeps its opening quote. Returns
+ * NULL on success, or an error message. */
 const char *text_parse_json_object(struct text_lines *lines, char *line,
                                    const struct text_column *column, int n,
                                    char **field);
 
-/* Sets VALUE to the number TEXT. Returns NULL on success, OTHER if TEXT is
- * not a number, or column->range if it is out of range. */
+/* Sets VALUE to the number TEXT. Returns NULL on success, else an error
+ * message: OTHER if TEXT is not a number, column->range if the number is out of
+ * range. */
 const char *text_parse_value(const struct text_column *column, const char *text,
                              const char *other, double *value);
 

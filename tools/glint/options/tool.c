@@ -102,7 +102,7 @@ int tool_fail(const struct tool *tool, enum glint_status status,
                                [GLINT_E_CLOSED] = EXIT_OK,
                                [GLINT_E_DEVICE] = EXIT_DEVICE};
 
-    /* a reader that closed the pipe early is not an error */
+    /* A reader that closes the pipe before its end is not an error. */
     if (status == GLINT_E_CLOSED)
         return EXIT_OK;
     tool_error(tool, "%s", text && *text ? text : glint_status_text(status));
@@ -140,7 +140,8 @@ void tool_watch_closed_pipe(void)
 {
     struct sigaction note = {.sa_handler = record_closed_pipe};
 
-    /* writing to the closed pipe also fails with an error, which is handled */
+    /* The handler only records the signal. The write that caused it fails with
+     * an error, which is handled. */
     sigaction(SIGPIPE, &note, NULL);
 }
 
@@ -240,7 +241,7 @@ int tool_check_output(const struct tool *tool, const char *path)
     struct glint_error error = {""};
     const char *const slash = strrchr(path, '/'), *pattern = strchr(path, '%');
 
-    /* the number is in the name of a folder */
+    /* A numbered pattern in the name of a folder is not checked. */
     if (slash && pattern && pattern < slash)
         return EXIT_OK;
     if (glint_output_check_path(path, &error) == GLINT_OK)
@@ -284,16 +285,16 @@ void tool_progress_set_part(struct tool_progress *p, double from, double share)
     p->share = share;
 }
 
-/* Returns the estimated time left, s, at the rate since the start of the
- * clock. */
+/* Returns the estimated time left, seconds. SPENT are the seconds since the
+ * start of the clock, DONE is the fraction of the work done. */
 static double estimate_time_left_s(const struct tool_progress *p, double spent,
                                    double done)
 {
     return done > p->before ? spent * (1 - done) / (done - p->before) : 0;
 }
 
-/* Prints a progress line every ten seconds if standard error is not a
- * terminal. */
+/* Prints a progress line, at most every ten seconds. Used if standard error is
+ * not a terminal. */
 static void print_progress_line(struct tool_progress *p, double now,
                                 double done)
 {
@@ -306,9 +307,9 @@ static void print_progress_line(struct tool_progress *p, double now,
             100 * p->most, spent, estimate_time_left_s(p, spent, done));
 }
 
-/* Prints a time estimate once, if the time is at least p->least_s. It waits for
- * a quarter of that time, as the first ghosts of a bake are not
- * representative. */
+/* Prints an estimate of the remaining time once, if the total is at least
+ * p->least_s. Waits for a quarter of that time first, because the first ghosts
+ * of a bake do not represent the others. */
 static void print_time_estimate(struct tool_progress *p, double spent,
                                 double done)
 {

@@ -24,16 +24,18 @@ enum exit_code {
 struct tool {
     const char *name; /* name of the command */
     const char *help; /* help text of the command's own options */
-    /* groups of engine options that the command has, one bit per enum
-     * glint_option_group, and their defaults; NULL if there are none */
+    /* engine options that the command accepts: groups, one bit per enum
+     * glint_option_group, and default values; NULL: no engine options */
     unsigned groups;
     const struct glint_options *defaults;
-    const char *help_end; /* help text after these options, or NULL */
+    /* help text that follows the engine options, or NULL */
+    const char *help_end;
     bool json, quiet;
-    /* rejects a lens whose model is not cached, as a reload must not bake */
+    /* whether a lens without a cached model is rejected; a reload of glint live
+     * must not bake */
     bool no_bake;
-    /* whether the command is bake: files named by its input may take any time
-     * to bake */
+    /* whether the command is glint bake, which sets no limit to the bake time
+     * of files that its input names */
     bool is_bake;
     int verbose;
     int n_threads;
@@ -43,12 +45,13 @@ struct tool {
     const char *kernels; /* argument of --kernels, or NULL */
     /* thread pool, created by tool_start_threads() */
     struct glint_workers *workers;
-    const char *written;       /* output file, which no scene may read, or
-                                  NULL */
+    /* output file of the command, which must not be an input of a scene; may be
+     * NULL */
+    const char *written;
     struct glint_error *cause; /* receives messages of tool_error(); may be
                                   NULL */
-    const char *where; /* "FILE:LINE" of the option being parsed, or NULL for
-                          the command line */
+    /* "FILE:LINE" of the option that is parsed; NULL: command line */
+    const char *where;
 };
 
 /* Starts the worker threads, which tool_stop_threads() ends. Returns an exit
@@ -56,10 +59,10 @@ struct tool {
 int tool_start_threads(struct tool *tool);
 void tool_stop_threads(struct tool *tool);
 
-/* Detect failed writes to standard output. Call tool_watch_closed_pipe() at the
- * start of a program and tool_close_stdout() at its end, which returns CODE, or
- * EXIT_OUTPUT if a write failed. A reader that closed its pipe is not a
- * failure. */
+/* Detect failed writes to standard output. A program calls
+ * tool_watch_closed_pipe() at its start and tool_close_stdout() at its end. The
+ * latter returns CODE, or EXIT_OUTPUT if a write failed. If the reader of a
+ * pipe has closed it, that is not a failure. */
 void tool_watch_closed_pipe(void);
 int tool_close_stdout(int code);
 
@@ -69,18 +72,18 @@ unsigned tool_enabled_instruction_sets(const struct tool *tool);
 /* Prints "glint COMMAND: ..." and copies the message to the tool's cause. */
 void tool_error(const struct tool *tool, const char *format, ...);
 
-/* Print as tool_error() and return an exit code. tool_usage() returns
- * EXIT_USAGE, or EXIT_INPUT if the option comes from a file. tool_fail()
- * returns the code of STATUS; for GLINT_E_CLOSED, a reader that closed its
- * pipe, it prints nothing. */
+/* Print an error like tool_error() and return an exit code. tool_usage()
+ * returns EXIT_USAGE, or EXIT_INPUT if the option comes from a file.
+ * tool_fail() returns the code of STATUS. For GLINT_E_CLOSED, which means that
+ * the reader of a pipe has closed it, tool_fail() prints nothing. */
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
 
-/* Subtracts WORK from *LEFT, the remaining bake work. LEFT NULL: unlimited. If
- * not enough is left, returns GLINT_E_LENS with the reason in ERROR: the bake
- * of FILE would take more than about 30 s of processor time, and only the
- * command bake may take longer. */
+/* Subtracts WORK from *LEFT, the remaining bake work; LEFT is NULL if that is
+ * not limited. If too little is left, returns GLINT_E_LENS with the reason in
+ * ERROR: the bake of FILE would take more than about 30 s of processor time,
+ * which only glint bake allows. */
 enum glint_status tool_count_bake_work(int64_t *left, int64_t work,
                                        const char *file,
                                        struct glint_error *error);
@@ -92,12 +95,13 @@ int tool_report_bad_value(const struct tool *tool, const char *option,
 
 /* ------------------------------------------------------------------ numbers */
 
-/* Parse all of TEXT: as one finite number, or as up to MAX numbers separated
- * by commas. Return the number of values, 0 on failure. */
+/* Parse TEXT, without a rest: tool_parse_number() a finite number,
+ * tool_parse_numbers() up to MAX of them, separated by commas. Return how many
+ * there are, 0 on failure. */
 bool tool_parse_number(const char *text, double *value);
 int tool_parse_numbers(const char *text, double *values, int max);
 
-/* Parses all of TEXT as an integer within LOW .. HIGH. Returns false on
+/* Parses TEXT, without a rest, as an integer, LOW .. HIGH. Returns false on
  * failure. */
 bool tool_parse_integer(const char *text, int low, int high, int *value);
 
@@ -113,14 +117,14 @@ double tool_clock_s(void);
 
 /* ------------------------------------------------------------------- output */
 
-/* Checks whether a file can be created at PATH, before a lens is baked. Returns
+/* Checks that a file can be created at PATH, before a lens is baked. Returns
  * EXIT_OK, or EXIT_OUTPUT after printing the reason. PATH may be a pattern of
- * numbered files; it is not checked if the number is in a folder's name. */
+ * numbered files. A pattern with the number in the name of a folder is not
+ * checked. */
 int tool_check_output(const struct tool *tool, const char *path);
 
-/* Checks that PATH has the extension ENDING for a file of type WHAT, or no
- * extension, as "-" or /dev/stdout. Returns EXIT_OK, or the code of
- * tool_usage(). */
+/* Checks that PATH, an output of type WHAT, has the extension ENDING or none,
+ * like "-" and /dev/stdout. Returns EXIT_OK, or the code of tool_usage(). */
 int tool_check_ending(struct tool *tool, const char *path, const char *ending,
                       const char *what);
 
@@ -135,30 +139,35 @@ int tool_save_text(const struct tool *tool, const char *path, FILE *file,
 /* ----------------------------------------------------------------- progress */
 
 /* Progress on standard error: a bar on a terminal, else a line every ten
- * seconds. For work of LEAST_S or more an estimate is printed first. PROGRESS
- * below is a struct tool_progress, and DONE is 0 .. 1. */
+ * seconds. An estimate of the time is printed first if it is at least LEAST_S.
+ * In the functions below PROGRESS is a struct tool_progress, and DONE is the
+ * fraction of the work done, 0 .. 1. */
 struct tool_progress {
     const char *what;
-    const char *less;    /* option that shortens the work, printed if it takes
-                            minutes, or NULL */
-    const char *besides; /* work that the estimate does not include, printed
-                            with it, or NULL */
-    double from, share;  /* see tool_progress_set_part() */
-    double least_s; /* min estimated time for which an estimate is printed, s;
-                       default: 20 */
-    bool waits;     /* whether the clock starts with the first report */
-    double before;  /* fraction of the work done when the clock started */
+    /* option that shortens the work, or NULL; printed for work of minutes */
+    const char *less;
+    /* text after the estimate about work that it omits, or NULL */
+    const char *besides;
+    double from, share; /* see tool_progress_set_part() */
+    /* min total time for which an estimate is printed, s */
+    double least_s;
+    /* whether the clock starts with the first call of tool_progress_show() */
+    bool waits;
+    /* fraction of the work that was done when the clock started */
+    double before;
     bool shown, is_terminal;
-    bool told; /* whether the estimate was printed, or is below LEAST_S */
-    double (*clock)(void); /* seconds; tool_clock_s() except in unit tests */
+    /* whether the estimate was printed or was too short to be printed */
+    bool told;
+    /* returns seconds; tool_clock_s() except in unit tests */
+    double (*clock)(void);
     double started, last;
-    double most; /* max progress so far: the bar never moves back */
+    double most; /* max fraction reported so far; the bar never moves back */
 };
 
 void tool_progress_start(struct tool_progress *p, const struct tool *tool,
                          const char *what);
-/* Maps DONE of later calls to FROM + SHARE * DONE of the whole work. The
- * initial FROM and SHARE are 0 and 1. */
+/* Makes the following calls of tool_progress_show() a part of the work: DONE
+ * counts as FROM + SHARE * DONE. Initially FROM is 0 and SHARE is 1. */
 void tool_progress_set_part(struct tool_progress *p, double from, double share);
 void tool_progress_show(void *progress, double done);
 void tool_progress_end(struct tool_progress *p);
