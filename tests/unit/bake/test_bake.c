@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests whole baked models: their bytes do not depend on workers, order or
- * repetition; they contain every visible ghost; the errors that they state are
- * true.
+ * Tests complete baked models. Their bytes do not depend on the number of
+ * workers, the order of jobs or repetition. They contain every visible ghost,
+ * and the errors stated in them are true.
  */
 #include <math.h>
 #include <stdio.h>
@@ -116,7 +116,8 @@ static void parse_lens(struct glint_prescription *lens, const char *text)
         fail_msg("%s", error.text);
 }
 
-/* Parses a lens of one element, which has one pair of surfaces. */
+/* Parses a lens of one element. Its two surfaces are the only pair that
+ * reflects a ghost. */
 static void parse_singlet(struct glint_prescription *lens)
 {
     parse_lens(lens, "name singlet\n"
@@ -305,9 +306,9 @@ static bool is_ray_in_pupil_part(const struct glint_transfer *t, double x_mm,
            fabs(uv[1]) >= ldexp(glint_transfer_v(t, 0, 1), -30);
 }
 
-/* Returns how many of the N pupil parts contain the ray from (X, Y). Sets *OFF
- * to the distance, mm, from the sensor position that the last of them gives to
- * that of RAY. */
+/* Returns how many of the N parts of a pupil contain the ray that starts at (X,
+ * Y), mm. Sets *OFF to the distance, mm, between the position of RAY on the
+ * sensor and the position that the last of these parts gives. */
 static int count_pupil_parts_with_ray(const struct glint_transfer *part, int n,
                                       double x_mm, double y_mm,
                                       const struct glint_ray *ray, double *off)
@@ -333,8 +334,8 @@ static int count_pupil_parts_with_ray(const struct glint_transfer *part, int n,
     return found;
 }
 
-/* The pupil of a triplet's ghost (surfaces 0 and 3) is divided into parts,
- * as its rays fold in the stop plane. Checks that each unblocked ray lies in
+/* A triplet's ghost (surfaces 0 and 3) has rays that fold in the stop plane,
+ * so its pupil is divided into parts. Checks that each unblocked ray lies in
  * exactly one part, except on borders between parts, and that no part is
  * empty. */
 TEST(each_ray_lies_in_one_pupil_part)
@@ -349,7 +350,8 @@ TEST(each_ray_lies_in_one_pupil_part)
     struct baked b;
 
     if (getenv("GLINT_QUICK") && *getenv("GLINT_QUICK"))
-        /* Costs 30 s under sanitizers; other tests run the same code. */
+        /* The test is skipped under sanitizers, where it takes 30 s; other
+         * tests run the same code. */
         skip();
     load_lens(&lens, "../tests/lenses/cooke-triplet");
     parse_and_bake_lens(&b, &lens, NULL, 1, 0.5);
@@ -420,7 +422,8 @@ TEST(near_second_barrel_needs_a_small_tolerance)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-/* Checks that a zone that is restricted to a pupil part has the same pupil box,
+/* A zone is a range of field angles with polynomials of its own. Checks that
+ * restricting a zone to a part of its pupil gives the same pupil box, expressed
  * in the coordinates of the part. */
 TEST(cut_zone_keeps_its_box)
 {
@@ -455,8 +458,9 @@ TEST(cut_zone_keeps_its_box)
     }
 }
 
-/* Checks that cropping a zone that is larger than its ghost, in pupil position
- * and wavelength, removes only regions without light. */
+/* A zone is a range of field angles with polynomials of its own. Checks a zone
+ * whose pupil box and wavelength band are larger than its ghost: cropping the
+ * zone removes only regions without light. */
 TEST(cropping_removes_only_invisible_regions)
 {
     const double range[2] = {sin(0.1), sin(0.2)};
@@ -562,9 +566,9 @@ static void add_ray_errors(struct tally *tally, const struct glint_transfer *t,
     }
 }
 
-/* Sets RMS to the root mean square errors of SYSTEM of GHOST, in the units of
- * the model file. Measures independently of src/bake/measure_model.c. Returns
- * the number of rays measured. */
+/* Sets RMS to the root mean square errors of the polynomials of SYSTEM of
+ * GHOST, in the units of the model file. The function is independent of
+ * src/bake/measure_model.c. Returns the number of rays measured. */
 static long measure_system_errors(const struct glint_lens *lens, int ghost,
                                   int system, double rms[TRIED])
 {
@@ -616,8 +620,8 @@ static double read_error_stated_in_model(uint16_t stored)
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-/* Checks that the errors stated in a model are within 30 % of those measured by
- * measure_system_errors(). */
+/* Checks that the errors stated in a model are within 30 % of the errors that
+ * measure_system_errors() measures. */
 TEST(stated_errors_match_measured_errors)
 {
     for (int g = 0; g < setup.n_ghosts; g++)
@@ -696,8 +700,8 @@ TEST(fit_follows_a_zero_of_the_energy)
     free(b.data);
 }
 
-/* Checks that both error measurements detect a wrong coefficient, which shows
- * that the tests above can fail. */
+/* Checks that a wrong coefficient raises the errors that both measurements
+ * report. This shows that the tests above can fail. */
 TEST(wrong_coefficient_is_detected)
 {
     static const struct glint_fitted_system no_barrels;
@@ -781,7 +785,8 @@ TEST(key_depends_on_every_parameter)
         *of_options[k] = nextafter(*of_options[k], 1000);
         check_model_key_differs(&lens, &o);
     }
-    /* fields that never change the model do not change its key */
+    /* These fields do not affect the model, so its key does not depend on
+     * them. */
     o = options;
     o.workers = (void *)&lens;
     o.progress_ctx = &lens;
@@ -852,8 +857,8 @@ TEST(loosest_tolerance_keeps_a_term)
     free(b.data);
 }
 
-/* Checks that no range of angles is empty in a field of only 1e-3 mm, where a
- * ghost may be visible at angle 0 only. */
+/* Checks a field of only 1e-3 mm, in which a ghost may be visible at angle 0
+ * only: no range of angles is empty. */
 TEST(ranges_of_a_tiny_field_have_width)
 {
     static const double band_nm[2] = {400, 700};

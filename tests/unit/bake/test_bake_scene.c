@@ -144,7 +144,8 @@ TEST(right_handed_scene_is_mirrored)
     check_scaled_vector(b.model.light[1].at, 1, 2, -3, unit);
     assert_int_equal(b.model.light[1].radius, 1 << 17);
     assert_true(glint_real_value(b.model.light[1].rgb[1]) == 7);
-    /* .1, .7 and .2 are each rounded up, yet their sum must stay 1 */
+    /* The weights .1, .7 and .2 would all be rounded up, but their sum must
+     * stay 1. */
     assert_int_equal(b.model.material[0].ambient_q15, 3277);
     assert_int_equal(b.model.material[0].diffuse_q15, 22937);
     assert_int_equal(b.model.material[0].specular_q15, 6554);
@@ -163,10 +164,9 @@ TEST(right_handed_scene_is_mirrored)
     free(b.data);
 }
 
-/* Corners are clockwise seen from outside for both hands; left-handed
- * coordinates are unchanged. */
-/* A12: checks that transparent objects of index 1 are baked without refraction
- * and drawn like that (A11), and that objects of other indices are not. */
+/* Requirement A12: checks that a transparent object of index 1 is baked without
+ * refraction and drawn without it (requirement A11), and that objects of other
+ * indices refract. */
 TEST(a12_index_1_is_not_refracted)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
@@ -189,6 +189,9 @@ TEST(a12_index_1_is_not_refracted)
         free(b[i].data);
 }
 
+/* Checks that for both handednesses the corners of baked triangles are
+ * clockwise as seen from outside, and that left-handed coordinates are
+ * unchanged. */
 TEST(both_handednesses_give_the_same_mesh)
 {
     struct baked b;

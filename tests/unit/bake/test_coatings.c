@@ -207,7 +207,7 @@ TEST(coatings_have_their_films)
     check_films_of_coating("broadband-3", 520, 3, b3);
     check_films_of_coating("broadband-4/510", 510, 4, b4);
     check_films_of_coating("510/1.46/2.3:.25/1.46:1.5", 510, 3, own);
-    /* In a lens table the same words are separated by spaces. */
+    /* In a lens table spaces separate the words of a coating. */
     parse_valid_table_with_line(&lens, "coating 510 1.46 2.3:.25 1.46:1.5\n");
     parse_valid_table_with_line(&other, "");
     apply_coatings(&other, "510/1.46/2.3:.25/1.46:1.5");
@@ -233,10 +233,9 @@ static double compute_reflectance(const struct glint_prescription *lens, int k,
                              glint_coating_at(&s->coating, nm, film));
 }
 
-/* Checks that a quarter-wave film reflects least at its design wavelength
- * (surfaces 0, 2 and 4), and that a half-wave film for 550 nm (surface 3) has
- * no effect at 550 nm but reduces the reflectance at shorter and longer
- * wavelengths. */
+/* Checks that a quarter-wave film (surfaces 0, 2 and 4) reflects least at its
+ * design wavelength. A half-wave film for 550 nm (surface 3) must have no
+ * effect at 550 nm, and reduce the reflectance at other wavelengths. */
 TEST(quarter_wave_film_reflects_least_at_its_wavelength)
 {
     static struct glint_prescription lens, bare;
@@ -274,7 +273,7 @@ TEST(coatings_change_the_key)
     parse_valid_table_with_line(&lens, "");
     key = glint_bake_key(&lens, &options);
     parse_valid_table_with_line(&other, "mixed-coating 450 620\n");
-    /* a mixed coating does not change the key until it is applied */
+    /* A mixed coating changes the model key only when it is applied. */
     assert_true(glint_bake_key(&other, &options) == key);
     glint_prescription_coat(&other, other.mixed, other.n_mixed);
     assert_true(glint_bake_key(&other, &options) != key);

@@ -360,8 +360,8 @@ TEST(rejects_wrong_lines)
     free(s);
 }
 
-/* Checks that the same numbers with the other handedness describe the mirrored
- * scene: the x axis of the camera is reversed. */
+/* Checks that a scene with the other handedness and the same numbers is the
+ * mirrored scene: the x axis of the camera is reversed. */
 TEST(handedness_mirrors_the_camera)
 {
     struct glint_description *s = malloc(sizeof *s);

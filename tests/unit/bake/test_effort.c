@@ -13,10 +13,10 @@
 /* work before the first ghost, in units of one polynomial fit; see effort.c */
 enum { HEAD = 32 };
 
-/* Simulates the bake of N ghosts of WORK[] fits each on one worker. EXPECTED:
- * work passed to glint_effort_set_estimates(), fits; 0: the function is not
- * called. Sets SAID to reported / true remaining time after 1/4, 1/2 and 3/4 of
- * the bake. */
+/* Simulates the bake of N ghosts on one worker; ghost i needs WORK[i] fits.
+ * EXPECTED is the number of fits announced by glint_effort_set_estimates(), or
+ * 0 if nothing is announced. Sets SAID to the reported remaining time divided
+ * by the true one after 1/4, 1/2 and 3/4 of the bake. */
 static void simulate_bake_progress(const double *work, int n, bool wide,
                                    double expected, double said[3])
 {
@@ -60,10 +60,10 @@ TEST(equal_ghosts_are_estimated_within_25_percent)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
 
-/* Checks, for ghosts whose work differs by factors of up to 100, in any order,
- * that the estimate at half time is nearly always within a factor of three of
- * the true time. An estimate from the number of ghosts alone was wrong by a
- * factor of ten. */
+/* Checks ghosts in any order whose work differs by factors of up to 100: the
+ * time estimated half-way is nearly always within a factor of three of the true
+ * time. An estimate from the number of ghosts alone was wrong by a factor of
+ * ten. */
 TEST(random_ghosts_are_estimated_within_a_factor_of_3)
 {
     uint32_t seed = 7;
@@ -80,8 +80,8 @@ TEST(random_ghosts_are_estimated_within_a_factor_of_3)
     assert_in_range(off, 0, 10);
 }
 
-/* Checks that the estimate uses the progress within the last ghost, its angles,
- * if that ghost takes most of the time. */
+/* Checks a bake whose last ghost takes most of the time: the estimate uses the
+ * fraction of that ghost's angles that are done. */
 TEST(long_last_ghost_is_estimated_by_its_angles)
 {
     double work[20], said[3];
@@ -93,8 +93,8 @@ TEST(long_last_ghost_is_estimated_by_its_angles)
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
 
-/* Checks that the estimate distributes ghosts that were not begun among the
- * workers, but does not distribute a ghost in progress. */
+/* Checks the estimate for several workers: they share the ghosts that were not
+ * begun, but only one of them works on a ghost in progress. */
 TEST(workers_share_ghosts)
 {
     double done[2];
@@ -119,9 +119,9 @@ TEST(workers_share_ghosts)
     }
 }
 
-/* Checks, if the last ghosts take most of the time and
- * glint_effort_set_estimates() announced their work, that the estimate is
- * within a factor of two from the first quarter on. */
+/* Checks a bake whose last ghosts take most of the time, with their work
+ * announced by glint_effort_set_estimates(): from the first quarter on, the
+ * estimate is within a factor of two of the true time. */
 TEST(announced_work_improves_early_estimates)
 {
     double work[100], said[3];

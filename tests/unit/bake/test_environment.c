@@ -62,8 +62,8 @@ TEST(octahedral_mapping_inverts)
     assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
 }
 
-/* Checks that a texel beyond an edge of the map is replaced by one that is its
- * neighbour on the sphere. */
+/* The octahedral map folds over at its edges. Checks that a texel beyond an
+ * edge is replaced by the texel that is its neighbour on the sphere. */
 TEST(texels_outside_an_edge_map_to_neighbours)
 {
     struct glint_sphere s;
@@ -82,7 +82,8 @@ TEST(texels_outside_an_edge_map_to_neighbours)
                 glint_sphere_get_texel_index(SIDE, across[e][2], across[e][3]);
 
             assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
-            /* at most the diagonal of the largest texels */
+            /* Neighbours on the sphere are at most the diagonal of the largest
+             * texel apart. */
             assert_true(
                 compute_dot_product(s.texel[a].toward, s.texel[b].toward) >
                 cos(2 * sqrt(6) / SIDE));
@@ -163,7 +164,6 @@ static double uniform_environment_light(const double d[3])
     return 12.5;
 }
 
-/* Checks that uniform light stays uniform at all levels. */
 TEST(uniform_light_stays_uniform)
 {
     const struct glint_environment_options o = make_environment_options();
@@ -192,9 +192,9 @@ static double linear_environment_light(const double d[3])
     return 1 + d[1];
 }
 
-/* For incident light 1 + y, the irradiance of a white surface is proportional
- * to 1 + 2/3 y. Rotating the environment by 90 degrees to the right moves the
- * light from the front to the right. */
+/* Returns light that is brightest in front. An environment rotated by 90
+ * degrees to the right has this light on the right, as 1 + x. The irradiance of
+ * a white surface is then proportional to 1 + 2/3 x. */
 static double forward_environment_light(const double d[3])
 {
     return 1 + d[2];
@@ -282,8 +282,8 @@ TEST(levels_equal_sums_over_all_texels)
     free(b.data);
 }
 
-/* B5: checks the numbers of texels of a map of side 256; the side of a Gaussian
- * level is twice that of a mipmap level. */
+/* Requirement B5: checks the numbers of texels of a map of side 256. The side
+ * of a Gaussian level is twice that of a mipmap level. */
 TEST(b5_levels_have_the_published_sizes)
 {
     long mip = 0, full = 0, ours = 0;
@@ -336,9 +336,9 @@ static double sky_and_sun_light(const double d[3])
            1 + .5 * d[1];
 }
 
-/* Checks that a light that is a disc of 4 degrees is found with its direction,
- * light and size, and that its hole in the map is filled with the surrounding
- * light. */
+/* Checks that the bake finds a disc of 4 degrees as a light, with its
+ * direction, power and size. The hole that the light leaves in the map is
+ * filled with the surrounding light. */
 TEST(disc_light_is_extracted)
 {
     struct glint_environment_options o = make_environment_options();
@@ -395,8 +395,8 @@ static double bright_window_light(const double d[3])
     return (d[2] > .9 ? 500 : 0) + 1;
 }
 
-/* Checks that wide lights stay in the map, and that two discs that touch lose
- * no light. */
+/* Checks that wide lights are not extracted from the map, and that the
+ * extraction of two discs that touch loses no light. */
 TEST(wide_and_touching_lights_lose_no_light)
 {
     const struct glint_environment_options o = make_environment_options();

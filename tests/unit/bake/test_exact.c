@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares exact reference pictures with those of an independent program, of a
- * finer grid and of mirrored input. Then compares pictures of the integer
- * engine, with exactly traced rays, with the exact pictures.
+ * Compares exact reference pictures with pictures of an independent program, of
+ * a finer grid and of mirrored input. Then compares the integer engine, which
+ * draws with exactly traced rays, with the exact pictures.
  */
 #include <math.h>
 #include <stdio.h>
@@ -168,8 +168,8 @@ TEST(light_on_axis_gives_a_symmetric_picture)
                 peak = fmax(peak, v);
             }
     assert_true(peak > 0);
-    /* Up and down are mirror images to the last bits, left and right as closely
-     * as the grid allows. */
+    /* Up and down are mirror images to the last bits. Left and right are mirror
+     * images within the precision of the grid. */
     assert_true(worst < 2e-3 * peak);
 }
 
@@ -297,8 +297,8 @@ TEST(integer_renderer_matches_exact_renderer)
 }
 
 /* Checks that a frame whose ray fields and edges exceed the memory limit is
- * drawn in several passes, with bit-identical result. One thread, as each
- * thread has its own memory. */
+ * drawn in several passes, with bit-identical result. The test uses one thread,
+ * as each thread has a memory limit of its own. */
 TEST(picture_does_not_depend_on_memory)
 {
     const struct glint_view view = {
@@ -328,10 +328,10 @@ TEST(picture_does_not_depend_on_memory)
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
 }
 
-/* Checks that a lamp whose green is a hundredth of its power gives the same
- * green light as a green lamp of that power: each colour has its own irradiance
- * steps. The hot spot of this lens is much fainter than its bounding box
- * suggests. */
+/* Each colour is rounded to irradiance steps of its own. So a lamp whose green
+ * is a hundredth of its power must give the same green light as a green lamp of
+ * a hundredth of that power. The hot spot of this lens is much fainter than the
+ * size of its bounding box suggests. */
 TEST(faint_colour_keeps_its_irradiance_steps)
 {
     const struct glint_view view = {
@@ -354,8 +354,8 @@ TEST(faint_colour_keeps_its_irradiance_steps)
 
 /* --------------------------------------- lenses without rotational symmetry */
 
-/* Loads a triplet with the line FIRST after the first surface of its first
- * element, and SECOND after the second. */
+/* Loads a triplet into LENS. Its table contains the line BEFORE in front of the
+ * first surface, FIRST after the first surface, and SECOND after the second. */
 static void load_triplet_with_shapes(const char *before, const char *first,
                                      const char *second)
 {
@@ -376,8 +376,8 @@ static void load_triplet_with_shapes(const char *before, const char *first,
 }
 
 /* Checks that a toric surface with two equal radii gives the picture of a
- * sphere, although the lens is then traced like one without rotational
- * symmetry: over the whole pupil, rotated by the azimuth of the light. */
+ * sphere. The lens counts as one without rotational symmetry, so it is traced
+ * over the whole pupil, rotated by the azimuth of the light. */
 TEST(toric_with_equal_radii_equals_a_sphere)
 {
     const struct glint_view view = {
@@ -416,9 +416,9 @@ static void draw_lamps_linear(struct glint_frame *frame, struct glint_view view,
         glint_frame_draw_flare_alone(frame, lamps, n, 1, linear, &report));
 }
 
-/* Checks that a frame that takes over the pupil boxes found by a smaller frame,
- * for the same and for other lamps, draws the same bits as a frame that
- * searches for them. */
+/* Checks that a frame that adopts the pupil boxes found by a smaller frame
+ * draws the same bits as a frame that searches for them. The lamps of the
+ * smaller frame may differ. */
 TEST(adopted_rays_do_not_change_the_picture)
 {
     const struct glint_view view = {
@@ -450,8 +450,8 @@ TEST(adopted_rays_do_not_change_the_picture)
 }
 
 /* Checks that a frame draws the same bits as a new one after two kinds of
- * earlier pictures: one whose lamps differed only in their extent, which exact
- * rays of point lights do not show, and one in which most ghosts were muted. */
+ * earlier pictures. In the first, lamps had another extent, which exact rays of
+ * point lights do not show. In the second, most ghosts were muted. */
 TEST(earlier_pictures_do_not_change_the_picture)
 {
     static float linear[2][3 * 240 * 135];
@@ -484,8 +484,8 @@ TEST(earlier_pictures_do_not_change_the_picture)
     }
 }
 
-/* Checks that lamps which share traced rays are each drawn at their own place:
- * their picture equals the sum of the pictures of each alone, whose rays are
+/* Checks that lamps which share traced rays are each drawn at their own place.
+ * Their picture must equal the sum of pictures of single lamps, each with rays
  * traced in its own direction. */
 TEST(lamps_that_share_rays_keep_their_places)
 {
@@ -515,9 +515,9 @@ TEST(lamps_that_share_rays_keep_their_places)
     }
 }
 
-/* Checks that a decentre in x for light at an azimuth of 30 degrees equals a
- * decentre in y at 60 degrees, mirrored at the diagonal, and differs from the
- * centred lens. */
+/* Checks a decentred lens: a decentre in x with light at an azimuth of 30
+ * degrees equals a decentre in y at 60 degrees, mirrored at the diagonal. Both
+ * differ from the centred lens. */
 TEST(decentred_lens_is_mirrored_at_the_diagonal)
 {
     const struct glint_view view = {
@@ -547,8 +547,9 @@ TEST(decentred_lens_is_mirrored_at_the_diagonal)
     assert_true(compute_psnr(rgb, other, view) < 40);
 }
 
-/* Progress reports while a picture is drawn, and while the small picture is
- * drawn that determines its exposure. */
+/* Progress reports of a frame. N: reports in total; N_EXPOSING: reports during
+ * the small picture from which the exposure is determined. LAST and EXPOSED are
+ * the last reported fractions of both, RISES whether all reports rose. */
 struct reports {
     int n, n_exposing;
     double last, exposed;
@@ -571,7 +572,7 @@ TEST(progress_rises_from_exposure_to_picture)
 {
     const struct glint_view view = {
         .width = 240, .height = 135, .sensor_width_mm = 36};
-    /* The picture has a lamp that the exposure has not. */
+    /* The small picture for the exposure has only the first lamp. */
     const struct glint_lamp lamp[2] = {make_white_lamp(7.58, 33.2),
                                        make_white_lamp(3.1, -100)};
     static float linear[3 * 240 * 135];

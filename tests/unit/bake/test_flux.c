@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the flux of the direct image, the unit of all light, with the
- * number of traced rays that pass the stop at each f-number.
+ * Checks the flux of the direct image, in units of which all light is measured:
+ * at each f-number it is proportional to the number of traced rays that pass
+ * the stop.
  */
 #include <math.h>
 #include <stdint.h>
@@ -12,8 +13,8 @@
 
 static const double nm[3] = {650, 532, 450};
 
-/* Sets up the lens NAME at F_NUMBER twice: MODEL by stopping down the header of
- * its model, EXACT from the lens table. */
+/* Sets up the lens NAME at F_NUMBER twice: MODEL from the header of its baked
+ * model, stopped down, and EXACT from its lens table. */
 static void make_model_and_exact_setups(const char *name, double f_number,
                                         struct glint_setup *model,
                                         struct glint_setup *exact)
@@ -36,10 +37,10 @@ static void make_model_and_exact_setups(const char *name, double f_number,
     assert_ok(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error));
 }
 
-/* At full aperture, barrels of these lenses clip the rim of the pupil, which
- * leaves 1 / 1.027 and 1 / 1.10 of the flux through a full circle. From a
- * quarter of a stop down they do not clip it. The flux has a kink there, which
- * the interpolation over three apertures cannot reproduce. */
+/* At full aperture, barrels of these lenses clip the rim of the pupil, so that
+ * the flux is 1 / 1.027 and 1 / 1.10 of that through a full circle. From a
+ * quarter of a stop down, barrels clip nothing. The interpolation over three
+ * apertures cannot reproduce this kink of the flux. */
 TEST(barrels_reduce_the_flux_of_fast_lenses)
 {
     static const struct {

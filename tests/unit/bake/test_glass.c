@@ -92,7 +92,8 @@ static enum glint_status parse_lens_of_medium(const char *medium,
     return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
 }
 
-/* tolerance: 1e-5 plus half of the last printed decimal */
+/* Checks that GOT differs from WANT, a printed index, by at most 1e-5 plus half
+ * of the last printed decimal. */
 static void check_index_is_near(double got, double want)
 {
     assert_true(fabs(got - want) < 1.5e-5);
@@ -138,8 +139,8 @@ TEST(printed_dispersions)
     }
 }
 
-/* Checks that every row of the catalogue has plausible values for a glass,
- * which reveals misprinted coefficients. */
+/* Checks that every row of the catalogue has values that are plausible for a
+ * glass. Misprinted coefficients would not be. */
 TEST(all_rows_are_glasses)
 {
     struct glint_error error = {""};
@@ -167,8 +168,8 @@ TEST(all_rows_are_glasses)
     assert_null(glint_glass_at(-1));
 }
 
-/* Checks that the violet dispersion of a flint glass differs from that of the
- * formula that has only nd and Vd. */
+/* Checks that the dispersion of a flint glass in the violet differs from that
+ * of Cauchy's formula, which is determined by nd and Vd alone. */
 TEST(violet_dispersion_is_not_that_of_two_terms)
 {
     struct glint_error error = {""};

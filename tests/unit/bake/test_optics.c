@@ -132,8 +132,9 @@ static double compute_airy_reflectance(double n1, double n2, double c1,
 
 TEST(film_reflectance_matches_airy)
 {
-    /* Indices before, in and behind the film. In the last three cases, light at
-     * grazing angles passes the film only by frustrated total reflection. */
+    /* refractive indices in front of the film, of the film, and behind it; in
+     * the last three cases, light at grazing angles passes the film only by
+     * frustrated total reflection */
     static const double n[][3] = {
         {1, 1.38, 1.5},   {1.8, 1.38, 1},   {1, 2.3, 1.6},   {1.5, 1.7, 1.6},
         {1.7, 1.2, 1.65}, {1.9, 1.01, 1.5}, {1.5, 1.38, 1.9}};

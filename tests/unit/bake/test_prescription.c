@@ -32,9 +32,8 @@ static const char *const good[] = {
 
 #define N_GOOD 10
 
-/* Writes to TEXT the valid table with its line NUMBER (from 1) replaced by LINE
- * (NUMBER 0: no replacement) and with END after each line. Returns its size in
- * bytes. */
+/* Writes the valid table to TEXT, with END after each line. Line NUMBER, from
+ * 1, is replaced by LINE; NUMBER 0: no line is. Returns the size in bytes. */
 static size_t compose_table_with_line(char text[4096], int number,
                                       const char *line, const char *end)
 {
@@ -293,7 +292,7 @@ static const struct {
     {4, "film 36", "x.lens:4:8: film height is missing"},
     {4, "film 0 24", "x.lens:4:6: film width must be 0.1 .. 1000, not 0"},
     {4, "film 36 x24", "x.lens:4:9: film height 'x24' is not a number"},
-    /* words that strtod() would accept, but lens tables do not */
+    /* words that strtod() would accept as numbers, but lens tables do not */
     {3, "f-number inf", "x.lens:3:10: f-number 'inf' is not a number"},
     {3, "f-number nan", "x.lens:3:10: f-number 'nan' is not a number"},
     {3, "f-number 0x8", "x.lens:3:10: f-number '0x8' is not a number"},
@@ -469,7 +468,7 @@ TEST(rejects_too_long_lines_and_texts)
     static char big[70000];
     char text[4096], line[300] = "source ";
 
-    memset(line + 7, 'x', 193); /* a line of 200 bytes */
+    memset(line + 7, 'x', 193); /* The line becomes 200 bytes long. */
     expect_valid_text(&lens, text,
                       compose_table_with_line(text, 2, line, "\r\n"));
     assert_int_equal(strlen(lens.source), 193);
@@ -580,9 +579,9 @@ TEST(errors_keep_the_cause_after_a_long_file_name)
     assert_memory_equal(error.text, "...ddd", 6);
 }
 
-/* Checks lenses whose smallest valid f-number would be too small when
- * rounded to nearest: glint_prescription_widest() returns an f-number that
- * is accepted. */
+/* Checks lenses whose smallest valid f-number would become too small if it were
+ * rounded to nearest. The parser must accept the f-number that
+ * glint_prescription_widest() returns. */
 TEST(printed_widest_f_number_is_accepted)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
@@ -635,7 +634,6 @@ TEST(sets_the_f_number)
     assert_true(lens.f_number == 8.0);
 }
 
-/* Checks that the example table of the manual is valid. */
 TEST(parses_the_table_of_the_manual)
 {
     static const char fence[] = "```lens\n";

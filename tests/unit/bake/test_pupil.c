@@ -31,9 +31,10 @@ static bool is_ray_in_pupil_box(const struct glint_pupil *box, double x,
     return x >= box->x0_mm && x <= box->x1_mm && y <= box->y1_mm;
 }
 
-/* Compares the pupil box of GHOST at an angle and wavelength with a scan. Adds
- * the number of unblocked rays to *N_SEEN. NEAR: as in a frame, the search
- * begins with the box at 532 nm and extends it. */
+/* Compares the pupil box of GHOST at THETA_DEG and the wavelength NM with a
+ * dense scan of rays. With NEAR, the box is found as in a frame: the search
+ * extends the box found at 532 nm. Adds the number of unblocked rays to
+ * *N_SEEN. */
 static void check_pupil_box_by_scan(int ghost, double theta_deg, double nm,
                                     bool near, int *n_seen)
 {
@@ -142,8 +143,8 @@ static void load_fisheye_ghost_path(struct glint_path *path, int ghost,
 }
 
 /* Checks ghosts of a fisheye that enter the front element, 80 mm wide, through
- * spots of 1/20 mm; all rays around the spots are invalid. Every wavelength
- * must have a spot next to that of the previous wavelength. */
+ * spots of 1/20 mm. All rays around the spots are invalid. At each wavelength,
+ * the search must find a spot next to the spot of the previous wavelength. */
 TEST(finds_spots_of_a_fisheye)
 {
     static const struct {

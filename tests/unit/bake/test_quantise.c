@@ -45,7 +45,7 @@ static int32_t random_number_q30(void)
 
 /* ------------------------------------------------------------------ systems */
 
-/* A fitted ghost of one system, and its model. */
+/* A fitted ghost with one polynomial system, and the model made from it. */
 struct made {
     struct glint_fitted_ghost fitted;
     struct glint_quantised_system quantised;
@@ -114,7 +114,7 @@ static void make_random_system(struct made *m)
         make_random_output(s, (enum glint_channel)kind);
 }
 
-/* Quantises M, writes its model file, and opens the file like a program. */
+/* Quantises M, writes its model file, and opens this file as programs do. */
 static void quantise_and_open_model(struct made *m)
 {
     static struct glint_setup setup;
@@ -198,15 +198,17 @@ static void set_powers_of_variables(double power[4][16], const double x[4])
     }
 }
 
-/* How much of the proven bounds was used, each 0 .. 1: largest value divided by
- * its bound, largest rounding error divided by its bound. */
+/* How closely values approached the proven bounds, 0 .. 1. BOUND: the largest
+ * value divided by its bound; ROUNDING: the largest rounding error divided by
+ * its bound. */
 struct used {
     double bound, rounding;
     long n;
 };
 
-/* Returns the energy that the run time computes from VALUE, the polynomial of
- * the energy: VALUE limited according to HEAD, then squared ROOTS times. */
+/* Returns the energy that the run time computes from VALUE, the result of the
+ * energy polynomial. With HEAD or ROOTS, VALUE is clamped to 0 .. 2^(29 - HEAD)
+ * and scaled up by 2^HEAD, and then squared ROOTS times. */
 static double compute_energy_of_polynomial(int head, int roots, double value)
 {
     if (head || roots)
@@ -216,8 +218,8 @@ static double compute_energy_of_polynomial(int head, int roots, double value)
     return value;
 }
 
-/* Compares OUT, the outputs of the run time, with the fitted polynomials. X:
- * exact variables of the run time. */
+/* Compares OUT, the outputs of the run time, with the fitted polynomials at X,
+ * the exact values of the variables. Raises the maxima in USED. */
 static void compare_outputs_with_polynomials(const struct made *m,
                                              const struct glint_outputs *out,
                                              const double x[4],
@@ -377,7 +379,7 @@ TEST(zero_and_infinite_doubles_convert)
         assert_int_equal(glint_real_of(odd[k]).mantissa, 0);
         assert_int_equal(glint_real_of(odd[k]).exponent, 0);
     }
-    /* just below the next power of two */
+    /* the largest double below 2 */
     assert_int_equal(glint_real_of(nextafter(2, 0)).mantissa, INT32_MAX);
 }
 

@@ -86,8 +86,9 @@ static double evaluate_cubic_polynomial(double u, double v)
 }
 
 /* On a twentieth of the range, powers of u are nearly dependent: the component
- * of u^3 orthogonal to lower powers is 10^-5 of its length. It would cancel in
- * differences of squares, so the regression computes it separately. */
+ * of u^3 orthogonal to lower powers has only 10^-5 of the length of u^3.
+ * Differences of squares would cancel it, so the regression computes it
+ * separately. */
 TEST(fits_nearly_dependent_powers)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};

@@ -108,9 +108,9 @@ TEST(synthetic_rows_are_fitted_by_their_model)
     }
 }
 
-/* Checks that the light scattered by a fit equals the light scattered by the
- * entries of its rows, that uniform light gives the albedo of the data, and
- * that row and column factors multiply to the kernel h. */
+/* Checks that a fit scatters light as the entries of its rows do, and that
+ * uniform light gives the albedo of the data. Row factors times column factors
+ * must give the kernel h. */
 TEST(fit_scatters_light_like_its_entries)
 {
     struct glint_scatter_rows rows, same;
@@ -311,9 +311,9 @@ TEST(decomposition_matches_lapack)
     dlclose(library);
 }
 
-/* Checks that singular vectors are orthogonal, and that the residual is the
- * smallest possible, the squares of the omitted singular values; also with
- * equal and zero singular values. */
+/* Checks that singular vectors are orthogonal and that the residual is the
+ * smallest possible, which is the sum of the squares of the omitted singular
+ * values. The same must hold with equal and with zero singular values. */
 TEST(decomposition_is_orthogonal_and_optimal)
 {
     double a[TALL * WIDE] = {0};

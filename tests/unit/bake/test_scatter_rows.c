@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares rows of the scattering matrix of a translucent medium with a closed
- * form and with measured rows, and checks reciprocity and energy. C1 and C2 in
- * names are numbers of requirements.
+ * Compares rows of the scattering matrix of a translucent medium with a
+ * closed form and with measured rows. Checks that rows are reciprocal and
+ * return no more light than they receive. C1 and C2 in names are numbers of
+ * requirements.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -65,9 +66,10 @@ static double compute_radiant_exitance(const struct glint_slab *s, double r)
     return s->albedo * sum / (4 * 3.14159265358979);
 }
 
-/* Checks rows of a homogeneous medium, away from its rim: entries two or more
- * texels from the centre, and the sum of each row, are within 2 % of the closed
- * form; with sums of modes alone, entries from three texels on. */
+/* Checks rows of a homogeneous medium, away from its rim, against a closed
+ * form. Entries from two texels off the centre on, and the sum of each row,
+ * must be right within 2 %. A sum of modes alone must be right from three
+ * texels on. */
 TEST(homogeneous_rows_match_the_closed_form)
 {
     const struct glint_stone stone = make_medium(GLINT_STONE_EVEN);
@@ -90,7 +92,8 @@ TEST(homogeneous_rows_match_the_closed_form)
                 area * compute_radiant_exitance(&slab, u * stone.texel_mm);
             const float *row = glint_scatter_get_row(&rows, x, c);
 
-            /* the mean over a texel exceeds the value at its centre */
+            /* The light of an entry is a mean over a texel, which exceeds the
+             * value at the texel's centre. */
             assert_near(closed[d], want, (u < 4 ? 0.3 : 0.06) * want);
             assert_near((double)row[d], closed[d], 0.02 * closed[d]);
             if (u >= 3)
@@ -128,8 +131,8 @@ TEST(total_light_matches_the_dipole)
     free(entry);
 }
 
-/* C1: checks that rows are reciprocal, that no entry is negative, and that no
- * row sums to more than 1. */
+/* Requirement C1: checks that rows are reciprocal, that no entry is negative,
+ * and that no row sums to more than 1. */
 TEST(c1_reciprocal)
 {
     static const enum glint_stone_pattern pattern[] = {GLINT_STONE_CHESS,
@@ -155,8 +158,9 @@ TEST(c1_reciprocal)
     }
 }
 
-/* C2: checks that row offsets are relative to the lit texel, that entries
- * outside the square are 0, and that measured rows are read unchanged. */
+/* Requirement C2: checks that offsets in a row are relative to the lit texel,
+ * that entries outside the square are 0, and that measured rows are read
+ * unchanged. */
 TEST(c2_places)
 {
     enum { S = 3, N = 5, WIDE = S * N };
@@ -217,8 +221,8 @@ TEST(c2_light)
 }
 
 /* Checks materials at the ends of their parameter ranges, single and in pairs,
- * in thin and thick slabs: entries are finite and not negative, and row sums
- * are at most 1. Strongly absorbing media are dark. */
+ * in thin and thick slabs. Entries must be finite and not negative, row sums at
+ * most 1, and strongly absorbing media dark. */
 TEST(extreme_materials_give_valid_rows)
 {
     static const double end[4][2] = {
@@ -230,7 +234,8 @@ TEST(extreme_materials_give_valid_rows)
         struct glint_scatter_rows rows;
 
         stone.side = 6;
-        /* this kernel exceeds the square from every texel */
+        /* A kernel of 7 texels extends beyond the square of 6 texels, wherever
+         * it is centred. */
         stone.kernel = 7;
         stone.slab_mm = slab[(i ^ i >> 2) & 1];
         stone.texel_mm = texel[(i >> 1 ^ i >> 2) & 1];

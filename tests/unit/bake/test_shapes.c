@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks conics, aspheres, cylinders, torics, and shifted and tilted surfaces:
- * parsed values are right, and rays equal those of a second method and analytic
- * results.
+ * Checks conics, aspheres, cylinders, torics, and shifted and tilted surfaces.
+ * Parsed values must be right, and rays must equal rays of a second method and
+ * analytic results.
  */
 #include <math.h>
 #include <stdint.h>
@@ -201,8 +201,7 @@ static int compare_rays_near_axis(const char *surfaces, double span)
             find_nearest_intersection(s, &own, 3 * s->semi_mm, &t);
         enum glint_ray_status status;
 
-        /* glint_trace() overwrites the NAN if the ray hits the shaped
-         * surface */
+        /* The NAN remains unless the ray hits the shaped surface. */
         hits[1][0] = (double)NAN;
         status = glint_trace(&path, x, y, direction, &ray, hits);
         for (int k = 0; k < 2; k++)
@@ -210,7 +209,8 @@ static int compare_rays_near_axis(const char *surfaces, double span)
         if (!there && hypot(hits[1][0], hits[1][1]) < s->semi_mm)
             fail_msg("%s: met at %g, %g", surfaces, hits[1][0], hits[1][1]);
         if (!there || hypotl(at[0], at[1]) > s->semi_mm)
-            continue; /* outside the rim the library extrapolates the profile */
+            /* Outside the rim, the library extrapolates the profile. */
+            continue;
         assert_true(isfinite(hits[1][0]));
         if (status != GLINT_RAY_OK)
             continue;
@@ -220,8 +220,7 @@ static int compare_rays_near_axis(const char *surfaces, double span)
         met++;
         if (s->shape.tilt_deg[0] != 0 || s->shape.tilt_deg[1] != 0 ||
             s[1].radius_mm != 0)
-            /* the next check needs a surface that is not tilted, followed by a
-             * plane */
+            /* The check below needs an untilted surface and then a plane. */
             continue;
         refract_by_vector_snell(s, &own, t, 1 / (long double)s->nd, way);
         for (int k = 0; k < 2; k++) {
@@ -252,7 +251,8 @@ TEST(intersections_match_a_second_method)
         {"surface 1.962 1.2 0.95 1.54 56\nshape conic -0.12 A4 9e-3 A6 -2e-2 "
          "A8 4e-2 A10 -3e-2\nsurface flat 30 30 air",
          0.9},
-        /* an inflection: the sag rises, then falls beyond the rim */
+        /* The profile has an inflection: the sag rises, then falls outside the
+         * rim. */
         {"surface 6 2 2 1.54 56\nshape A4 -8e-3 A6 -1e-3\n"
          "surface flat 30 30 air",
          2},
@@ -328,7 +328,8 @@ TEST(surface_without_shape_is_a_sphere)
     assert_true(fabs(ray.energy - same.energy) < 1e-12);
 }
 
-/* Two lenses whose four surfaces have the shapes A to D. */
+/* The surface lines of two lens elements; A, B, C and D are the shape lines of
+ * the four surfaces. */
 #define TWO_LENSES(a, b, c, d)                            \
     "surface 30 5 9 1.5 60\n" a "surface -60 4 9 air\n" b \
     "surface -40 3 9 1.6 40\n" c "surface 80 90 30 air\n" d
@@ -511,9 +512,9 @@ TEST(points_lie_on_rays)
     }
 }
 
-/* Checks a stop that lies behind the front vertex, but around the glass, where
- * light still runs straight: rays are the same as with a stop in the same plane
- * without the glass. */
+/* Checks a stop that lies behind the front vertex but around the glass, where
+ * light has not been refracted yet. Rays must be the same as with a stop in the
+ * same plane and no glass. */
 TEST(stop_around_the_glass_gives_the_same_rays)
 {
     static const char text[] = "name t\nf-number 4\nfilm 9 9\nstop %s\n"
@@ -581,9 +582,9 @@ TEST(batches_equal_single_rays)
     assert_true(traced > 10);
 }
 
-/* Checks rays as steep as the surface profile, or outside the glass, for which
- * the first root found need not be the nearest: rays in batches agree with
- * single rays. */
+/* Checks rays for which the first root found need not be the nearest: rays as
+ * steep as the surface profile, and rays outside the glass. Rays in batches
+ * must agree with single rays. */
 TEST(steep_rays_hit_the_nearest_intersection)
 {
     static const char *const shapes[] = {

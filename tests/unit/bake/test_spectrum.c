@@ -135,9 +135,9 @@ TEST(coating_colours_converge)
     }
 }
 
-/* Returns the height of the colour steps when N wavelengths represent a
- * dispersed edge: the largest difference, in any channel, from 3000
- * wavelengths. */
+/* Returns the error of N wavelengths at an outline that dispersion widens: the
+ * height of the colour steps, which is the largest difference, in any channel,
+ * from 3000 wavelengths. */
 static double compute_step_error(int n)
 {
     enum { FINE = 3000 };

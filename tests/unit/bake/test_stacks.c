@@ -32,9 +32,9 @@ static void set_fresnel_amplitudes(double n1, double complex c1, double n2,
     *t = 2 * n1 * c1 / (a + b);
 }
 
-/* Returns the fractions of light that N films reflect and transmit. FILM[0] is
- * next to the medium of lower index. Light comes from the medium N1 at the
- * cosine COSINE. */
+/* Returns the fractions of light that N films reflect and transmit. Light comes
+ * from the medium of index N1 at the cosine COSINE. FILM[0] is next to the
+ * medium of lower index. */
 static struct shares compute_stack_by_rouard(double n1, double n2,
                                              double cosine,
                                              const struct glint_film_at *film,
@@ -137,8 +137,8 @@ TEST(two_film_stack_matches_hand_computation)
 }
 
 /* Checks that broadband coatings reflect less than a single film over the whole
- * band, and that a V-coat reflects less than it at its design wavelength and
- * more at the ends of the band. */
+ * band. A V-coat must reflect less than a single film at its design wavelength,
+ * and more at the ends of the band. */
 TEST(coatings_reflect_less_in_their_band)
 {
     const struct glint_coating single = {550, 1, {{1.38, 1}}};

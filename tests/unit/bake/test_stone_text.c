@@ -149,8 +149,9 @@ TEST(rejects_mistakes)
     }
 }
 
-/* Returns the mean difference of SHARE between adjacent columns or rows of the
- * medium; if EDGE is set, across its edges, where its opposite sides meet. */
+/* Returns the mean difference of SHARE between adjacent columns of the medium,
+ * or adjacent rows if ROWS is set. With EDGE, the differences across the edge
+ * are used, where opposite sides of the medium meet. */
 static double compute_mean_neighbour_difference(const double *share, int side,
                                                 bool rows, bool edge)
 {

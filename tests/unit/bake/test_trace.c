@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares exact rays with those of an independent program, with analytic
+ * Compares exact rays with rays of an independent program, with analytic
  * results, and with rays mirrored in a centred lens.
  */
 #include <dirent.h>
@@ -65,7 +65,8 @@ static void compare_lengths_mm(double got, double expected, const char *where)
 
     if (!(difference <= fmax(1e-7, 5e-9 * fabs(expected))))
         fail_msg("%s: %.12g mm, expected %.9g", where, got, expected);
-    /* the file has a resolution of 1e-7 mm or better */
+    /* Positions below 100 mm have a resolution of 1e-7 mm or better in the
+     * file. */
     if (fabs(expected) < 100.0)
         worst_mm = fmax(worst_mm, difference);
 }
@@ -287,9 +288,9 @@ TEST(plate_displaces_ray)
     assert_near(ray.rel_radius, (1.0 + inside) / 10.0, 1e-15);
 }
 
-/* A surface of radius 1e7 mm differs from a plane by its sag, h^2 / 2R = 1.8e-6
- * mm, and its tilt, h / R = 6e-7. So the ray lands lower on the sensor by (n -
- * 1) h / R * ((5 - sag) / n + 55). */
+/* A surface of radius R = 1e7 mm differs from a plane by its sag, h^2 / 2R =
+ * 1.8e-6 mm, and its tilt, h / R = 6e-7, at the height h = 6 mm. So the ray
+ * lands lower on the sensor by (n - 1) h / R * ((5 - sag) / n + 55). */
 TEST(surface_of_huge_radius_acts_as_a_plane)
 {
     static const double huge[2] = {1e7, 0.0};

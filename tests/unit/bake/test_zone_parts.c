@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks that the two halves of a zone cover it, and which zones are halved.
+ * A zone is a range of field angles of a ghost with polynomials of its own.
+ * Checks that the two halves of a divided zone cover it, and checks which zones
+ * the bake divides.
  */
 #include <math.h>
 
@@ -49,9 +51,9 @@ TEST(parts_are_disjoint)
     }
 }
 
-/* The fit of zone FROM .. TO, degrees, of a bright ghost. LEFT: its error, in
- * tolerances; the zone before halving had 10 tolerances. DEPTH 0: the pupil box
- * is not divided. */
+/* The attempted fit of a zone of a bright ghost, from FROM to TO degrees. LEFT
+ * is the error of the fit in units of the tolerance. The zone from which this
+ * zone was halved had an error of 10. */
 struct attempted {
     bool shaped, far;
     double from, to, left;
@@ -92,8 +94,9 @@ static enum glint_next choose_next_division_of_zone(const struct attempted *c)
 }
 
 /* The pupil parts of wide zones of aspheric lenses would have gaps between
- * them. So such zones are halved in angle where zones of spherical lenses are
- * divided into parts, and their boxes may be halved more often. */
+ * them. So the bake halves these zones in angle, where it divides zones of
+ * spherical lenses into parts. It may also halve their pupil boxes more
+ * often. */
 TEST(wide_zones_of_aspheres_are_halved)
 {
     static const struct attempted all[] = {
@@ -114,8 +117,8 @@ TEST(wide_zones_of_aspheres_are_halved)
         {true, false, 0, 3, 9, 5, 4, GLINT_PART},
         {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},
         {true, false, 0, 3, 9, 7, 8, GLINT_PART},
-        /* lights beyond 60 degrees: halved like zones of aspheric lenses, but
-         * not divided further */
+        /* For lights beyond 60 degrees, zones are halved like those of aspheric
+         * lenses, but are not divided into parts. */
         {false, true, 70, 74, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.7, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.5, 9, -1, 4, GLINT_THOROUGH},

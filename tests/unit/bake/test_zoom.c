@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks zoom and focus: a table of several positions equals one table per
- * position, gaps are interpolated between columns, and a focused lens has its
- * paraxial focus on the sensor.
+ * Checks zoom and focus of lens tables. A table of several positions must equal
+ * one table per position. Values between positions are interpolated. A focused
+ * lens must have its paraxial focus on the sensor.
  */
 #include <math.h>
 #include <stdint.h>
@@ -261,8 +261,8 @@ TEST(rejects_wrong_columns)
 }
 
 /* Checks that the result of setting a zoom does not depend on its previous
- * position, even if the table states a single last gap while the distance of
- * the focus differs per column. */
+ * position. This must hold even if the table states a single last gap while
+ * each column has another focus distance. */
 TEST(result_is_independent_of_history)
 {
     static const char text[] =

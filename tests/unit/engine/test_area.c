@@ -73,7 +73,7 @@ TEST(small_lamp_is_one_point)
 
     assert_int_equal(glint_area_plan(&area, &lamp, &rule), 1);
     point = glint_area_point(&area, 0);
-    /* a lamp of a single point equals that point bit by bit */
+    /* A single point equals the lamp bit by bit. */
     assert_true(point.theta_deg == lamp.theta_deg);
     assert_true(point.phi_deg == lamp.phi_deg);
     assert_true(point.power == lamp.power);
@@ -92,9 +92,9 @@ TEST(sums_equal_the_lamp)
     assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
 }
 
-/* Checks that the points do not move when the lamp's rotation passes 90 degrees
- * (a half turn of its axes), and that the points of a round lamp do not depend
- * on its rotation. */
+/* Checks that the points of a lamp do not move when its rotation passes 90
+ * degrees, where its axes jump by a half turn, and that the points of a round
+ * lamp do not depend on its rotation. */
 TEST(half_turn_of_the_axes_keeps_the_points)
 {
     const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
@@ -170,8 +170,8 @@ TEST(point_count_is_limited)
     assert_int_equal(total, 1);
 }
 
-/* Checks that a lamp with 1/16 of the power gets 1/4 of the points, as steps
- * between faint points are less visible. */
+/* Steps between faint points are less visible. Checks that a lamp with 1/16 of
+ * the power gets 1/4 of the points. */
 TEST(faint_lamps_get_fewer_points)
 {
     struct glint_lamp lamps[2] = {make_disc_lamp(30, 30),
@@ -188,10 +188,10 @@ TEST(faint_lamps_get_fewer_points)
     assert_true(total >= MOST + 1 + (MOST - 1) / 4);
 }
 
-/* Checks that the distance between the points of a disc is that of a square
- * grid with equal area per point, and changes continuously as the disc grows
- * from one point to many. For an ellipse 1/100 as wide it is a fifth of
- * that. */
+/* Checks that the points of a disc are as far apart as those of a square grid
+ * with the same area per point, and that this distance changes continuously
+ * while the disc grows from one point to many. An ellipse 1/100 as wide as it
+ * is long has a fifth of that distance. */
 TEST(point_distance_is_that_of_a_square_grid)
 {
     struct glint_area area;

@@ -19,8 +19,9 @@ static const struct glint_lamp lamps[] = {{12, 33, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {7, 200, 3e5, {1, 1, 1}, {0, 0}, 0},
                                           {4, 80, 3e5, {1, 1, 1}, {0, 0}, 0}};
 
-/* A simulated machine: the frame time, ms, is a function of the quality
- * parameters. Each frame reads the clock at the ends of three intervals. */
+/* A simulated machine, on which the quality parameters determine the frame
+ * time, ms. Each frame reads the clock three times, after a third of its time
+ * each. */
 static struct machine {
     const struct glint_frame *frame;
     double base_ms, cells_ms, power, steps_ms;
@@ -108,11 +109,11 @@ TEST(frame_time_stays_within_the_budget)
     }
 }
 
-/* Draws SETTLED frames with a budget of 2.2 ms. Then sets the budget to MS,
- * multiplies the predicted time of all quality levels from FROM on by
- * 2^OCTAVES, and draws N frames. The cheapest level at full resolution takes
- * 4.2 ms. Returns how many of the N frames have full resolution; sets *LAST to
- * whether the last one has. */
+/* Draws SETTLED frames with a budget of 2.2 ms; the cheapest quality level at
+ * full resolution takes 4.2 ms. Then sets the budget to MS, multiplies the
+ * predicted times of level FROM and all higher levels by 2^OCTAVES, and draws N
+ * frames. Returns how many of the N frames have full resolution. Sets *LAST to
+ * whether the last frame has. */
 static int count_full_resolution_frames(double ms, int from, double octaves,
                                         int n, bool *last)
 {
@@ -150,10 +151,10 @@ TEST(overestimated_levels_are_used_in_the_end)
     assert_true(last);
 }
 
-/* Checks that a level predicted to exceed the budget by a tenth is tried within
- * some frames if all cheaper levels take far less time, and that a level that
- * does not fit is not retried too often (14 of these 100 frames; 52 without the
- * limit). */
+/* Checks a level predicted to exceed the budget by a tenth, where all cheaper
+ * levels take far less time. It must be tried within some frames. If it does
+ * not fit, it must not be retried too often: 14 of these 100 frames try it,
+ * without the limit 52 would. */
 TEST(slightly_too_slow_level_is_tried)
 {
     bool last;
@@ -224,9 +225,9 @@ TEST(first_frame_of_more_lights_keeps_to_the_budget)
     glint_frame_finish(&frame);
 }
 
-/* Checks that the counts of a plan equal those of the drawn frame, and that
- * after scaling to other quality parameters they equal the counts of a plan
- * made with these. */
+/* Checks that the counts of a plan equal those of the drawn frame. Counts that
+ * are scaled to other quality parameters must equal the counts of a plan made
+ * with these parameters. */
 TEST(counts_of_a_plan_equal_the_drawn_frame)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests dim ghosts, which are drawn with the rays of one wavelength: total
- * light is preserved, no ghost pops up, and an image depends neither on earlier
- * frames nor on the number of workers.
+ * Tests dim ghosts, which are drawn with the rays of one wavelength. Their
+ * total light is preserved, none appears abruptly, and the image depends
+ * neither on earlier frames nor on the number of workers.
  */
 #include <math.h>
 #include <stdint.h>
@@ -63,9 +63,10 @@ static double compute_psnr(const uint8_t *a, const uint8_t *b)
     return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
 }
 
-/* Checks that each larger dim_codes draws fewer bundles, and an image no closer
- * to that of dim_codes 0, where each ghost has three wavelengths of its own.
- * The PSNR stays above 40 dB, the sum of codes within 1 %. */
+/* Checks that larger values of dim_codes draw fewer bundles, and images that
+ * are less close to that of dim_codes 0, where each ghost has three
+ * wavelengths of its own. The PSNR must stay above 40 dB, and the sum of
+ * codes within 1 %. */
 TEST(larger_dim_codes_draw_fewer_bundles)
 {
     int bundles;
@@ -124,8 +125,9 @@ static void set_lamp_groups(double time, uint64_t *noise)
                                        stage_random_uniform(noise, 0.97, 1.03));
 }
 
-/* Returns the total light of a linear image whose ghosts are planned like those
- * of an image in codes, but of which none is dropped. */
+/* Returns the total light of a linear image with the quality parameter
+ * dim_codes set to CODES. Its ghosts are planned like those of an image in
+ * codes, but none is faint enough to be dropped. */
 static double sum_image_light(double codes)
 {
     static int32_t light_q20[3 * W * H];
@@ -145,10 +147,10 @@ static double sum_image_light(double codes)
     return sum;
 }
 
-/* Checks that dim ghosts of neighbouring lights are merged: less than half of
- * the bundles, the same total light within 6 %, and changes of the mean of 8 x
- * 8 pixels per frame at most half a code larger than with separate ghosts. The
- * frame statistics agree. */
+/* Checks that dim ghosts of neighbouring lights are merged. Merging must save
+ * more than half of the bundles and preserve the total light within 6 %.
+ * Compared with separate ghosts, the mean of 8 x 8 pixels may change per frame
+ * by at most half a code more. The frame statistics must agree. */
 TEST(dim_ghosts_of_near_lights_are_merged)
 {
     struct glint_account account;

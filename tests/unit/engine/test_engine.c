@@ -42,9 +42,9 @@ static struct glint_engine *create_engine(void *arena, size_t bytes)
     return engine;
 }
 
-/* Draws the lamp picture, which follows the previous one by US microseconds,
- * into PX, with the flare of the lamps that the engine finds in it. Returns
- * their number. */
+/* Draws the picture of draw_lamp_picture() into PX, as the picture US
+ * microseconds after the previous one, and adds the flare of the lamps that the
+ * engine finds in it. Returns the number of lamps. */
 static int draw_flare_of_found_lamps(struct glint_engine *engine, int32_t us,
                                      uint8_t *px,
                                      struct glint_engine_report *report)
@@ -139,9 +139,10 @@ static double draw_flare_of_given_lamp(struct glint_engine *engine,
     return report.scale;
 }
 
-/* Checks that a lamp given by the caller is exposed like a found one: in a
- * still image from a small rendering of its flare, whatever was drawn before;
- * in a video by small steps from frame to frame. */
+/* Checks that a lamp given by the caller is exposed like a lamp that the engine
+ * finds. In a still image, a small rendering of its flare determines the
+ * exposure, whatever was drawn before. In a video, the exposure changes by
+ * small steps from frame to frame. */
 TEST(given_lamp_is_exposed_like_a_found_one)
 {
     static uint8_t px[BYTES], found[BYTES], again[BYTES];
@@ -238,8 +239,8 @@ TEST(rejects_images_of_wrong_size)
     glint_engine_destroy(engine);
 }
 
-/* Checks that the layers of a flare add up to the whole flare, that a given
- * lamp produces a flare without detection (twice as bright at twice the gain),
+/* Checks that the layers of a flare add up to the complete flare, that a given
+ * lamp gets a flare without being detected, twice as bright at twice the gain,
  * and that a manual exposure applies from the next image on. */
 TEST(layers_add_up_to_the_whole_flare)
 {
@@ -285,8 +286,8 @@ TEST(layers_add_up_to_the_whole_flare)
     glint_engine_destroy(engine);
 }
 
-/* Returns the light of layer PART of the flare of LAMP, US microseconds after
- * the previous picture. */
+/* Returns the light of the component PART (GLINT_ENGINE_GHOSTS or another) of
+ * the flare of LAMP, US microseconds after the previous picture. */
 static double sum_layer_light(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int32_t us,
                               unsigned part)
@@ -433,9 +434,10 @@ TEST(shorter_config_of_older_programs_gets_defaults)
     glint_engine_destroy(engine);
 }
 
-/* Checks the options struct of an older program, which lacks the last option:
- * the library writes nothing behind its end, all other options can be set and
- * have an effect, and the missing option is unknown and has its default. */
+/* Checks the options struct of an older program, which lacks the last option.
+ * The library must not write behind the end of the struct. All other options
+ * must have an effect, and the missing option must be unknown and have its
+ * default. */
 TEST(shorter_options_of_older_programs_are_respected)
 {
     const size_t bytes = offsetof(struct glint_options, tile);
@@ -505,9 +507,9 @@ static bool is_option_accepted(struct glint_options *o, const char *name,
     return is_set;
 }
 
-/* Checks that stop, dust and colours set by options equal those of a setup made
- * step by step, that the option front-dust sets the engine's dirt, and that
- * setting the option stop equals glint_engine_iris(). */
+/* Checks that stop, dust and colours set by options equal a setup that is made
+ * step by step. The option front-dust must set the engine's dirt, and the
+ * option stop must have the effect of glint_engine_iris(). */
 TEST(camera_options_equal_a_setup_by_steps)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -609,8 +611,9 @@ TEST(config_without_stops_accepts_only_clean_blades)
 }
 
 /* Checks that each numeric option accepts its limits, rejects values beyond
- * them, and counts as given only after it was set. Of the options strength and
- * exposure, and of quality and error, the one set last is used. */
+ * them, and counts as given only after it was set. Strength and exposure
+ * exclude each other, as do quality and error: the option that was set last is
+ * used. */
 TEST(options_accept_their_limits)
 {
     struct glint_options o;

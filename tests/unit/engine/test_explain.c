@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the reports of glint explain: counts equal those of the drawn frame;
- * the counts per ghost, light and wavelength add up to the frame's; each
- * reason for not drawing a ghost occurs where expected; the image shades the
- * tiles that ghosts touch.
+ * Tests the reports of glint explain. Counts must equal those of the drawn
+ * frame, and counts per ghost, light and wavelength must add up to them. Each
+ * reason for not drawing a ghost must occur where it is expected. The image
+ * must shade the tiles that ghosts touch.
  */
 #include <math.h>
 #include <stdint.h>
@@ -63,9 +63,9 @@ static int count_drawn_ghosts(const struct glint_explain *e)
     return n;
 }
 
-/* Checks what holds for every frame: explanation E agrees with REPORT, and its
- * counts per ghost, per light and per wavelength each add up to those of the
- * frame. */
+/* Checks conditions that every frame fulfils: the explanation E agrees with
+ * REPORT, and its counts per ghost, per light and per wavelength each add up to
+ * the counts of the frame. */
 static void
 assert_explanation_matches_report(const struct glint_explain *e,
                                   const struct glint_engine_report *report)
@@ -103,8 +103,8 @@ assert_explanation_matches_report(const struct glint_explain *e,
 
 /* ------------------------------------------------------------------- tests */
 
-/* Explains a frame of three lights: one outside the model's angles, two drawn,
- * each without some ghosts. */
+/* Explains a frame of three lights. One is outside the angles of the model; the
+ * other two are drawn, each without some ghosts. */
 TEST(explains_lights_outside_and_inside_the_model)
 {
     struct glint_engine_report report;
@@ -161,7 +161,7 @@ TEST(light_is_linear_in_the_unit)
     glint_frame_finish(&frame);
 }
 
-/* Checks that each of these outcomes occurs in a frame made for it, and that
+/* Checks that each outcome in the table occurs in a frame made for it, and that
  * a frame whose only lamp is outside the model's range of angles has no
  * bundles. */
 TEST(every_reason_occurs)
@@ -279,8 +279,8 @@ TEST(picture_shades_the_tiles_of_a_ghost)
     for (int y = 0; y < HEIGHT; y += SIDE)
         for (int x = 0; x < WIDTH; x += SIDE)
             n += is_tile_shaded(&marked, x, y);
-    /* A tile that is mostly covered by the label and the outline is not
-     * recognised as shaded. */
+    /* A tile that the label and the outline cover for the most part does not
+     * count as shaded. */
     assert_true(n <= report.tiles && n >= report.tiles - 2);
     title.top = 0;
     assert_ok(explain_draw_marks(&e, &title, &image, &unmarked));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests frames in reserved memory: if it is large enough, the image equals that
- * of a frame that allocates on demand; otherwise parts are dropped and
- * counted. A frame in reserved memory never allocates.
+ * Tests frames in reserved memory. A frame in reserved memory never allocates.
+ * If the memory is sufficient, the image equals that of a frame that allocates
+ * on demand. Otherwise parts of the image are dropped and counted.
  */
 #include <stdint.h>
 
@@ -136,8 +136,8 @@ TEST(regrown_frame_equals_a_new_frame)
         assert_int_equal(n_allocations, 0);
         make_heliar_frame(&grown);
         draw_lamps_on_grey(&grown, n_of[i], want, &other);
-        /* a frame without reserved memory must allocate, otherwise the count
-         * proves nothing */
+        /* A frame without reserved memory must allocate; otherwise the count of
+         * allocations would prove nothing. */
         assert_true(n_of[i] == 0 || n_allocations > 0);
         assert_int_equal(count_different_samples(want, got), 0);
         assert_int_equal(report.stats.dropped_bundles, 0);
@@ -152,8 +152,8 @@ TEST(regrown_frame_equals_a_new_frame)
     glint_frame_finish(&reserved);
 }
 
-/* Checks, at the coarsest grids, that a frame in less memory draws less, that
- * it counts everything dropped, and that its image is never brighter. */
+/* Checks, at the coarsest grids, that a frame in too little memory draws less,
+ * counts everything that it drops, and is never brighter. */
 TEST(too_little_memory_drops_and_counts)
 {
     static uint8_t full[BYTES], got[BYTES];
@@ -192,8 +192,9 @@ TEST(too_little_memory_drops_and_counts)
     glint_frame_finish(&frame);
 }
 
-/* Checks that limits of work and of memory make a frame coarser or drop ghosts,
- * and that this is reported; without limits the next frame equals the first. */
+/* Checks that limits of work and of memory make grids coarser or drop ghosts,
+ * and that the frame reports this. The next frame, without limits, must equal
+ * the first frame. */
 TEST(limits_make_frames_coarser_and_are_reported)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -215,7 +216,8 @@ TEST(limits_make_frames_coarser_and_are_reported)
     glint_frame_finish(&frame);
     make_heliar_frame(&frame);
     frame.limits.most_bytes =
-        full.need_bytes * 3 / 4; /* the arena has 1.25 times the memory limit */
+        /* The arena may exceed the memory limit by a factor of 1.25. */
+        full.need_bytes * 3 / 4;
     draw_lamps_on_grey(&frame, N_LAMPS, got, &held);
     assert_true(held.arena_bytes <= frame.limits.most_bytes * 5 / 4);
     assert_true(held.stats.dropped_bundles > 0 && held.stats.bundles > 0);
@@ -277,10 +279,10 @@ static bool makes_grids_coarser(int n, size_t bytes, uint8_t rgb[BYTES],
     return report->tight;
 }
 
-/* Checks that the amount of memory below which grids become coarser does not
- * depend on the number of workers, that it lies between the memory needed and
- * the memory for uneven shares per worker, and that grids are no coarser than
- * necessary. */
+/* Checks the amount of memory below which grids become coarser. It must not
+ * depend on the number of workers, and grids must be no coarser than necessary.
+ * It must be at least the memory that the frame needs, and must not include a
+ * reserve for workers with uneven amounts of work. */
 TEST(memory_limit_does_not_depend_on_workers)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -298,8 +300,8 @@ TEST(memory_limit_does_not_depend_on_workers)
             high = middle;
     }
     assert_true(high >= full.need_bytes);
-    /* at the limit, uneven shares per worker may drop bundles, which are
-     * counted */
+    /* At this limit, workers with uneven amounts of work may drop bundles, but
+     * must count them. */
     assert_false(makes_grids_coarser(5, high, got, &held));
     assert_true(held.stats.dropped_bundles + held.stats.dropped_cells > 0 ||
                 count_different_samples(got, want) == 0);
@@ -396,9 +398,9 @@ TEST(changed_settings_equal_a_new_frame)
     glint_frame_finish(&frame);
 }
 
-/* Makes each allocation fail in turn. Checks that the flare is then drawn
- * completely or an error is returned, but never an image without light; by a
- * model and by exact rays. */
+/* Makes each allocation fail in turn, in frames drawn by a model and by exact
+ * rays. Checks that the flare is then drawn completely or an error is returned,
+ * but never an image without light. */
 TEST(failed_allocation_draws_completely_or_fails)
 {
     static float want[BYTES], got[BYTES];
@@ -412,7 +414,8 @@ TEST(failed_allocation_draws_completely_or_fails)
 
             make_frame_for_lens(exact ? &exact_scene : &opened, &frame);
             frame.only_ghost = 0;
-            /* more lamps than this: the three lamps are merged */
+            /* There are three lamps, more than this limit, so lamps are
+             * merged. */
             frame.dials.max_lights = 2;
             n_allocations = 0;
             fail_at = nth;
@@ -424,7 +427,7 @@ TEST(failed_allocation_draws_completely_or_fails)
             assert_true(status == GLINT_OK || status == GLINT_E_MEMORY);
             if (status == GLINT_OK)
                 assert_memory_equal(want, nth ? got : want, sizeof want);
-            /* the frame makes fewer than NTH allocations */
+            /* The frame made fewer than NTH allocations, so none failed. */
             if (n_allocations < nth)
                 break;
         }
@@ -498,9 +501,9 @@ TEST(rejects_overflowing_numbers_of_bundles)
     free(many);
 }
 
-/* Checks that the points of wide lamps may use up to point_room lights if the
- * lamps themselves fit into max_lights, but only max_lights in reserved memory
- * or with more lamps. */
+/* Checks how many point lights may represent wide lamps. If the lamps fit into
+ * max_lights, the limit is point_room. In reserved memory, or with more lamps
+ * than max_lights, the limit is max_lights. */
 TEST(points_of_wide_lamps_use_point_room)
 {
     static const struct {

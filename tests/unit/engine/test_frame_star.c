@@ -64,10 +64,10 @@ static bool is_relatively_near(double a, double b)
     return fabs(a / b - 1) < 1e-3;
 }
 
-/* Returns half of the power at which the star of a point lamp is white out
- * to the edge of a core of RMS radius SEEN_PX. A star of power W is white
- * out to cbrt(W a) / pi pixels, where a is the wavelength times the
- * f-number, pixels. */
+/* A star of power W is white out to cbrt(W a) / pi pixels, where a is the
+ * wavelength times the f-number, pixels. Returns half of the power at which the
+ * star of a point lamp is white out to the edge of a core of RMS radius
+ * SEEN_PX. */
 static double compute_half_power_of_white_star(double seen_px)
 {
     const double airy_px = 0.55e-3 * 22 / hypot(36, 24) * 200;
@@ -100,8 +100,8 @@ static double compute_star_radius_px(double power, double seen_px)
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* Returns the max radius, pixels, of a lamp that is hidden behind its own
- * clipped rim of SEEN_PX pixels, as computed for still images. */
+/* Returns the max radius, pixels, of a lamp that its own clipped rim of SEEN_PX
+ * pixels can hide. The radius is computed as for still images. */
 static double compute_max_hidden_lamp_radius(double seen_px)
 {
     return floor(256 * seen_px / 6) * 2 / 256;
@@ -117,16 +117,16 @@ TEST(narrow_core_gets_the_radius_its_rim_can_hide)
                 compute_max_hidden_lamp_radius(2));
     assert_true(compute_star_radius_px(1e9, 6) < 0.6 * sqrt(2) * 6);
     assert_true(compute_star_radius_px(10, 6) > 0.8 * sqrt(2) * 6);
-    /* the core of a lamp without glare does not include what its own star makes
-     * white */
+    /* The lamp has no glare. The pixels that its own star makes white do not
+     * count as a part of its core. */
     assert_true(compute_star_radius_px(GLINT_PI * 2 * 6 * 6, 6) <
                 0.95 * sqrt(2) * 6);
 }
 
 /* Checks that a spot widened by the glare of a lamp far above white has the
- * spikes of a small lamp, that a spot barely above white has those of a disc,
- * and that the transition is continuous. The star of a fading lamp keeps its
- * extent. */
+ * spikes of a small lamp. A spot barely above white must have the spikes of a
+ * disc, and the transition must be continuous. The star of a fading lamp must
+ * keep its extent. */
 TEST(glare_of_a_small_lamp_does_not_widen_spikes)
 {
     const double white = GLINT_PI * 2 * 50 * 50;
@@ -147,8 +147,8 @@ TEST(glare_of_a_small_lamp_does_not_widen_spikes)
     assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
-/* Checks that if there are too many lamps, the stars of the brightest are
- * drawn, in descending order, whatever the order of the input. */
+/* Checks that if there are more lamps than stars may be drawn, the brightest
+ * lamps get stars, in descending order, whatever the order of the input. */
 TEST(brightest_lamps_get_stars)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };

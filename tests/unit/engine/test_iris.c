@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the outline of the stop: corners lie exactly on the circle that the
- * f-number defines; outlines are convex; rounded blades are arcs between the
- * straight side and the circle; areas equal those counted from sample points;
- * the integer test that clips ghosts agrees with a test in double precision.
+ * Tests the outline of the stop. Corners must lie exactly on the circle that
+ * the f-number defines, and outlines must be convex. Rounded blades must be
+ * arcs between the straight side and the circle. Areas must equal those counted
+ * from sample points. The integer test that clips ghosts must agree with a test
+ * in double precision.
  */
 #include "engine/setup/iris.h"
 
@@ -72,9 +73,9 @@ static void check_each_iris(void (*test)(const struct glint_setup *s,
     }
 }
 
-/* Checks that the corners lie on the circle that the f-number defines, and that
- * the outline half-way between two corners lies on the circle of radius 1 / R
- * through both (R: roundness). */
+/* Checks that corners lie on the circle that the f-number defines. Half-way
+ * between two corners, the outline must lie on the circle of radius 1 / R
+ * through both corners, where R is the roundness. */
 static void check_outline_corners(const struct glint_setup *s,
                                   const struct glint_iris_sides *sides)
 {
@@ -127,9 +128,9 @@ TEST(outline_is_convex_and_has_its_area)
     check_each_iris(check_outline_is_convex);
 }
 
-/* Checks that points classified by the integer test are on the same side of the
- * outline in double precision, and near the outline at the same distance from
- * it. */
+/* Checks that the integer test finds points on the same side of the outline as
+ * a test in double precision. Near the outline, both tests must give the same
+ * distance from it. */
 static void check_integer_stop_test(const struct glint_setup *s,
                                     const struct glint_iris_sides *sides)
 {

@@ -83,7 +83,7 @@ TEST(tracked_stationary_lamp_equals_a_still)
         glint_lamp_detector_find_lamps(&finder, &image, 40000, &view, 50, lamp),
         2);
     assert_int_equal(finder.n_tracks, 2);
-    /* after 40 ms of the fade-in, which takes 200 ms */
+    /* 40 ms are a fifth of the fade-in of 200 ms. */
     assert_near(lamp[1].power, still[0].power / 5, 10);
     assert_int_equal(finder.track[1].state, GLINT_LAMP_RISING);
 
@@ -95,8 +95,8 @@ TEST(tracked_stationary_lamp_equals_a_still)
 }
 
 /* Checks a lamp in glare whose clipped core has a rim as wide as the core's
- * radius: in a video the lamp may be a point, in a still image its axes are at
- * least a sixth of its size. */
+ * radius. In a video the lamp may become a point. In a still image its axes are
+ * at least a sixth of the size of the core. */
 TEST(lamp_in_glare_may_become_a_point)
 {
     static uint8_t grey[W * H];

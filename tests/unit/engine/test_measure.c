@@ -48,7 +48,6 @@ TEST(measures_a_known_difference)
     assert_true(m.psnr_db == 999 && fabs(m.factor - 2) < 1e-6);
 }
 
-/* Checks that a difference smaller than a code is measured. */
 TEST(measures_differences_below_a_code)
 {
     struct glint_measure m;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests frames that reuse the previous frame's binned edges: each equals, bit
- * by bit, the image drawn without reuse, whatever changed before it and for any
- * number of workers; and an unchanged frame is reused. Lights that move less
- * than a tolerance are drawn with their old rays but their present power, and
- * are never displaced by more than the tolerance.
+ * Tests frames that reuse the binned edges of the previous frame. Each must
+ * equal, bit by bit, the image drawn without reuse, for any number of workers
+ * and whatever changed before it. An unchanged frame must be reused. Lights
+ * that move less than a tolerance are drawn with their old rays but their
+ * present power; they are never displaced by more than the tolerance.
  */
 #include <math.h>
 #include <stdint.h>
@@ -82,9 +82,9 @@ static void set_stop_of_frames(double opening)
 
 /* -------------------------------------------------------------------- same */
 
-/* Depending on TIME, changes the lamps or a setting of both frames and returns
- * true; or changes nothing and returns false: then the next frame must reuse
- * the edges. */
+/* Changes the lamps or a setting of both frames at certain values of TIME, and
+ * returns true. At other times changes nothing and returns false; the next
+ * frame must then reuse the edges. */
 static bool change_setting_or_lamps_at_times(int time, int *n)
 {
     switch (time % 12) {
@@ -150,8 +150,8 @@ TEST(reused_rays_give_the_same_image)
 
 static struct glint_tint tints[GLINT_MAX_GHOSTS];
 
-/* Changes input number K of a frame's plan. Returns false if there is no such
- * input. */
+/* Changes input number K of the frame's plan. Returns false if the plan has no
+ * input of this number. */
 static bool change_plan_input(int k)
 {
     struct glint_lamp *const l = lamps;
@@ -225,8 +225,8 @@ TEST(any_change_prevents_reuse)
     close_both_frames();
 }
 
-/* Checks that a frame restricted to some of its bundles does not restrict the
- * frame after it. */
+/* Draws some bundles of a frame only. Checks that the next frame draws all
+ * bundles. */
 TEST(restricted_frame_does_not_restrict_the_next)
 {
     open_both_frames(0);
@@ -280,9 +280,9 @@ static double sum_image_codes(const uint8_t *codes)
     return sum;
 }
 
-/* Compares two images of the same stationary lamps: one from existing edges,
- * one from edges rebuilt for the same lights and factors. Returns whether the
- * first frame was reused. */
+/* Draws N stationary lamps with the frame that reuses edges, and draws the same
+ * lights and factors with a frame that builds its edges again. Checks that both
+ * images are equal. Returns whether the first frame reused edges. */
 static bool draw_stationary_lamps(int n, double scale)
 {
     draw_lamps_with_frame(&reusing, n, scale, got, &of_reusing);
@@ -335,7 +335,7 @@ TEST(noise_of_lamps_traces_no_rays)
 
 /* Returns the distance, pixels, from LAMP to the nearest light whose rays are
  * reused. */
-static double compute_distance_to_reused_light_px(const struct glint_lamp *lamp)
+static double distance_to_reused_light_px(const struct glint_lamp *lamp)
 {
     const double degree = GLINT_PI / 180;
     const double pixels =
@@ -370,7 +370,7 @@ TEST(moving_lamp_is_traced_before_the_tolerance)
     for (int i = 0; i < 60; i++) {
         lamps[2].theta_deg += 0.005;
         n_reused += draw_stationary_lamps(LIGHTS - 1, 1);
-        assert_true(compute_distance_to_reused_light_px(&lamps[2]) <= 0.5);
+        assert_true(distance_to_reused_light_px(&lamps[2]) <= 0.5);
     }
     assert_true(n_reused > 48 && n_reused < 59);
     assert_false(draw_stationary_lamps(LIGHTS, 1));
@@ -383,8 +383,8 @@ TEST(moving_lamp_is_traced_before_the_tolerance)
     close_both_frames();
 }
 
-/* Checks that in reserved memory the rays of lights are reused only if there is
- * memory for them. */
+/* Checks that a frame in reserved memory reuses the rays of lights only if the
+ * memory is sufficient for them. */
 TEST(reserved_memory_limits_reuse)
 {
     for (int i = 0; i < 2; i++) {
@@ -469,7 +469,8 @@ TEST(reuse_factors_match_hand_computation)
     assert_int_equal(glint_lights_still(&s, light, 2, near_q30), 2);
     assert_in_range(gain_q14[0][0], 8191, 8193);
     assert_in_range(gain_q14[1][0], 13106, 13108);
-    /* more lights than the limit; afterwards no light */
+    /* Three lights exceed the limit. After that, a frame without lights reuses
+     * none, either. */
     light[2] = make_light_of_lamp(1, 1, red);
     assert_int_equal(glint_lights_still(&s, light, 3, near_q30), 0);
     assert_int_equal(glint_lights_still(&s, light, 0, near_q30), 0);

@@ -21,8 +21,8 @@ static void fill_background(int code)
     memset(&ground, code, sizeof ground);
 }
 
-/* Sets the green flare to the light OF (1 = white) in its first ROWS rows, and
- * to 0 elsewhere. */
+/* Sets the green light of the flare to OF (1 = white) in its first ROWS rows,
+ * and to 0 elsewhere. */
 static void set_flare_rows(int rows, double of)
 {
     memset(light, 0, sizeof light);
@@ -39,7 +39,7 @@ static struct glint_seen measure_flare_visibility(void)
     return seen;
 }
 
-/* Checks that light that adds 32 codes on black has visibility 1 there, 1/9 on
+/* Checks that added light of 32 codes has the visibility 1 on black, 1/9 on
  * code 120, and 0 on code 240. */
 TEST(bright_background_lowers_visibility)
 {
@@ -75,9 +75,10 @@ TEST(visibility_ignores_single_pixels)
     assert_true(fabs(log2(measure_flare_visibility().few) - 2) <= 0.126);
 }
 
-/* Checks light that makes code 200 white. It counts as 1 in a small ghost that
- * lights all channels. It counts as 0 on dark ground, and on code 250, where
- * the ghost has no visible edge. */
+/* Checks the measure `white`: the light of a flare divided by the light that
+ * makes all channels of the ground white. On code 200, it is 1 for a small
+ * ghost of exactly that light. On darker ground, and on code 250, where a white
+ * ghost has no visible edge, it is 0. */
 TEST(only_all_channels_make_white)
 {
     const float room = (float)(1 - canvas_decode_srgb(200));
@@ -96,8 +97,8 @@ TEST(only_all_channels_make_white)
     assert_true(measure_flare_visibility().white == 0);
 }
 
-/* Checks that the background (struct ground) sampled from an image whose left
- * half is white has a white left half. */
+/* Checks the background (struct ground) that is sampled from an image: if the
+ * left half of the image is white, so is the left half of the background. */
 TEST(background_is_sampled_from_the_image)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 50);
@@ -111,8 +112,9 @@ TEST(background_is_sampled_from_the_image)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Returns the peak of a flare after the exposure of strength ASKED. Before it,
- * the flare has peak PEAK, mean MEAN and visibility SEEN. */
+/* Corrects the exposure of a flare at the strength ASKED. Before that, the
+ * flare has the peak PEAK, the mean MEAN and the visibility SEEN. Returns its
+ * peak after that. */
 static double compute_exposed_flare_peak(double asked, double peak, double mean,
                                          struct glint_seen seen)
 {
@@ -135,13 +137,14 @@ TEST(hidden_flares_are_exposed_brighter)
     /* a flare that is fully visible gets a peak of a quarter of white */
     assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, plain) -
                      0.25) < 0.001);
-    /* An invisible flare is brightened until it is visible, but its peak at
-     * most to 0.6 of white. */
+    /* An invisible flare is brightened until it is visible. The limit of its
+     * peak is 0.6 of white. */
     assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, half) - 0.5) <
                 0.001);
     assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, hidden) -
                      0.6) < 0.001);
-    /* Half the strength darkens the flare by two stops, here too. */
+    /* Half of the strength darkens the flare by two stops, as for visible
+     * flares. */
     assert_true(fabs(compute_exposed_flare_peak(0.25, peak, mean, half) -
                      0.125) < 0.001);
     assert_true(fabs(compute_exposed_flare_peak(0.25, peak, mean, plain) -

@@ -18,11 +18,11 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 enum { PIXELS = 1000000, FRAME_US = 40000 };
 
-/* Power of a lamp, white x pixels, whose flare gets a peak of a quarter of
- * white by default, with the responses made below. */
+/* Power of a lamp, in units of one white pixel. With the lens responses made
+ * below, its flare gets a peak of a quarter of white by default. */
 static const double common = PIXELS / 8.0;
 
-/* Factors on the ghosts of each lamp, as the last exposure limited them. */
+/* factors by which the last exposure has limited the ghosts of each lamp */
 static double part[16];
 
 /* Returns the response of a lens whose flare peak falls by SLOPE stops from the
@@ -193,9 +193,9 @@ TEST(lamps_without_light_give_a_finite_exposure)
     assert_true(strength.scale == 0);
 }
 
-/* Returns the peak of the flare of a still image after the correction. Before
- * it, the flare is STOPS brighter than the response predicts, with a mean
- * MEAN_STOPS below the peak. */
+/* Corrects the exposure of a still image whose flare is STOPS brighter than the
+ * response predicts and has a mean MEAN_STOPS below its peak. Returns the peak
+ * of the flare after that. */
 static double compute_corrected_flare_peak(double asked, double stops,
                                            double mean_stops)
 {
@@ -253,9 +253,9 @@ TEST(physical_exposure_is_not_corrected)
 
 /* ------------------------------------------------------------------- videos */
 
-/* Checks, while a lamp crosses the image in 200 frames, that its flare changes
- * per frame by at most the change of the lens's response plus the max step of
- * the exposure factor. */
+/* Moves a lamp across the image in 200 frames. Checks that per frame its flare
+ * changes by at most the change of the lens's response plus the max step of the
+ * exposure factor. */
 TEST(crossing_lamp_changes_gradually)
 {
     const struct glint_response r = make_lens_response(7, 7);
@@ -274,8 +274,8 @@ TEST(crossing_lamp_changes_gradually)
     }
 }
 
-/* Checks that a sun that appears among lamps gradually lowers the exposure
- * factor of all lamps, and that the sun's light is limited until then. */
+/* Checks a sun that appears among lamps: the exposure factor of all lamps falls
+ * gradually, and the light of the sun is limited in the meantime. */
 TEST(rising_sun_lowers_the_factor_gradually)
 {
     const struct glint_response r = make_lens_response(0, 7);

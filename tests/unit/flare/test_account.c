@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the frame statistics of ray bundles: each outcome of a bundle (drawn,
- * closed, faint, ...) has its own cause, counts equal those of the drawn
- * frame, and images of single ghosts, lights and wavelengths add up to the
- * whole image.
+ * Tests the frame statistics of ray bundles. Each outcome of a bundle (drawn,
+ * closed, faint, ...) must have its own cause, and counts must equal those of
+ * the drawn frame. The images of single ghosts, lights and wavelengths must add
+ * up to the complete image.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -37,8 +37,8 @@ struct fixture {
     struct glint_flare *flare;
 };
 
-/* Opens a model with WAVES wavelengths and N_LIGHTS lights, each at an angle
- * whose sine is 1/8, in different directions. */
+/* Opens a model with WAVES wavelengths. Sets N_LIGHTS lights in different
+ * directions, all at the angle whose sine is 1/8. */
 static void open_model_with_beams(struct fixture *f, int n_lights)
 {
     *f = (struct fixture){.m = model_make_three_ghosts(), .n_lights = n_lights};
@@ -200,7 +200,7 @@ TEST(counts_bundles_without_light)
     struct fixture f;
 
     open_model_with_beams(&f, 2);
-    /* without red light, wavelength 0 has no light */
+    /* Without red light, wavelength 0 is dark. */
     f.light[1].rgb_q14[0] = 0;
     assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
@@ -213,15 +213,16 @@ TEST(counts_bundles_blocked_by_barrels)
     struct fixture f;
 
     open_model_with_beams(&f, 2);
-    /* a barrel radius above 1: the barrel blocks all rays */
+    /* A barrel value above 1 means that the barrel blocks the ray; here it
+     * blocks all rays. */
     *address_of_coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
     *address_of_coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
     assert_bundle_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
     free_model_and_flare(&f);
 }
 
-/* Moves ghost 0 to the right of the image, which is 2.5 mm wide, and checks the
- * outcome: OUTSIDE when far off, EMPTY closer to the image, then DRAWN. */
+/* Moves ghost 0 to the right of the image, which is 2.5 mm wide. Its outcome
+ * must be OUTSIDE far off the image, EMPTY nearer, and DRAWN inside. */
 TEST(counts_bundles_outside_the_image)
 {
     struct fixture f;
@@ -240,9 +241,9 @@ TEST(counts_bundles_outside_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks that bundles fainter than FAINTEST are counted as faint, in two
- * separate counts: one for faint ghosts of a single light, one for ghosts that
- * are faint even when summed over several lights. */
+/* Checks that bundles fainter than FAINTEST are counted as faint. There are two
+ * separate counts: for faint ghosts of a single light, and for ghosts that are
+ * faint even in the sum over several lights. */
 TEST(counts_faint_bundles)
 {
     struct fixture f;
@@ -329,7 +330,6 @@ TEST(images_of_parts_add_up)
     free_model_and_flare(&f);
 }
 
-/* Checks that collecting statistics does not change the image. */
 TEST(statistics_do_not_change_the_image)
 {
     static int32_t before[3 * N], after[3 * N];
@@ -345,9 +345,10 @@ TEST(statistics_do_not_change_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks the number of polynomial terms of ghost 0: sensor x has 2, plus v^2 s
- * except in the middle of the range of angles; sensor y 2; stop x 1; stop y 2;
- * energy 1 for a given wavelength; barrel 2. */
+/* Checks the number of polynomial terms evaluated for ghost 0. Sensor x has 2,
+ * and the term v^2 s except in the middle of the range of angles, where s is 0.
+ * Sensor y has 2, stop x 1, stop y 2, the energy 1 for a given wavelength, and
+ * the barrel 2. */
 TEST(counts_polynomial_terms)
 {
     struct glint_account a;
@@ -407,9 +408,9 @@ static int64_t sum_light_in_middle(const int32_t *px_q20, int width, int height)
     return sum;
 }
 
-/* Scales up the polynomials that give a ray's position in the stop, so that
- * only rays in a small spot of the ghost's pupil pass a round stop. No ray of
- * the prepass is near the edge of that spot. */
+/* Scales up the polynomials that give the position of a ray in the stop. With a
+ * round stop, only rays in a small spot of the ghost's pupil then pass, and no
+ * ray of the prepass is near the edge of that spot. */
 static void scale_stop_polynomials(struct fixture *f)
 {
     const struct glint_model_output *o =

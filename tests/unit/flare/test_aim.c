@@ -86,9 +86,9 @@ TEST(pixel_directions_match_double_precision)
     }
 }
 
-/* Checks a direction computed by hand: the pixel 45 degrees to the left. Pixels
- * far off to the upper right, whose distance is clamped, must all have the same
- * direction. */
+/* Checks the direction of the pixel 45 degrees to the left, which was computed
+ * by hand. Pixels far off to the upper right, whose distance is clamped, must
+ * all have the same direction. */
 TEST(direction_matches_hand_computation)
 {
     const int32_t half_q30 = 759250125; /* sqrt(2) / 2 */
@@ -144,9 +144,9 @@ static void check_wavelength_fluxes(const double flux[6])
     }
 }
 
-/* Checks the weights of wavelengths against double precision: for the flux
- * polynomial of a real lens, for a constant polynomial, and for wavelengths
- * outside the model's band, which use the nearer end of the band. */
+/* Checks the weights of wavelengths against double precision, for the flux
+ * polynomial of a real lens and for a constant polynomial. Wavelengths outside
+ * the model's band must get the weight at the nearer end of the band. */
 TEST(wavelength_weights_match_double_precision)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests where the sides of a square stop cut edges and cells. Each position in
- * the stop is drawn at the same position on the screen, one pixel per stop
- * radius.
+ * Tests where the sides of a square stop cut edges and cells. In the tests, one
+ * stop radius is one pixel, so that positions in the stop equal positions on
+ * the screen.
  */
 #include "flare/edges/cuts.h"
 #include "support/test.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the area to the right of an edge, per pixel, with values computed by
- * hand: rounded to 1/256 pixel for images in codes, to 1/65536 for linear
- * images.
+ * Compares the light that an edge adds to each pixel with the area of the pixel
+ * to the right of the edge, computed by hand. The area is rounded to 1/256
+ * pixel for images in codes, to 1/65536 for linear images.
  */
 #include <stdint.h>
 #include <stdlib.h>
@@ -52,7 +52,7 @@ static void add_red_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8,
 }
 
 /* Returns the red light of pixel X in row Y of an image in codes, Q16. Light of
- * half of white contributes 128 per 1/256 of the pixel's area. */
+ * half of white adds 128 for each 1/256 of the pixel that it covers. */
 static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
@@ -109,9 +109,9 @@ static int random_int_below(int n)
     return (int)((uint64_t)rng_bits32(&seed) * (uint32_t)n >> 32);
 }
 
-/* Checks that a random edge gives bit-identical light in a whole tile and in
- * its two halves, which use different code paths: no light left of the edge,
- * and the light of its full height right of it. */
+/* Checks that a random edge gives bit-identical light in one tile and in the
+ * two halves of this tile, which use different code. There must be no light
+ * left of the edge, and the light of its full height right of it. */
 TEST(edge_gives_the_same_light_in_half_tiles)
 {
     enum { FROM = 4 };
@@ -145,7 +145,7 @@ TEST(edge_gives_the_same_light_in_half_tiles)
         }
         s = make_row_sums(1);
         for (int part = 0; part < 2;
-             /* the sums of the left half are carried over to the right half */
+             /* The sums of the left half continue in the right half. */
              part++) {
             s.tile.x0 = part ? FROM : 0;
             s.tile.x1 = part ? SIDE : FROM;
@@ -160,7 +160,6 @@ TEST(edge_gives_the_same_light_in_half_tiles)
     }
 }
 
-/* Checks that packed light is exact to 25 bits, up to 2^40. */
 /* Draws eight edges that each add LIGHT to their right. If BRIGHT is 1, also
  * draws two edges that cancel each other and need wide sums. */
 static void draw_eight_edges(int fine, int64_t light_q20, int bright,
@@ -207,6 +206,7 @@ TEST(light_does_not_depend_on_sum_width)
         }
 }
 
+/* Checks that packed light is exact to 25 bits, up to 2^40. */
 TEST(packed_light_is_within_half_a_step)
 {
     for (int bit = 0; bit < 40; bit++)

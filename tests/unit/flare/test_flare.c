@@ -274,7 +274,7 @@ static void check_golden_hash(FILE *file, bool update, const char *name,
     assert_string_equal(line, expected);
 }
 
-/* Checks that hashes are those of the golden file, on every CPU;
+/* Checks that hashes equal the hashes of the golden file, on every CPU.
  * GLINT_GOLDEN_UPDATE=1 rewrites the file. */
 TEST(hashes_match_the_golden_file)
 {

@@ -15,9 +15,9 @@
 /* ------------------------------------------------------------------- light */
 
 /* Checks the total light of a ghost: an octagonal stop of radius 1 in a grid of
- * 2.5 x 2.5 stop radii. The stop's area is 2 sqrt 2 of 6.25. The grid's flux is
- * 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536; the slope of the energy
- * cancels. */
+ * 2.5 x 2.5 stop radii. The stop has an area of 2 sqrt 2, the grid of 6.25. The
+ * flux of the grid is 16 x 16 cells x 1.5e9 / 2^31 x 50000 / 65536. The energy
+ * has a slope, which does not change the sum. */
 TEST(ghost_has_the_light_that_passes_the_stop)
 {
     const struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -58,8 +58,8 @@ static int32_t read_pixel_light(const int32_t *p, int x, int y)
     return p[3 * (y * WIDTH + x)];
 }
 
-/* Checks that the irradiance of a flat ghost, away from its rim, is even: the
- * flux of a cell divided by its area in pixels. */
+/* Checks that a flat ghost has an even irradiance away from its rim: the flux
+ * of a cell divided by the cell's area in pixels. */
 TEST(flat_ghost_is_even_inside)
 {
     struct ghost g = {16, 100, 75, 40, 0, 1, 0, 0, {16384, 0, 0}};
@@ -134,7 +134,8 @@ TEST(outline_closes_around_a_far_corner)
             v[i] = (struct glint_vertex){.x_q8 = i & 1 ? 7693 : 2573,
                                          .y_q8 = i & 2 ? 7757 : 2637,
                                          .energy_q16 = 65536};
-        /* this corner's stop position is just inside the outline of the stop */
+        /* The stop position of this corner is just inside the outline of the
+         * stop. */
         v[1].stop_x_q16 = v[2].stop_y_q16 = 65534;
         v[3].stop_x_q16 = v[3].stop_y_q16 = far_q16[k];
         memset(pixels, 0, sizeof pixels);
@@ -256,8 +257,8 @@ TEST(ghosts_agree_with_traced_rays)
 
 /* ------------------------------------------------ polygons computed by hand */
 
-/* One cell of flux 64 and energy 1. Corners are in order around the cell, in
- * 1/256 px. */
+/* One cell of flux 64 and energy 1. Corners are listed around the cell; their
+ * coordinates are in 1/256 pixel. */
 struct quad {
     int32_t at[4][2];
     int32_t barrel_q16[4];

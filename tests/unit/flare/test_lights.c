@@ -15,8 +15,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* NEAR_Q30: merge distance, about 1/8 pixel if an angle of tangent 1 is 2000
- * pixels */
+/* NEAR_Q30: the distance up to which lights are merged. It is about 1/8 pixel
+ * if the tangent 1 is 2000 pixels wide. */
 enum { MANY = 3000, NEAR_Q30 = 60000 };
 
 static double real_to_double(struct glint_real x)
@@ -37,7 +37,8 @@ static int32_t encode_q30(double x)
     return (int32_t)lrint(x * 0x1p30);
 }
 
-/* Returns a light of power POWER whose direction has the sines X and Y. */
+/* Returns a light of power POWER. Its direction has the sines X and Y along the
+ * axes of the image. */
 static struct glint_light make_light(double x, double y, double power)
 {
     const double sine = hypot(x, y);
@@ -150,8 +151,8 @@ TEST(merge_distance_is_the_larger_of_two)
     }
 }
 
-/* Checks that lights which are within the limit and too far apart to be merged
- * are unchanged bit by bit. */
+/* Checks that lights are unchanged bit by bit if their number is within the
+ * limit and they are too far apart to be merged. */
 TEST(distant_lights_are_unchanged)
 {
     static struct glint_light b[200], was[200];
@@ -188,8 +189,8 @@ TEST(identical_lights_are_merged)
     assert_true(fabs(real_to_double(b->power) - 0.5 * MANY) < 1e-5 * MANY);
 }
 
-/* Returns the chord (length of the difference) between the unit vectors with
- * sines (X, Y) and (P, Q). */
+/* Returns the chord between the unit vectors with the sines (X, Y) and (P, Q),
+ * which is the length of their difference. */
 static double compute_chord_between_directions(double x, double y, double p,
                                                double q)
 {

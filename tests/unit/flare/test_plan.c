@@ -271,8 +271,8 @@ TEST(faint_light_gets_fewer_edges)
     assert_true(n_fewer > 15);
 }
 
-/* Total light of an image, its centroid, and its mean square distance from the
- * centroid; lengths in pixels. */
+/* The extent of an image: its total light, its centroid (X, Y), and SQUARE, the
+ * mean squared distance of light from the centroid. Lengths are in pixels. */
 struct extent {
     double light, x, y, square;
 };
@@ -353,7 +353,7 @@ TEST(pixel_snapped_edges_keep_the_light)
         }
         /* a PSNR of at least 61 dB */
         assert_true(sum / (3 * WIDTH * HEIGHT) < 0.05);
-        /* the sides of an upright outline may move by half a pixel */
+        /* An upright outline may move by half a pixel when it is snapped. */
         assert_true(fabs(flux[1] - flux[0]) < (e > 2 ? 1e-3 : 1e-2) * flux[0]);
     }
     assert_true(n_changed > 10000);
@@ -431,8 +431,9 @@ TEST(half_resolution_shares_linear_light)
     assert_true(sum[0] > 0 && fabs(sum[1] / sum[0] - 1) < 0.02);
 }
 
-/* Checks, on a textured image, that the light shared by a block of four pixels
- * is close to the light of each. */
+/* Draws a textured image at half resolution. Checks that the light that the
+ * four pixels of a block share is close to the light of each of them at full
+ * resolution. */
 TEST(half_resolution_of_yuyv_is_close)
 {
     static uint8_t px[2][2 * WIDTH * HEIGHT];
@@ -549,8 +550,8 @@ static double compare_faint_lights(struct fixture *f, int n)
 }
 
 /* Checks that lights too faint to be visible singly are visible together, also
- * in codes. The same must hold for fewer lights with soft edges, which draw
- * each light as several outlines. */
+ * in codes. With soft edges, each light is drawn as several outlines; fewer
+ * such lights must be visible together, too. */
 TEST(many_faint_lights_are_visible_together)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
@@ -649,7 +650,7 @@ TEST(stop_radius_scales_the_opening)
     int64_t light = 0, off = 0, left = 0;
     struct glint_flare_stats s;
 
-    /* this light is many steps of 2^-20, so that rounding is small */
+    /* With so much light, rounding to 2^-20 is negligible. */
     fx.light.power = real_of(1000, 4);
     draw_flare_image(&fx, whole, &s);
     fx.cfg.stop.apothem_q16 *= 2;
@@ -726,9 +727,10 @@ TEST(finest_grid_has_the_max_cells)
     assert_int_equal(most, GLINT_MAX_CELLS);
 }
 
-/* Checks how far rays deviate from linear interpolation between grid points.
- * The barrel's 0.5 + u^2 / 2 has second derivative 4 over the box, in u only;
- * so straight lines between n rays lie 4 / 12 / n^2 above it in the mean. */
+/* Checks how far rays deviate from linear interpolation between grid points
+ * (the sag). The barrel polynomial 0.5 + u^2 / 2 changes in u only, with a
+ * second derivative of 4 across the box. So chords between n rays lie 4 / 12 /
+ * n^2 above it in the mean. */
 TEST(sag_matches_the_second_derivative)
 {
     static struct glint_plan_scratch scratch;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests dust and masks in the stop, which are drawn by edges: each pixel of a
- * flat ghost has the light that the stop passes at that pixel's rays, on
- * coarse and fine grids; a white mask gives the ghost of a clean stop, a black
- * mask no light; soft edges follow their profile; workers and tiles do not
- * change the image.
+ * Tests dust and masks in the stop, which are drawn by edges. On coarse and
+ * fine grids, each pixel of a flat ghost must have the light that the stop
+ * passes for the rays of that pixel. A white mask must give the ghost of a
+ * clean stop, a black mask no light. Soft edges must follow their profile.
+ * Workers and tiles must not change the image.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,8 @@
 
 static const struct ghost plain = {16, 100, 75, 60, 0, 1, 0, 0, {16384, 0, 0}};
 
-/* Sets up SETUP with IRIS. Returns the dirt (dust, masks) in its stop. */
+/* Sets SETUP to a stop of N_BLADES blades with the dust and mask of IRIS.
+ * Returns the resulting dirt, which the caller frees. */
 static struct glint_dirt *make_dirt_in_stop(struct glint_setup *setup,
                                             int n_blades,
                                             const struct glint_iris *iris)
@@ -33,12 +34,11 @@ static struct glint_dirt *make_dirt_in_stop(struct glint_setup *setup,
     return dirt;
 }
 
-/* Draws G into OUT through an octagonal stop with IRIS, and into CLEAR
- * without it. */
+/* Draws the ghost G into OUT, in tiles of 2^TILE_LOG2 pixels, through a stop of
+ * N_BLADES blades with the dust or mask of IRIS. */
 static struct glint_flare_stats
-draw_ghost_with_and_without_dirt(const struct ghost *g,
-                                 const struct glint_iris *iris, int n_blades,
-                                 int tile_log2, int32_t *out)
+draw_ghost_through_iris(const struct ghost *g, const struct glint_iris *iris,
+                        int n_blades, int tile_log2, int32_t *out)
 {
     struct glint_flare_config c = make_octagonal_stop_config();
     struct glint_flare_stats stats;
@@ -67,8 +67,8 @@ static double compare_with_clear_ghost(const struct ghost *g,
     double sum = 0, all = 0;
     int n = 0;
 
-    draw_ghost_with_and_without_dirt(g, &clear, 8, 5, want);
-    draw_ghost_with_and_without_dirt(g, iris, 8, 5, pixels);
+    draw_ghost_through_iris(g, &clear, 8, 5, want);
+    draw_ghost_through_iris(g, iris, 8, 5, pixels);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const double u = (x + 0.5 - g->cx) / g->size;
@@ -157,14 +157,12 @@ TEST(white_and_black_masks_pass_all_or_nothing)
     struct glint_iris iris = {.mask = mask, .mask_width = 2, .mask_height = 2};
     const struct glint_iris clear = {0};
 
-    draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want);
-    draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels);
+    draw_ghost_through_iris(&plain, &clear, 8, 5, want);
+    draw_ghost_through_iris(&plain, &iris, 8, 5, pixels);
     assert_memory_equal(pixels, want, sizeof pixels);
     memset(mask, 0, sizeof mask);
     assert_int_equal(
-        draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels)
-            .primitives,
-        0);
+        draw_ghost_through_iris(&plain, &iris, 8, 5, pixels).primitives, 0);
     assert_true(sum_channel_light(pixels, 0) == 0);
 }
 
@@ -176,16 +174,15 @@ TEST(dust_adds_few_edges)
     int plain_edges, dusty;
 
     plain_edges =
-        draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want).primitives;
-    dusty = draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels)
-                .primitives;
+        draw_ghost_through_iris(&plain, &clear, 8, 5, want).primitives;
+    dusty = draw_ghost_through_iris(&plain, &iris, 8, 5, pixels).primitives;
     /* clipped cells consist of two polygons, each with up to five corners */
     assert_true(dusty > plain_edges);
     assert_true(dusty < plain_edges + 16 * 16 * 10);
 }
 
-/* Checks a mask with one white half: all light of that half passes, none of the
- * other half, with a sharp boundary. */
+/* Checks a mask with one white half: all light of the white half passes, no
+ * light of the black half, and the boundary is sharp. */
 TEST(half_mask_passes_half_of_the_light)
 {
     uint8_t mask[64 * 64];
@@ -196,8 +193,8 @@ TEST(half_mask_passes_half_of_the_light)
 
     for (int i = 0; i < 64 * 64; i++)
         mask[i] = i / 64 < 32 ? 255 : 0;
-    draw_ghost_with_and_without_dirt(&plain, &clear, 8, 5, want);
-    draw_ghost_with_and_without_dirt(&plain, &iris, 8, 5, pixels);
+    draw_ghost_through_iris(&plain, &clear, 8, 5, want);
+    draw_ghost_through_iris(&plain, &iris, 8, 5, pixels);
     kept = sum_channel_light(pixels, 0);
     all = sum_channel_light(want, 0);
     assert_true(fabs(kept / all - 0.5) < 0.005);
@@ -221,30 +218,28 @@ TEST(soft_edge_has_the_light_of_its_profile)
         dirt = make_dirt_in_stop(&setup, n, &iris);
         mean = dirt->mean;
         glint_dirt_free(dirt);
-        draw_ghost_with_and_without_dirt(&plain, &clear, n, 5, want);
-        draw_ghost_with_and_without_dirt(&plain, &iris, n, 5, pixels);
+        draw_ghost_through_iris(&plain, &clear, n, 5, want);
+        draw_ghost_through_iris(&plain, &iris, n, 5, pixels);
         share = sum_channel_light(pixels, 0) / sum_channel_light(want, 0);
         assert_true(fabs(share / mean - 1) < 0.01);
     }
 }
 
-/* Checks that tiles do not change the image, bit by bit. */
 TEST(image_does_not_depend_on_tiles)
 {
     const struct glint_iris iris = {
         .roundness = 0.4, .softness = 0.1, .dust = 0.1, .dust_seed = 9};
 
-    draw_ghost_with_and_without_dirt(&ghosts[1], &iris, 7, 5, want);
+    draw_ghost_through_iris(&ghosts[1], &iris, 7, 5, want);
     assert_true(sum_channel_light(want, 0) + sum_channel_light(want, 1) +
                     sum_channel_light(want, 2) >
                 0);
     for (int log2 = 3; log2 <= 6; log2++) {
-        draw_ghost_with_and_without_dirt(&ghosts[1], &iris, 7, log2, pixels);
+        draw_ghost_through_iris(&ghosts[1], &iris, 7, log2, pixels);
         assert_memory_equal(pixels, want, sizeof pixels);
     }
 }
 
-/* Checks that values out of range are rejected. */
 TEST(rejects_values_out_of_range)
 {
     struct glint_flare_config c = make_octagonal_stop_config();

@@ -141,8 +141,7 @@ TEST(muted_ghosts_add_no_light)
     free_model_with_tints(f);
 }
 
-/* Checks that a gain makes a ghost visible whose light is below one code
- * without it. */
+/* Checks a ghost whose light is below one code: a gain makes it visible. */
 TEST(gain_makes_a_faint_ghost_visible)
 {
     struct fixture *f = open_model_with_tints();

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the choice of wavelengths: each ghost gets as many as its dispersion
- * and brightness require, without colour steps that would not occur with 31
- * wavelengths; explicit lists of wavelengths are used as given.
+ * Tests the choice of wavelengths. Each ghost must get as many as its
+ * dispersion and brightness require, without colour steps that 31 wavelengths
+ * would not have. Explicit lists of wavelengths must be used as given.
  */
 #include <math.h>
 #include <stdint.h>
@@ -39,7 +39,7 @@ static struct glint_engine_report draw_lamp_frame(struct glint_frame *frame,
 }
 
 /* Returns the number of wavelengths planned for GHOST in FRAME. Sets *N_DRAWN
- * to the number of those that were drawn. */
+ * to the number of these wavelengths that were drawn. */
 static int count_wavelengths_of_ghost(struct glint_frame *frame, int ghost,
                                       int *n_drawn)
 {
@@ -57,8 +57,8 @@ static int count_wavelengths_of_ghost(struct glint_frame *frame, int ghost,
     return n;
 }
 
-/* Counts, for each number of wavelengths, the drawn ghosts with that number;
- * and the bundles drawn. */
+/* Sets ghosts[n] to the number of drawn ghosts with n wavelengths, and *BUNDLES
+ * to the number of drawn bundles. */
 static void count_ghosts_by_wavelengths(struct glint_frame *frame,
                                         int ghosts[GLINT_MAX_WAVELENGTHS + 1],
                                         int *bundles)
@@ -105,7 +105,7 @@ TEST(large_image_needs_more_wavelengths)
     report = draw_lamp_frame(&frame, &chosen, WIDTH, 100, picture);
     count_ghosts_by_wavelengths(&frame, ghosts, &bundles);
     more = ghosts[6] + ghosts[10] + ghosts[17] + ghosts[28];
-    /* there are ghosts with different numbers of wavelengths */
+    /* Different ghosts have different numbers of wavelengths. */
     assert_true(ghosts[4] > 0 && more > 0);
     assert_int_equal(bundles, report.stats.bundles);
     assert_int_equal(report.stats.dropped_bundles, 0);
@@ -152,8 +152,9 @@ TEST(dispersion_of_0_gives_default_wavelengths)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* Checks that a choice of wavelength sets that offers only one set gives the
- * image of a list of the same wavelengths. */
+/* The engine chooses one of several sets of wavelengths for each ghost. Checks
+ * that, if there is only one set, the image equals that of an explicit list of
+ * the same wavelengths. */
 TEST(single_set_equals_the_list)
 {
     struct opened set = chosen, list = three;
@@ -247,9 +248,9 @@ static int compare_ints(const void *a, const void *b)
     return *(const int *)b - *(const int *)a;
 }
 
-/* Returns the hue step, codes, that is exceeded by only 0.1 % of all pairs of
- * neighbouring pixels. The hue step of a pair is the error of the difference in
- * R - G or B - G between both pixels. */
+/* Returns the hue step, codes, which only 0.1 % of all pairs of neighbouring
+ * pixels exceed. The hue step of a pair is the error of the change of R - G or
+ * B - G from one pixel to the other. */
 static int measure_hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];

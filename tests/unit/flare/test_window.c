@@ -64,9 +64,9 @@ static const struct shape shape[] = {
 };
 
 /* Shapes for lenses without rotational symmetry. Their pupil boxes have two
- * separate halves in y, with as many rows of rays in total as other boxes have.
- * Light passes the first shape at all heights of a narrow strip, so its windows
- * keep their height of 2^31. */
+ * separate halves in y, which together have as many rows of rays as other
+ * boxes. In the first shape, light passes a narrow strip over the full height
+ * of the box, so its windows have the full height of 2^31. */
 static const struct shape whole_shape[] = {
     {"a strip", {P(1, 0)}, {P(0, 1)}, {2}, {0.01}, {0}, 1.45},
     {"a strip aside",
@@ -112,7 +112,7 @@ static struct glint_lens
 open_shape(const struct shape *s, enum glint_basis basis, struct model_image *m)
 {
     static const struct glint_model_ghost ghost = {0, 1, 0, 1};
-    /* coefficients have this exponent, which allows values up to 4 */
+    /* With this exponent, coefficients may have values up to 4. */
     const int exponent = -28;
     struct model_polynomial p[] = {
         {GLINT_OUT_SENSOR_X, 1, -28, {P(1, 0)}, {1 << 27}},
@@ -158,8 +158,9 @@ static bool ray_passes_stop(const struct glint_transfer *t, double radius,
                   t->exponent[GLINT_OUT_BARREL_0]) <= 1);
 }
 
-/* Extent of the rays that pass, found ray by ray. left and right: -1 .. 1;
- * height: 0 .. 1, or LOW .. HIGH in a box with two halves. */
+/* Extent of the rays that pass a stop, found ray by ray. LEFT and RIGHT are -1
+ * .. 1. LOW and HIGH are -1 .. 1 in a box with two halves in y, otherwise 0 ..
+ * 1. */
 struct seen {
     double left, right, low, high;
     int n;
@@ -286,7 +287,6 @@ TEST(window_moves_smoothly_with_the_stop)
     free(m.data);
 }
 
-/* Checks that there is no window if no ray passes. */
 TEST(no_passing_ray_gives_no_window)
 {
     static const struct shape beside = {
@@ -307,7 +307,7 @@ TEST(no_passing_ray_gives_no_window)
     free(m.data);
 }
 
-/* Checks that in an annular box the window has a lower and an upper end. */
+/* Checks that the window of an annular pupil has a lower and an upper end. */
 TEST(annular_box_has_two_window_ends)
 {
     static struct glint_window_nodes nodes;

@@ -223,9 +223,10 @@ TEST(axes_are_steady_in_any_orientation)
     assert_true(lying < 1 && standing < 1);
 }
 
-/* Returns the max distance, pixels, that the track of a dim lamp of 8 x 8
- * pixels moves while in every EVERY-th frame a different pixel of the lamp is
- * 41 times as bright (code 255 instead of 43, linear 1 instead of 0.0242). */
+/* In every EVERY-th frame, a different pixel of a dim lamp of 8 x 8 pixels
+ * is 41 times as bright as the others (code 255 instead of 43, linear 1
+ * instead of 0.0242). Returns the max distance, pixels, that the track of
+ * the lamp moves. */
 static double measure_motion_of_dim_lamp_px(int every, uint32_t seed)
 {
     double furthest = 0;
@@ -271,9 +272,9 @@ TEST(sparkle_moves_less_than_a_pixel)
 }
 
 /* Checks a lamp whose brightest pixels are near the upper threshold, so that
- * its spot is often classified as faint: its track must continue. The white
- * level is fixed, as relative to the white of the picture the lamp would not be
- * faint. */
+ * its spot is often classified as faint: its track must continue. The test sets
+ * the white level, because the lamp is the brightest object of its picture and
+ * would not be faint relative to that. */
 TEST(faint_spots_keep_a_track)
 {
     uint32_t id = 0;
@@ -299,9 +300,9 @@ TEST(faint_spots_keep_a_track)
     night_close_tracker(&night);
 }
 
-/* Checks that a spot that is faint from the start begins no track, and that a
- * faint spot much larger than a lamp, such as a wall, does not continue the
- * lamp's track. */
+/* Checks that a spot that is faint from the start begins no track. A faint spot
+ * much larger than a lamp, such as a wall, must not continue the track of a
+ * lamp. */
 TEST(faint_spots_begin_no_track)
 {
     struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
@@ -319,7 +320,9 @@ TEST(faint_spots_begin_no_track)
                                              night.track, NIGHT_MAX),
                      1);
     spot[0].faint = 1;
-    spot[0].area = 161; /* more than four times the lamp's area of 40 pixels */
+    /* The spot is now more than four times as large as the lamp, which has 40
+     * pixels. */
+    spot[0].area = 161;
     glint_lamp_tracker_step(night.tracks, spot, 1, FPS30, night.track,
                             NIGHT_MAX);
     assert_int_equal(night.track[0].state, GLINT_LAMP_FADING);
@@ -364,8 +367,8 @@ static bool tracks_equal_spots(void)
     return night.n_tracks >= n_lights;
 }
 
-/* Checks that on a repeated image tracks become exactly equal to the spots,
- * whatever noise or motion preceded: after attack + 1 s or five frames, at any
+/* Repeats an image after any noise or motion. Checks that tracks become exactly
+ * equal to the spots after the attack time + 1 s or after five frames, at any
  * frame rate. */
 TEST(tracks_converge_exactly_to_a_still)
 {
@@ -484,8 +487,8 @@ TEST(starting_lamp_is_followed_at_once)
 }
 
 /* Moves a lamp of RADIUS by SPEED pixels per frame from frame FIRST to frame
- * LAST. Returns the max distance, pixels, between its track and its centroid
- * over 20 frames. */
+ * LAST, and draws 20 frames. Returns the max distance, pixels, between the
+ * lamp's track and its centroid. */
 static double measure_lag_in_pan_px(double radius, double speed, int first,
                                     int last)
 {
@@ -532,8 +535,8 @@ TEST(lamps_are_followed_in_a_pan)
 }
 
 /* Moves a lamp of RADIUS into the picture at SPEED pixels per frame. Returns
- * the max distance, pixels, between its track and its centroid in its first
- * eight frames. */
+ * the max distance, pixels, between its track and its centroid over the first
+ * eight frames in which it is visible. */
 static double measure_lag_at_entry_px(double radius, double speed)
 {
     double furthest = 0;
@@ -562,8 +565,8 @@ static double measure_lag_at_entry_px(double radius, double speed)
 }
 
 /* Checks that a lamp that enters the picture in a fast pan is followed from its
- * second frame on. At 3 pixels per frame its visible shape changes in many
- * frames, which must not count as motion. */
+ * second frame on. At 3 pixels per frame, it enters over many frames; the
+ * change of its visible shape must not count as motion. */
 TEST(lamp_entering_in_a_pan_is_followed)
 {
     static const double speeds[] = {3, 13, 40}, radii[] = {1.5, 3, 8, 20};
@@ -577,9 +580,9 @@ TEST(lamp_entering_in_a_pan_is_followed)
     }
 }
 
-/* Checks a lamp that returns after a second, 25 pixels from its last position.
- * That is too far for one frame (0.06 of 320 is 19 pixels), so a new track
- * fades in there. */
+/* Checks a lamp that is hidden for a second and returns 25 pixels from its last
+ * position. In one frame a lamp may move 0.06 of 320, that is 19 pixels, so a
+ * new track must fade in there. */
 TEST(returning_lamp_gets_a_new_track)
 {
     for (int k = 0; k < 2; k++) {
@@ -811,8 +814,8 @@ static double compute_star_power_of_track(const struct glint_lamp_track *t)
 }
 
 /* Checks the power of a clipped lamp in noise of 8 codes, which is estimated
- * from the visible part of its rim: it neither jumps nor drifts, and if it is
- * halved for good the tracks adapt within a second. */
+ * from the visible pixels of its rim. It must neither jump nor drift. If it is
+ * halved for good, the tracks must adapt within a second. */
 TEST(power_of_a_clipped_lamp_is_steady_in_noise)
 {
     static const struct night_lamp lamps[] = {
@@ -854,9 +857,9 @@ TEST(power_of_a_clipped_lamp_is_steady_in_noise)
     }
 }
 
-/* Checks that the same four of ten lamps are drawn, although noise makes the
- * finder rank different lamps fourth. A lamp that becomes much brighter fades
- * in while another one fades out. */
+/* Checks that the same four of ten lamps are drawn in each frame, although
+ * noise makes the finder rank different lamps fourth. A lamp that becomes much
+ * brighter must fade in while another lamp fades out. */
 TEST(limited_lamps_do_not_flicker)
 {
     struct night_lamp lamp[10];

@@ -123,8 +123,8 @@ TEST(order_of_spots_changes_nothing)
                     spot[i].x_q8 += rng_int_below(&night.seed, 2048);
             }
             n = n_new;
-            /* some equal spots, and one that differs from them only in its
-             * faint flag */
+            /* Some spots are equal, and one differs from them only in its flag
+             * `faint`. */
             if (n > 3)
                 spot[1] = spot[0], spot[2] = spot[0], spot[2].faint ^= 1;
             shuffle_spots(mixed, spot, n);

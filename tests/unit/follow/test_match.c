@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the library's pairing of seekers (tracks that need a spot) with
- * spots, cheapest pair first, with a slow search of all pairs.
+ * Checks how the tracker pairs seekers (tracks that need a spot) with spots,
+ * cheapest pair first. The reference is a slow search of all pairs.
  */
 #include "support/rng.h"
 #include "follow/match.h"
@@ -218,8 +218,8 @@ static void shuffle_items(void *things, int n, size_t bytes)
     }
 }
 
-/* Sets POWER[id] to the power of the spot paired with the seeker of that id;
- * -1: no spot. */
+/* Sets POWER[id] to the power of the spot that is paired with the seeker ID, or
+ * to -1 if there is none. */
 static void read_powers_of_matches(int64_t power[MAX + 1])
 {
     for (int i = 0; i < match.n_seekers; i++) {

@@ -43,7 +43,8 @@ TEST(codes_match_hand_computation)
     assert_int_equal(curve.decode_q20[255], 1 << 20);
     glint_curve_init(&curve, GLINT_TONE_BT709);
     assert_int_equal(curve.decode_q20[0], 0);
-    assert_int_equal(curve.decode_q20[20], 18276); /* code 20: 20 / 255 / 4.5 */
+    /* BT.709 code 20 is 20 / 255 / 4.5 in linear light. */
+    assert_int_equal(curve.decode_q20[20], 18276);
     assert_int_equal(curve.decode_q20[255], 1 << 20);
 }
 
@@ -75,8 +76,8 @@ TEST(decoding_is_monotone)
     }
 }
 
-/* Errors of codes after light was added to each code, against unrounded codes
- * in double precision. */
+/* Errors of codes after light was added to each code, compared with exact
+ * results that are not rounded to codes. */
 struct errors {
     double worst, squares;
     int n;
@@ -140,8 +141,8 @@ static void assert_ycc_gives_rgb(const struct glint_ycc *ycc, int y, int cb,
     assert_true(abs(rgb_q7[2] - b * 128) <= within);
 }
 
-/* Checks the conversion of the standards' 100 % colour bars, whose published
- * codes are rounded, within 1.5 codes. */
+/* Checks the conversion of the 100 % colour bars of the standards. Their
+ * published codes are rounded, so 1.5 codes are allowed. */
 TEST(colour_bars_convert_within_rounding)
 {
     struct glint_ycc ycc;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Adds light to images of every format and compares the codes with those
- * computed in double precision from the curves and matrices of the standards
- * instead of tables.
+ * Adds light to images of every format. Compares the codes with results in
+ * double precision, which are computed from the curves and matrices of the
+ * standards instead of tables.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -38,8 +38,8 @@ static struct fixture fixture;
 static struct glint_resolve resolve;
 static uint32_t seed = 1;
 
-/* Makes an image of guard bytes. Rows are 5 bytes further apart than their
- * length; strides are negative if UPSIDE_DOWN. */
+/* Makes an image of guard bytes. Each row is followed by 5 guard bytes; with
+ * UPSIDE_DOWN, strides are negative. */
 static void make_guarded_image(enum glint_pixel_format format, int width,
                                int height, int upside_down)
 {
@@ -118,7 +118,8 @@ static void add_light_in_strips(const struct glint_image *image, int dither,
             const int x1 = x0 + TILE < image->width ? x0 + TILE : image->width;
             const int y1 = y0 + 2 < image->height ? y0 + 2 : image->height;
 
-            /* this light is bright, to reveal where it is read in error */
+            /* The buffer is filled with bright light, which reveals reads
+             * outside the image. */
             memset(&light, 0x55, sizeof light);
             for (int i = 0; i < 3; i++)
                 for (int y = y0; y < y1; y++)
@@ -159,8 +160,8 @@ static void assert_guard_bytes_unchanged(void)
 
 /* --------------------------------------------------------------- reference */
 
-/* Returns how much the encoded value V (1 = white) changes when linear light
- * LIGHT is added. */
+/* Returns the change of the encoded value V (1 = white) when the linear light
+ * LIGHT is added to it. */
 static double compute_expected_code_change(double v, double light)
 {
     const double held = fmax(0, fmin(v, 1));
@@ -409,7 +410,7 @@ TEST(faint_light_changes_nothing)
             fill_with_random_codes(i, 128, 128);
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 33 * 18; k += 4)
-                /* light of 0.4 code at code 128 */
+                /* light that would change code 128 by 0.4 */
                 fixture.light_q20[i][k] = 1500;
         add_light_to_image(0);
         assert_memory_equal(fixture.plane, fixture.before,
@@ -456,9 +457,9 @@ TEST(codes_match_hand_computation)
     assert_int_equal(*address_of_sample(0, 2, 0), 137);
 }
 
-/* Checks that one lit pixel of four changes their common chroma sample by a
- * quarter, and that the only pixel of the last sample in an image with odd
- * sides changes it completely. */
+/* Checks chroma samples that several pixels share. One lit pixel of four
+ * changes their sample by a quarter. In an image with odd sides, the last
+ * sample has only one pixel, which changes it completely. */
 TEST(chroma_is_the_mean_of_existing_pixels)
 {
     make_guarded_image(GLINT_I420, 3, 3, 0);
@@ -470,12 +471,13 @@ TEST(chroma_is_the_mean_of_existing_pixels)
     assert_int_equal(*address_of_sample(0, 0, 0), 29); /* 0.114 * 255 */
     assert_int_equal(*address_of_sample(0, 1, 0), 0);
     assert_int_equal(*address_of_sample(0, 2, 2), 29);
-    /* luma of a quarter of white: 128 + 127.5 / 4 */
+    /* Cb of a block with one blue pixel of four: 128 + 127.5 / 4 */
     assert_int_equal(*address_of_sample(1, 0, 0), 160);
     assert_int_equal(*address_of_sample(1, 1, 0), 128);
     assert_int_equal(*address_of_sample(1, 1, 1), 255); /* 128 + 127.5 */
     assert_int_equal(*address_of_sample(2, 1, 1),
-                     107); /* 128 - 0.114 * 127.5 / 0.701 */
+                     /* Cr of the blue pixel: 128 - 0.114 * 127.5 / 0.701 */
+                     107);
 }
 
 /* Checks that with dither the mean over a uniform image is right within 0.1
@@ -539,7 +541,7 @@ TEST(dither_in_ycc_stays_within_a_code)
 
 TEST(linear_light_adds_and_saturates)
 {
-    /* rows of three pixels, of which the third is padding */
+    /* Each row has three pixels, the third of which is padding. */
     static int32_t px_q20[2][9];
     const int32_t light_q20[3][2][2] = {{{5, INT32_MAX}, {-7, 1}},
                                         {{-9, INT32_MIN}, {1 << 20, 2}},
@@ -619,8 +621,9 @@ TEST(layouts_give_the_same_codes)
         }
 }
 
-/* Checks that a row of packed pixels drawn in one span, which SIMD vectors do
- * not divide evenly, equals one drawn in spans of eight. */
+/* Checks that a row of packed pixels drawn in one long span equals the same row
+ * drawn in spans of eight pixels. SIMD vectors do not divide the long span
+ * evenly. */
 TEST(long_spans_equal_short_spans)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
@@ -656,8 +659,8 @@ TEST(long_spans_equal_short_spans)
         }
 }
 
-/* Makes each 2 x 2 pixels of the image uniform: sharing light is exact for
- * these. */
+/* Makes each block of 2 x 2 pixels of the image uniform. For such blocks, light
+ * shared by the block is exact. */
 static void make_2x2_blocks_uniform(void)
 {
     const struct glint_image *image = &fixture.image;
@@ -726,9 +729,10 @@ TEST(quads_of_uniform_blocks_are_exact)
         }
 }
 
-/* Checks blocks of 2 x 2 different pixels that share light: bright pixels
- * change less; none becomes darker or exceeds white, their order is preserved,
- * and strong light makes all four white. */
+/* Checks blocks of 2 x 2 different pixels that share light. Bright pixels must
+ * change less than dark ones, and no pixel may become darker or exceed white.
+ * The order of the pixels must be preserved, and strong light must make all
+ * four white. */
 TEST(quads_of_edges_stay_ordered)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
@@ -754,9 +758,9 @@ TEST(quads_of_edges_stay_ordered)
     }
 }
 
-/* Returns the RMS difference, codes, between light shared by 2 x 2 pixels and
- * light computed per pixel, over images whose pixels differ by up to DIFFER
- * codes within a block. */
+/* Makes images whose pixels differ by up to DIFFER codes within each block of 2
+ * x 2 pixels. Returns the RMS difference, codes, between light that a block
+ * shares and light computed per pixel. */
 static double measure_rms_of_blocks_and_pixels(int differ)
 {
     static uint8_t want[PLANE_BYTES];

@@ -16,7 +16,6 @@ static void check_code_is_near(int code, int wanted, int most)
     assert_true(abs(code - wanted) <= most);
 }
 
-/* Sets row Y to the grey CODE. */
 static void set_grey_row(const struct glint_image *image, int y, int code)
 {
     const int n = (int)glint_image_row_bytes(image->format, 0, image->width);
@@ -101,8 +100,8 @@ TEST(samples_colours_of_every_layout)
     check_orange_sample(GLINT_RGB565, packed, 2);
 }
 
-/* Checks that an image with fewer pixels than samples returns one of its pixels
- * for each sample, and that a linear image, which has no codes, returns 0. */
+/* Checks an image with fewer pixels than samples: each sample must be one of
+ * its pixels. A linear image, which has no codes, must return 0. */
 TEST(samples_tiny_images)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 1, 1);

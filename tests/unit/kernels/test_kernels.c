@@ -41,7 +41,8 @@ static uint32_t random_bits(void)
 static void *blocks[400];
 static int n_blocks;
 
-/* Returns an array of BYTES bytes that ends at an inaccessible page. */
+/* Returns an array of BYTES bytes whose end is at an inaccessible page, so that
+ * an overread causes a fault. */
 static void *allocate_at_page_end(size_t bytes)
 {
     void *mem;
@@ -307,7 +308,8 @@ static void check_packed_kernel(const struct glint_kernels *k, const char *name)
           add_light_to_packed_pixels(k, got, light, N, 0, &mix, round));
 }
 
-/* Two rows of luma and of chroma; packed pixels are in luma. */
+/* Two rows of luma and of chroma. For packed formats, `luma` contains the
+ * complete pixels. */
 struct quads {
     uint8_t *luma[2], *chroma[2];
 };
@@ -442,8 +444,8 @@ static void check_sum_kernel(const struct glint_kernels *k, const char *name)
           k->run_sum(got, &carry[1], light[1], N, 8));
 }
 
-/* Checks polynomials whose coefficients have magnitudes that sum to less than
- * 2^30, as in baked models. */
+/* Checks polynomials like those of baked models: the magnitudes of their
+ * coefficients sum to less than 2^30. */
 static void check_horner_kernel(const struct glint_horner *k, const char *name)
 {
     const struct glint_horner *plain = glint_choose_horner_kernels(0);
@@ -525,8 +527,8 @@ static void check_turn_kernel(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
-/* Checks convolutions whose taps and values have the max magnitude in a baked
- * translucent medium, for which sums in any order are below 2^31. */
+/* Checks convolutions with the largest taps and values that a baked translucent
+ * medium may have. Their sums are below 2^31 in any order. */
 static void check_convolution_kernel(glint_convolve_fn *convolve,
                                      const char *name)
 {

@@ -41,8 +41,8 @@ static double random_unit(void)
     return random_below(1 << 24) / (double)(1 << 24);
 }
 
-/* Returns an array of 4 CODES bytes of texels that ends at an inaccessible
- * page. */
+/* Returns memory for CODES texels of 4 bytes whose end is at an inaccessible
+ * page, so that an overread causes a fault. */
 static uint8_t *allocate_texels(void)
 {
     void *mem;
@@ -54,8 +54,8 @@ static uint8_t *allocate_texels(void)
     return at;
 }
 
-/* Makes random texels of Gaussian levels or mipmap levels. The last code is the
- * last texel of a level. */
+/* Makes random texels of Gaussian levels or of mipmap levels. The levels end
+ * exactly at the end of the array CODE. */
 static void make_random_texels(struct glint_texels *t, uint8_t *code)
 {
     uint32_t used = 0;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares the search for bright pixels in random images of every format and
- * threshold with a test of each pixel, and checks the detected lengths of runs
- * of equal pixels.
+ * Compares the search for bright pixels with a test of each pixel, in random
+ * images of every format and threshold. Checks the reported lengths of runs of
+ * equal pixels.
  */
 #include "support/canvas.h"
 #include "support/rng.h"
@@ -124,9 +124,9 @@ static int compute_rgb_brightness(int r, int g, int b)
                          : brightness_of_clipped_luma(compute_luma(r, g, b));
 }
 
-/* Sets *LEAST and *MOST to the brightness of pixel (X, Y) by the definition of
- * its format. They differ by 1 if the exact value is nearly half-way between
- * integers, so that either rounding is correct. */
+/* Sets *LEAST and *MOST to the brightness of pixel (X, Y) as its format defines
+ * it. They differ by 1 if the exact value is nearly half-way between two
+ * integers, so that rounding up and rounding down are both correct. */
 static void compute_brightness_range(const struct glint_image *image, int x,
                                      int y, int *least, int *most)
 {
@@ -223,9 +223,9 @@ TEST(scan_matches_a_test_of_every_pixel)
     }
 }
 
-/* Checks that the padding of a row's last block is cleared, as runs are
- * searched in whole words. create_bright_scanner() fills all memory with
- * 0x5a. */
+/* The search reads the last block of a row in complete words. Checks that the
+ * padding of this block is cleared; create_bright_scanner() fills all memory
+ * with 0x5a. */
 TEST(padding_is_cleared)
 {
     for (int width = 1; width <= 2 * BRIGHT_BLOCK; width++) {

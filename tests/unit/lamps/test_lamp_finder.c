@@ -168,8 +168,9 @@ TEST(finds_discs_within_a_sixteenth_pixel)
     }
 }
 
-/* Adds a lamp of RADIUS to a grey image: light of four times white inside the
- * radius; outside it falls by a factor e per FALL pixels. */
+/* Draws a lamp at (CX, CY) onto a grey image. It has four times the light of
+ * white inside RADIUS; outside, the light falls by a factor e per FALL
+ * pixels. */
 static void draw_lamp_with_glare(const struct glint_image *image, double cx,
                                  double cy, double radius, double fall)
 {
@@ -188,8 +189,8 @@ static void draw_lamp_with_glare(const struct glint_image *image, double cx,
         }
 }
 
-/* Checks that a lamp is found within 0.35 pixels with the default
- * configuration, which cuts off its rim evenly. */
+/* Checks that the default configuration finds a lamp within 0.35 pixels. It
+ * cuts off the lamp's rim at the same light on all sides. */
 TEST(finds_discs_with_default_configuration)
 {
     for (int round = 0; round < 100; round++) {
@@ -259,8 +260,9 @@ TEST(sparkle_does_not_move_a_light)
     free(image.plane[0]);
 }
 
-/* Checks the darkest lamp that can be found, with one hot pixel 40 times
- * brighter than the other 63: its position changes by less than a pixel. */
+/* Checks the darkest lamp that can be found, in which one hot pixel is 40 times
+ * brighter than the other 63 pixels. The hot pixel changes the lamp's position
+ * by less than a pixel. */
 TEST(hot_pixel_among_dim_ones)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
@@ -443,7 +445,7 @@ TEST(surface_with_few_bright_pixels_is_not_a_lamp)
         finder_config_without_filters(&image, 200, 250);
 
     canvas_fill_grey_box(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
-    /* a box whose 128 pixels are bright */
+    /* Only 128 pixels of the box are bright. */
     canvas_fill_grey_box(&image, 10, 10, 42, 14, 255);
     canvas_set_grey_pixel(&image, 41, 13, 240);
     assert_int_equal(finder_find_lamps(&cfg, &image), 0);
@@ -452,9 +454,9 @@ TEST(surface_with_few_bright_pixels_is_not_a_lamp)
     free(image.plane[0]);
 }
 
-/* Checks that a ring around a core belongs to the lamp, but a darker ring
- * around it does not, nor a bright ring outside that, which contains no seed
- * pixel. */
+/* Checks a core with three rings around it. The first, bright ring belongs to
+ * the lamp. The second, darker ring does not. The third ring is bright but
+ * contains no pixel above the upper threshold, so it is no lamp. */
 TEST(ring_around_a_core_belongs_to_the_lamp)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
@@ -479,8 +481,8 @@ TEST(ring_around_a_core_belongs_to_the_lamp)
     free(image.plane[0]);
 }
 
-/* Checks that if faint regions are requested, the lamps do not change, and the
- * faint regions follow them, marked as faint. */
+/* Requests faint regions, too. Checks that the lamps do not change, and that
+ * the faint regions follow them in the list, marked as faint. */
 TEST(faint_regions_come_last)
 {
     static struct glint_spot light[FINDER_SPOTS];
@@ -682,7 +684,7 @@ TEST(limit_keeps_the_brightest)
     cfg.merge_q15 = 4 * 32768 / 256;
     canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
     canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
-    /* a region of 12 pixels, 13 pixels from the others */
+    /* This region has 12 pixels and is 13 pixels from the others. */
     canvas_fill_grey_box(&image, 35, 20, 37, 26, 255);
     canvas_fill_grey_box(&image, 200, 20, 202, 22, 255); /* 4 px */
     assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 2, &dropped), 2);

@@ -30,9 +30,9 @@ static void assert_one_region(const struct glint_image *image)
     free(image->plane[0]);
 }
 
-/* Checks that a pixel is connected to diagonal neighbours, on both sides and
- * across the blocks in which runs are searched, and to no pixel further
- * away. */
+/* Checks that a pixel is connected to its diagonal neighbours on both sides,
+ * and to no pixel further away. This must hold across the borders of the blocks
+ * in which runs are searched. */
 TEST(corner_pixels_are_connected)
 {
     for (int x = 4; x < 68; x++)
@@ -177,8 +177,8 @@ static void fill_rgb_box(const struct glint_image *image, int x0, int y0,
             canvas_set_rgb_pixel(image, x, y, r, g, b);
 }
 
-/* Checks an unclipped colour: codes (240, 200, 120) are linear (0.8714,
- * 0.5776, 0.1878), luminance 0.6119. */
+/* Checks the colour of a lamp that is not clipped. Its codes (240, 200, 120)
+ * are (0.8714, 0.5776, 0.1878) in linear light, luminance 0.6119. */
 TEST(unclipped_lamp_has_its_colour)
 {
     struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
@@ -212,8 +212,8 @@ TEST(clipped_core_gets_the_colour_of_its_rim)
     free(image.plane[0]);
 }
 
-/* Checks a lamp of which one channel is clipped everywhere: its colour is the
- * mean colour of its pixels. */
+/* Checks a lamp all of whose pixels have the same clipped channel: its colour
+ * is the mean colour of its pixels. */
 TEST(partly_clipped_lamp_has_its_mean_colour)
 {
     struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
@@ -240,8 +240,8 @@ TEST(ycc_formats_in_limited_range)
 
         image.range = GLINT_RANGE_LIMITED;
         image.transfer = GLINT_TONE_BT709;
-        /* threshold: the light of full-range code 199.5, ((C / 255 + 0.099) /
-         * 1.099)^(1 / 0.45); likewise 249.5 */
+        /* light of the full-range codes C = 199.5 and 249.5: ((C / 255 + 0.099)
+         * / 1.099)^(1 / 0.45) */
         cfg.threshold_low_q8 = (int32_t)floor(256 * log2(0.6124) + 0.5);
         cfg.threshold_high_q8 = (int32_t)floor(256 * log2(0.9569) + 0.5);
         canvas_fill_grey_box(&image, 0, 0, 41, 31, 16);
@@ -249,8 +249,8 @@ TEST(ycc_formats_in_limited_range)
             memset(image.plane[i], 128,
                    glint_image_row_bytes(formats[f], i, 41) *
                        (size_t)glint_image_plane_height(formats[f], i, 31));
-        /* limited-range code 187 equals code 199.1 of 255: below the
-         * threshold */
+        /* Code 187 in limited range equals 199.1 in full range, which is below
+         * the threshold. */
         canvas_fill_grey_box(&image, 36, 26, 41, 31, 187);
         canvas_fill_grey_box(&image, 38, 28, 41, 31, 188);
         canvas_fill_grey_box(&image, 39, 29, 41, 31, 235);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests two optimisations of the lamp finder: the light of pixel runs,
- * computed as differences of row sums, is compared with pixel-by-pixel sums;
- * brief scores of lamp candidates, which ignore their surroundings, with full
- * scores.
+ * Tests two optimisations of the lamp finder. The light of pixel runs,
+ * computed as differences of row sums, must equal pixel-by-pixel sums. Brief
+ * scores of lamp candidates, which ignore the surroundings, must agree with
+ * full scores.
  */
 #include "support/region_pixels.h"
 #include "support/rng.h"
@@ -75,8 +75,8 @@ static void free_random_image(struct fixture *f)
     free(f->mem);
 }
 
-/* The reference of glint_row_light_add_run_to_region(): adds the pixels one by
- * one. */
+/* Reference of glint_row_light_add_run_to_region(): adds the pixels X0 .. X1 -
+ * 1 to REGION one by one. */
 static void add_light_by_pixel(const struct fixture *f,
                                struct glint_region *region, int x0, int x1,
                                int y)
@@ -158,7 +158,7 @@ static struct glint_candidate make_random_candidate(void)
     const int x1 = x0 + 1 + rng_int_below(&seed, WIDTH - x0);
     const int y1 = y0 + 1 + rng_int_below(&seed, HEIGHT - y0);
     struct glint_candidate c = {.sum = {.x0 = x0, .y0 = y0}};
-    /* each channel is darker than white by less than 2^HIDDEN, Q20 */
+    /* the max difference between white and each channel is 2^HIDDEN, Q20 */
     const int hidden = 10 + rng_int_below(&seed, 11);
     const int32_t rgb_q20[3] = {(1 << 20) - rng_int_below(&seed, 1 << hidden),
                                 (1 << 20) - rng_int_below(&seed, 1 << hidden),
@@ -179,9 +179,9 @@ static struct glint_candidate make_random_candidate(void)
     return c;
 }
 
-/* Checks that the brief score equals the full score if the full score is at
- * least -SCORE_DOUBT; otherwise the brief score lies between the full score and
- * -SCORE_DOUBT. */
+/* The brief score saves time for candidates that are certainly no lamps. Checks
+ * that it equals the full score if the full score is at least -SCORE_DOUBT.
+ * Otherwise it must lie between the full score and -SCORE_DOUBT. */
 TEST(brief_score_bounds_the_full_score)
 {
     int n_kept = 0, n_brief = 0;

@@ -81,8 +81,8 @@ static struct glint_image make_grey_image(uint8_t *px, int width, int height)
     return glint_image_over(px, GLINT_RGB24, width, height);
 }
 
-/* Draws the shape in light[], times POWER, over BLACK with noise of SIGMA
- * codes, and finds the spots. Returns their number. */
+/* Draws LAMP with POWER into light[], over a background of BLACK and with noise
+ * of SIGMA codes, and finds the spots. Returns the number of spots. */
 static int draw_and_find_spots(const struct power_lamp *lamp, double power,
                                double black, double sigma)
 {
@@ -157,9 +157,9 @@ TEST(unclipped_power_is_the_flux)
                 compute_spot_power() < 1.1 * 45);
 }
 
-/* Checks the RMS semi-axes of a lamp's extent: 18 / sqrt(3) along a tube 36
- * pixels long that is rotated clockwise by 30 degrees; half the radius along
- * both axes of a disc. */
+/* Checks the RMS semi-axes of lamps. A tube 36 pixels long has 18 / sqrt(3)
+ * along its length, here rotated clockwise by 30 degrees. A disc has half its
+ * radius along both axes. */
 TEST(extent_of_a_tube_is_its_axis)
 {
     struct power_lamp lamp = make_default_lamp(POWER_TUBE, 18);
@@ -198,8 +198,8 @@ TEST(extent_excludes_glare)
     assert_true(spot[0].axis_q8[0] < spot[0].size_q8 / 3);
 }
 
-/* Sets light[] to 4 inside RADIUS. Outside, it begins at RIM and falls with
- * distance r as 1 / r^FALL. */
+/* Sets light[] to 4 inside RADIUS. At RADIUS, the light drops to RIM; from
+ * there it falls with the distance r from the centre as 1 / r^FALL. */
 static void draw_core_and_glare(double radius, double rim, double fall)
 {
     for (int y = 0; y < H; y++)
@@ -261,8 +261,8 @@ TEST(clipped_power_is_within_4_stops)
 }
 
 /* Raises the exposure by 1/32 stop per step, from no clipping to complete
- * clipping. Checks that no step raises the estimated power by 0.4 stops or
- * lowers it by 0.1. */
+ * clipping. Checks that the estimated power never rises by 0.4 stops in one
+ * step, nor falls by 0.1 stops. */
 TEST(power_rises_smoothly)
 {
     for (int shape = 0; shape < POWER_SHAPES; shape++)
@@ -358,7 +358,7 @@ TEST(adjacent_lamps_have_single_powers)
 }
 
 /* Checks that a white lamp gets nearly the same power in all formats: within
- * 0.1 stops, in RGB565 within one stop. */
+ * one stop in RGB565, within 0.1 stops in all others. */
 TEST(power_is_the_same_in_all_formats)
 {
     static uint8_t px[4 * W * H];
@@ -474,9 +474,10 @@ TEST(results_stay_in_range_for_any_spots)
     }
 }
 
-/* Checks the width of a large lamp that lights its surroundings to half of
- * white: 18 pixels, or up to twice as much including that light. For a point
- * lamp whose glare clips as far, the width is smaller. */
+/* Checks the RMS extent of a lamp of radius 36, which is 18 pixels. If the lamp
+ * lights its surroundings to half of white, up to twice that extent is
+ * accepted. A point lamp whose glare clips out to the same radius must have a
+ * smaller extent. */
 TEST(width_excludes_a_lamps_own_light)
 {
     const struct power_lamp lamp = make_default_lamp(POWER_DISC, 36);
@@ -494,9 +495,9 @@ TEST(width_excludes_a_lamps_own_light)
     }
 }
 
-/* Checks that the dark middle of a ring that lights its surroundings does not
- * enlarge the ring's extent: light missing in the middle does not count as
- * missing at the rim. */
+/* Checks a ring with a dark middle that lights its surroundings. The dark
+ * middle must not count as missing light at the rim, which would enlarge the
+ * extent of the lamp. */
 TEST(ring_is_not_widened_by_its_middle)
 {
     const struct power_lamp lamp = make_default_lamp(POWER_DISC, 50);

@@ -340,8 +340,8 @@ TEST(test_patterns_give_no_lamp)
     }
 }
 
-/* Checks that snow, grains of every brightness of which many are white, gives
- * no lamp. */
+/* Checks that snow gives no lamp. It is drawn as grains of every brightness,
+ * many of which are white. */
 TEST(snow_gives_no_lamp)
 {
     struct settings s = make_settings(600, 400, 0.7);
@@ -386,9 +386,9 @@ TEST(noise_in_the_dark_gives_no_lamp)
 
 /* ----------------------------------------------------------------- company */
 
-/* Returns a candidate with score SCORE_Q8, found at threshold level LEVEL, in a
- * box of 4 x 4 pixels at X. It lies inside candidates of lower levels at the
- * same X. */
+/* Returns a candidate with the score SCORE_Q8 that was found at the threshold
+ * level LEVEL. It is a box of 4 x 4 pixels at X, inside the boxes of candidates
+ * of lower levels at the same X. */
 static struct glint_candidate make_scored_candidate(int x, int level,
                                                     int32_t score_q8)
 {

@@ -123,8 +123,9 @@ TEST(rejects_files_that_are_not_models)
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX };
 
-/* Bytes to change in a model, and the error expected; NULL: none. Outputs are
- * those of system 0; terms and coefficients those of output 0. */
+/* A change to a valid model: VALUE is written to BYTES bytes at AT in TABLE.
+ * REASON is the expected error, or NULL if the change is valid. Outputs are
+ * those of system 0; terms and coefficients are those of output 0. */
 struct rule {
     enum table table;
     size_t at, bytes;
@@ -267,10 +268,11 @@ static const struct rule auto_rules[] = {
     {BOX, 0, 4, (1 << 30) - (1 << 19), far_box},
     {BOX, 0, 4, (1 << 30) - (1 << 19) - 1, NULL},
     {BOX, 3 * 4, 4, 0, small_box}, /* half width -s */
-    /* half width of the box 1 - s, which is 0 at s = 1 */
+    /* The box has the half width 1 - s, which is 0 at s = 1. */
     {BOX, 3 * 4, 4, 1 << 20, NULL},
     {BOX, 3 * 4, 4, (1 << 20) - 1, small_box},
-    /* half width of the box 4 - s + 3 w, which is 0 at s = 1, w = -1 */
+    /* The box has the half width 4 - s + 3 w, which is 0 at s = 1 and w =
+     * -1. */
     {BOX, 5 * 4, 4, 3 << 20, NULL},
     {BOX, 5 * 4, 4, (3 << 20) + 1, small_box},
     {BOX, 5 * 4, 4, -(3 << 20) - 1, small_box},

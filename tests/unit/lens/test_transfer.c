@@ -67,9 +67,10 @@ TEST(rays_match_hand_computation)
     free(m.data);
 }
 
-/* Checks how energies are decoded. An energy is the value of its polynomial,
- * its square or its fourth power, times 2^head. Half of the max polynomial must
- * give 1/2, 1/4 or 1/16; negative values must give 0. */
+/* Checks how energies are decoded. The file stores the root of an energy as a
+ * polynomial: the energy is its value, its square or its fourth power, times
+ * 2^head. A value of half the max must give 1/2, 1/4 or 1/16, and a negative
+ * value 0. */
 TEST(energies_are_decoded_from_roots)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
@@ -189,7 +190,7 @@ TEST(uses_the_system_of_angle_and_wavelength)
     assert_int_equal(glint_transfer_init(&t, &lens, 2, ONE / 8, middle), 0);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 2, middle), 1);
     assert_ptr_equal(t.system, &lens.system[1]);
-    /* at s = 1 and w = 0, with halved coefficients */
+    /* here s = 1 and w = 0; coefficients are halved */
     assert_int_equal(evaluate_ray(&t, ONE, ONE).at[GLINT_OUT_SENSOR_X],
                      5 << 24);
     assert_int_equal(evaluate_ray(&t, 0, 0).at[GLINT_OUT_ENERGY], 1 << 27);
@@ -200,9 +201,9 @@ TEST(uses_the_system_of_angle_and_wavelength)
     free(m.data);
 }
 
-/* Checks a box of half width (s - 1/32)^2 - 1/2048: it is positive at all s
- * that the validity check tests, and negative between two of them, where it
- * must be clamped to 0. */
+/* Checks a box whose half width is (s - 1/32)^2 - 1/2048. It is positive at all
+ * values of s that the validity check tests, but negative between two of them.
+ * There it must be clamped to 0. */
 TEST(half_width_below_0_is_clamped)
 {
     struct model_image m = model_make_three_ghosts();
@@ -339,9 +340,9 @@ TEST(grid_covers_the_pupil_box)
     free(m.data);
 }
 
-/* Checks that the rows of an annular grid lie between the inner rim and the
- * edge of the pupil box, on both sides of the middle, and that their vertices
- * equal those of a finer grid over the whole box. */
+/* Checks an annular grid: its rows lie between the inner rim and the edge of
+ * the pupil box, on both sides of the middle. Its vertices must equal those of
+ * a finer grid over the complete box. */
 TEST(annular_grid_rows_leave_the_hole_out)
 {
     enum { N = 16, NODES = N + 1, ANNULUS = 3, SHELL = 6 };

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the interpolation of two positions of a zoom lens, with models whose
- * polynomials can be interpolated by hand: each barrel is matched to a similar
- * one of the other position, a barrel without a match opens gradually towards
- * the position that lacks it, and energies are interpolated as the roots that
- * the file stores.
+ * polynomials can be interpolated by hand. Each barrel must be matched to a
+ * similar barrel of the other position. A barrel without a match must open
+ * gradually towards the position that lacks it. Energies must be interpolated
+ * as the roots that the file stores.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -31,8 +31,8 @@ static int32_t encode_q28(double x)
     return (int32_t)lrint(ldexp(x, 28));
 }
 
-/* Heads (scale bits) of the energies at both zoom positions, and number of
- * square roots that the file stores. */
+/* Heads (scale bits) of the energies at both zoom positions, and the number of
+ * roots: how often an energy of the file must be squared. */
 static uint8_t head[2], roots;
 
 /* centre of the pupil boxes, units of 2^-20 mm */
@@ -102,7 +102,7 @@ open_model_of_system(struct model_image *m, double sensor, double energy,
 
 static struct glint_transfer mixed;
 
-/* Interpolates models A and B at PART, a fraction of the way from A to B. */
+/* Interpolates between the models A (PART 0) and B (PART 1). */
 static void interpolate_models(const struct glint_lens *a,
                                const struct glint_lens *b, double part)
 {
@@ -114,8 +114,8 @@ static void interpolate_models(const struct glint_lens *a,
                      1);
 }
 
-/* Interpolates between the barrels A[N_A] and B[N_B] at PART, a fraction of the
- * way. */
+/* Interpolates between a model with the barrels A[N_A] (PART 0) and a model
+ * with the barrels B[N_B] (PART 1). */
 static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
                                 const struct barrel *b, uint32_t n_b,
                                 double part)
@@ -206,7 +206,7 @@ TEST(missing_first_barrel_closes_gradually)
     check_barrel_values(1, (struct barrel){0.35, 0, 0.6});
     interpolate_barrels(a, 1, twice, 2, 0.5);
     check_barrel_values(0, (struct barrel){0.32, 0.52, 0.1});
-    /* an added barrel begins as the most similar barrel */
+    /* A barrel that is added begins as a copy of the most similar barrel. */
     check_barrel_values(1, (struct barrel){0.32, 0.52, 0.1});
     interpolate_barrels(a, 1, other, 1,
                         /* the only other barrel is not similar, so it is not
@@ -229,9 +229,9 @@ TEST(missing_second_barrel_opens_gradually)
     check_barrel_values(0, (struct barrel){0.35, 0, 0.6});
 }
 
-/* Interpolates at PART between a position without barrels, with stop positions
- * OURS, and a position with the barrel B and stop positions THEIRS. TURNED: in
- * the opposite order. */
+/* Interpolates between a model without barrels, whose stop positions are OURS
+ * (PART 0), and a model with the barrel B, whose stop positions are THEIRS
+ * (PART 1). With TURNED, the two models are exchanged. */
 static void interpolate_stops(const struct stop *ours,
                               const struct stop *theirs, struct barrel b,
                               double part, bool turned)
@@ -256,7 +256,8 @@ static void check_clipped_fraction(struct stop ours, struct stop theirs,
                                    struct barrel b, struct barrel expected)
 {
     for (int k = 0; k < 4; k++) {
-        if (k == 2) { /* the image of the stop may be inverted */
+        /* In the last two rounds, the image of the stop is inverted. */
+        if (k == 2) {
             ours = (struct stop){-ours.middle, -ours.u, -ours.v};
             theirs = (struct stop){-theirs.middle, -theirs.u, -theirs.v};
         }
@@ -265,10 +266,10 @@ static void check_clipped_fraction(struct stop ours, struct stop theirs,
     }
 }
 
-/* Checks a barrel that one position lacks: it begins such that it clips the
- * same part of the stop as at the other position; or the same part of the
- * pupil box, if that is less or if the stop position moves by more than half
- * a box. */
+/* Checks a barrel that one position lacks. Where it is added, it must clip the
+ * same fraction of the stop as at the other position. It must clip the same
+ * fraction of the pupil box instead if that is less, or if the stop position
+ * moves by more than half a box. */
 TEST(missing_barrel_clips_as_much_of_the_stop)
 {
     const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
@@ -288,8 +289,8 @@ TEST(missing_barrel_clips_as_much_of_the_stop)
                            (struct stop){0, 1.6, 0.5}, r, r);
 }
 
-/* Checks that the two most similar barrels are matched, in either order, and
- * that a remaining barrel begins as the most similar barrel. */
+/* Checks that the two most similar barrels are matched, in either order. A
+ * barrel that is left over must begin as a copy of the most similar barrel. */
 TEST(most_similar_barrels_are_matched)
 {
     const struct barrel one[] = {right};
@@ -303,8 +304,8 @@ TEST(most_similar_barrels_are_matched)
     check_barrel_values(1, (struct barrel){0.33, 0.53, 0.1});
 }
 
-/* Checks that interpolated energies fit into the range of only the smaller of
- * both heads. */
+/* Checks that interpolated energies stay in their range if the heads (scale
+ * bits) of both positions differ: they have the range of the smaller head. */
 TEST(energies_keep_the_smaller_head)
 {
     const double value = 0.375;
@@ -366,8 +367,9 @@ static struct glint_lens open_model_with_pupil_box(struct model_image *m,
     return model_open_image(m);
 }
 
-/* Checks that outputs that are linear in the pupil position are interpolated at
- * each pupil position, even if the boxes differ in position and size. */
+/* Checks outputs that are linear in the pupil position. At each pupil position,
+ * they must be interpolated exactly, even if the boxes of both models differ in
+ * position and size. */
 TEST(outputs_are_interpolated_across_moving_boxes)
 {
     struct model_image at[2];
@@ -392,9 +394,9 @@ TEST(outputs_are_interpolated_across_moving_boxes)
     free(at[1].data);
 }
 
-/* Checks that the first barrel at (U, V), which is the pupil position (X, Y)
- * mm, is the circle of 4 mm, as closely as boxes as different as these can be
- * interpolated. */
+/* Checks that the first barrel is the circle of 4 mm at (U, V), which is the
+ * pupil position (X, Y), mm. The tolerance is large, as the boxes of both
+ * models differ much. */
 static void check_first_barrel_is_circle(double u, double v, double x, double y)
 {
     const double got = evaluate_output(GLINT_OUT_BARREL_0, u, v);
@@ -403,7 +405,6 @@ static void check_first_barrel_is_circle(double u, double v, double x, double y)
         fail_msg("the barrel is %g at %g, %g mm", got, x, y);
 }
 
-/* Checks that a barrel moves with the pupil box of its ghost. */
 TEST(barrels_move_with_their_box)
 {
     const struct barrel a = {0.3, 0.5, 0.1}, b = {0.3, 0.9, 0.1};
@@ -445,8 +446,8 @@ TEST(barrels_match_by_shape_in_the_pupil)
         free(at[k].data);
 }
 
-/* Writes a model to M and opens it. Its pupil box BOX, in units of 2^EXPONENT,
- * is unrealistic; it has one barrel. */
+/* Writes a model with one barrel to M and opens it. Its pupil box BOX is in
+ * units of 2^EXPONENT, which are unrealistically coarse. */
 static struct glint_lens
 open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
                            int16_t exponent,
@@ -471,8 +472,8 @@ open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
     return model_open_image(m);
 }
 
-/* Checks a pupil box half a unit wide, in which rounding moves positions by
- * more than the width: barrels are still evaluated inside the box. */
+/* Checks a pupil box half a unit wide. Rounding moves positions by more than
+ * this width, but barrels must still be evaluated inside the box. */
 TEST(narrow_boxes_evaluate_barrels_inside)
 {
     static const int32_t wide[3] = {0, 5, 5};
@@ -501,8 +502,9 @@ TEST(narrow_boxes_evaluate_barrels_inside)
 
 enum { WHOLE = 2 };
 
-/* A ghost, or one part of its pupil: its pair of surfaces, the factor of sensor
- * x = SENSOR u (0: the ghost is dark), and the annulus of its box. */
+/* A ghost, or one part of its pupil. I and J are its pair of surfaces, and
+ * ANNULUS is the annulus of its box. Its sensor x is SENSOR u; with SENSOR 0,
+ * the ghost is dark. */
 struct part {
     int i, j;
     double sensor;
@@ -541,8 +543,8 @@ static struct glint_lens open_model_of_ghosts_and_parts(struct model_image *m,
 
 static struct glint_zoom_lens zoom;
 
-/* Expected ghost at PART, a fraction of the way: sensor x = SENSOR u and its
- * energy, or dark if SENSOR is 0. */
+/* The expected state of GHOST where the zoom is set to PART, 0 .. 1: its sensor
+ * x is SENSOR u, and its energy ENERGY. With SENSOR 0, the ghost is dark. */
 struct sight {
     int ghost;
     double part, sensor, energy;
@@ -566,8 +568,8 @@ static void check_interpolated_ghosts(const struct sight *sight, size_t n)
 #define SHOWS(sights) \
     check_interpolated_ghosts(sights, sizeof(sights) / sizeof *(sights))
 
-/* A zoom position: its fraction of the way, the ghosts and parts of its model,
- * and the centre of their boxes. */
+/* A position of the zoom, at ALONG of 0 .. 1. Its model contains the N ghosts
+ * and pupil parts PART, whose boxes are centred at MIDDLE. */
 struct position {
     double along;
     const struct part *part;
@@ -672,9 +674,9 @@ TEST(unsafe_ghosts_are_not_extrapolated)
     }
 }
 
-/* Checks that sums of magnitudes of coefficients stay below 2^30, as SIMD code
- * and heads require, even if extrapolation would move a ghost to three times
- * the max of a model. */
+/* Checks that the magnitudes of coefficients sum to less than 2^30, as SIMD
+ * code and the scale bits of energies require. This must hold even if
+ * extrapolation would move a ghost to three times the max of a model. */
 TEST(extrapolated_sums_stay_in_range)
 {
     static const struct part a[] = {{0, 1, -3.9, 0}, {0, 2, 0.5, 0}};
@@ -699,9 +701,9 @@ TEST(extrapolated_sums_stay_in_range)
     free_position_models(at, 3);
 }
 
-/* Checks that if two zoom positions divide a pupil differently, that of the
- * nearer one is drawn, and that parts are interpolated with parts of the same
- * ghost, in any order. */
+/* Checks two zoom positions that divide a pupil differently: the parts of the
+ * nearer position must be drawn. Parts must be interpolated with parts of the
+ * same ghost, in any order. */
 TEST(parts_are_interpolated_with_their_ghost)
 {
     static const struct part a[] = {
@@ -733,8 +735,8 @@ TEST(lens_numbers_are_interpolated)
 {
     static const struct part part[] = {{0, 1, 0.5, 0}, {0, 2, 0.25, 0}};
     static const struct position both[] = {{0, part, 2, 0}, {1, part, 2, 0}};
-    /* repeats with coefficients 96 times as large, which have other
-     * exponents */
+    /* The second round has coefficients 96 times as large, which have other
+     * exponents. */
     static const double by[2] = {1, 96};
     struct model_image at[MOST_POSITIONS];
     const struct glint_model_header *const z = &zoom.header;

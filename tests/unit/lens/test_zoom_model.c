@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests a zoom of two lenses, baked at three positions: at each of them it
- * equals the model of that position; between them its rays land where exact
- * rays do; files that are not zooms are rejected.
+ * Tests a zoom lens baked at three positions. At each position it must equal
+ * the model of that position. Between positions its rays must land where exact
+ * rays do. Files that are not zooms must be rejected.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -112,8 +112,9 @@ TEST(zoom_at_a_position_equals_its_model)
     }
 }
 
-/* RMS errors, against exact rays, of the zoom's rays that pass the stop:
- * position, pixels of an image 1920 wide; energy, relative. */
+/* RMS errors of those rays of the zoom that pass the stop, compared with exact
+ * rays: of the position, pixels of an image 1920 wide, and of the energy,
+ * relative. */
 struct off {
     double pixels, energies;
 };
@@ -193,8 +194,8 @@ TEST(interpolation_is_accurate_between_positions)
 /* --------------------------------------------------------------- some ghosts
  */
 
-/* Checks that ghost G is equal in the zooms A and B at positions from half-way
- * between two models onwards. */
+/* Checks that ghost G is equal in the zooms A and B at the positions 1/8, 2/8
+ * .. 7/8. */
 static void check_ghosts_are_equal(struct glint_zoom_lens *a,
                                    struct glint_zoom_lens *b, int g)
 {

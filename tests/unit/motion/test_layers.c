@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests shells and lines of recorded motion, (spheres of transparent material,
- * and trajectories) pixel by pixel against their definition in double
- * precision, and that nearer objects occlude them.
+ * Tests the layers of recorded motion: shells (transparent spheres) and lines
+ * (trajectories). They are compared with their definition in double precision,
+ * pixel by pixel. Nearer objects must occlude them.
  */
 #include <math.h>
 #include <stdint.h>
@@ -15,9 +15,10 @@
 
 enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
 
-/* Returns the cosine between ray and surface normal where the ray through (X,
- * Y), Q8 pixels from the image centre, enters a ball of RADIUS at C in camera
- * coordinates; -1: the ray misses the ball. */
+/* Returns a cosine where the ray through (X, Y), Q8 pixels from the image
+ * centre, enters a ball: the cosine between the ray and the surface normal. The
+ * ball has the radius RADIUS and the centre C in camera coordinates. Returns -1
+ * if the ray misses the ball. */
 static double compute_cosine_to_normal(const struct glint_scene *s,
                                        const int32_t c[3], double radius,
                                        double x_q8, double y_q8)
@@ -106,8 +107,8 @@ static void compare_layers_with_definition(struct moving *d)
                     fabs(rgb[c] -
                          ldexp(d->light_q20[3 * (y * WIDTH + x) + c], -20)));
         }
-    /* each layer is rounded to 1/256, and the coverage of a rim to one
-     * sample */
+    /* Each layer is rounded to 1/256, and the coverage of a rim pixel to one
+     * sample. */
     if (worst > (m->n_layers + 2) / 256.)
         fail_msg("%d layers, off by %.4f", m->n_layers, worst);
 }
@@ -140,8 +141,8 @@ TEST(layers_are_as_defined)
         }
 }
 
-/* Checks a food (landmark) that is not detected, inside or in front of the
- * shell of a detected food: the food occludes the shell. */
+/* Checks a food (landmark) that no sensor detects, in front of the shell of a
+ * detected food or inside it: the food occludes the shell. */
 TEST(nearer_objects_hide_layers)
 {
     double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};

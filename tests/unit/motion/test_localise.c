@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the localisation of a body by the foods that it observes: requirements
- * D1 to D6 of recorded motion, for the four body motions of
- * tests/support/tracks. "Foods" are the landmarks.
+ * Tests how a body is localised by the foods (landmarks) that it observes.
+ * Checks the requirements D1 to D6 of recorded motion, for the four body
+ * motions of tests/support/tracks.
  */
 #include <math.h>
 #include <stdint.h>
@@ -26,8 +26,8 @@ struct errors {
     int n; /* number of frames until localisation failed */
 };
 
-/* Localises the body on a track: by the method of four foods if FOUR is not
- * NULL, otherwise by all foods. */
+/* Localises the body on a track. With FOUR, uses the method of four foods
+ * (landmarks), otherwise the method of all foods, ALL. */
 static struct errors measure_pose_errors(const struct track_options *options,
                                          struct glint_localiser *all,
                                          struct four *four)
@@ -98,8 +98,8 @@ static struct track_options make_track_options(int motion, int reset_every,
         motion, FRAMES, 5, reset_every, digits, (uint32_t)(SEED + motion)};
 }
 
-/* D1: with the weights of four foods, errors are about 1e-6 in float32 and do
- * not grow with time. */
+/* Requirement D1: with the weights of four foods (landmarks), errors are about
+ * 1e-6 in float32 and do not grow with time. */
 TEST(row_d1_four_foods_do_not_drift)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -118,7 +118,8 @@ TEST(row_d1_four_foods_do_not_drift)
     }
 }
 
-/* D2: the error of chaining the motions from frame to frame grows with time. */
+/* Requirement D2: if the motions from frame to frame are chained, the error
+ * grows with time. */
 TEST(row_d2_the_chain_drifts)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -136,9 +137,9 @@ TEST(row_d2_the_chain_drifts)
     }
 }
 
-/* D5: foods end and others appear. Rigid fits, and averages over a food's
- * lifetime, keep the error below 1e-4. The error of the published solution is a
- * thousand times as large. */
+/* Requirement D5: some foods (landmarks) end and others appear. Rigid fits, and
+ * averages over a food's lifetime, keep the error below 1e-4. The error of the
+ * published solution is a thousand times as large. */
 TEST(row_d5_resets_keep_the_error_small)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -160,7 +161,8 @@ TEST(row_d5_resets_keep_the_error_small)
     }
 }
 
-/* D6: errors correlate only weakly with the mean distance of foods. */
+/* Requirement D6: errors correlate only weakly with the mean distance of the
+ * foods (landmarks). */
 TEST(row_d6_error_depends_weakly_on_food_distance)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -173,8 +175,8 @@ TEST(row_d6_error_depends_weakly_on_food_distance)
     }
 }
 
-/* Checks that two of five foods may vanish in one frame, which leaves three,
- * and one of four. */
+/* Checks that two foods (landmarks) may vanish in one frame if five were seen,
+ * which leaves three, and one food if four were seen. */
 TEST(two_foods_may_vanish_at_once)
 {
     struct track_options o = make_track_options(0, 0, 0);
@@ -206,8 +208,8 @@ TEST(two_foods_may_vanish_at_once)
         "four foods"));
 }
 
-/* Checks that collinear foods, and coplanar foods with the method of four
- * foods, are rejected within 2^-20 of the limit. */
+/* Foods are landmarks. Checks that collinear foods are rejected, and with the
+ * method of four foods also coplanar ones. The limit must be exact to 2^-20. */
 TEST(rejects_collinear_and_coplanar_foods)
 {
     const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};

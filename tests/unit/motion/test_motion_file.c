@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the file of a motion: any frame is read with few blocks, reading from
- * memory and reading by blocks give the same frames, and damage is detected.
+ * Tests the file of a baked motion. Any frame must be readable with few blocks.
+ * Reading from memory and reading by blocks must give the same frames, and
+ * damage must be detected.
  */
 #include <math.h>
 #include <stdint.h>
@@ -151,8 +152,8 @@ TEST(any_frame_needs_few_blocks)
     free(baked.data);
 }
 
-/* Checks that a changed byte is detected: in memory, on opening the file; by
- * blocks, when its block is read. */
+/* Checks that a changed byte is detected: when the file is opened in memory, or
+ * when the block that contains the byte is read. */
 TEST(damage_is_found)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
@@ -197,9 +198,9 @@ TEST(damage_is_found)
     free(baked.data);
 }
 
-/* Checks reading by blocks: a name with control characters is rejected as in
- * memory, and a frame that needs an unreadable block returns an error,
- * whichever block it is. */
+/* Checks a motion that is read by blocks. A name with control characters must
+ * be rejected as in memory. A frame that needs an unreadable block must return
+ * an error, whichever block it is. */
 TEST(blocks_are_validated)
 {
     static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));
@@ -249,8 +250,8 @@ TEST(blocks_are_validated)
     free(baked.data);
 }
 
-/* Checks that a file with random words and a valid checksum is either rejected,
- * or all its frames can be read. */
+/* Checks a file with random words and a valid checksum: it must be rejected, or
+ * all its frames must be readable. */
 TEST(random_words_are_rejected_or_readable)
 {
     struct baked baked;

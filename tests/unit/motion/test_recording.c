@@ -148,8 +148,8 @@ TEST(rejects_invalid_recordings)
     bake_must_fail("{\"a\": , }", "expected a JSON value");
 }
 
-/* Checks that collinear foods are rejected, and that three foods may not vanish
- * in one frame. */
+/* Foods are landmarks. Checks that a recording with collinear foods is
+ * rejected, and a recording in which three foods vanish in one frame. */
 TEST(rejects_recordings_that_cannot_be_localised)
 {
 #define LINE                                                             \
@@ -216,7 +216,8 @@ static char *write_recording_file(const struct track_options *o, bool is_second)
 }
 
 /* Checks that both sets of key names give the same motion, and that `reset` in
- * the first frame has no effect. D11: checks the sums of rv and tv. */
+ * the first frame has no effect. Checks the sums of rv and tv (requirement
+ * D11). */
 TEST(both_sets_of_key_names_are_equal)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};

@@ -43,8 +43,8 @@ static uint64_t hash_image(const struct moving *d)
 /* -------------------------------------------------------------------- row D8
  */
 
-/* D8: checks that a frame is the same whether it is reached by playing, by
- * single steps or by jumps, for all tile sizes. */
+/* Requirement D8: checks that a frame is the same whether it is reached by
+ * playing, by single steps or by jumps, for all tile sizes. */
 TEST(row_d8_seek_is_play)
 {
     enum { N = 40 };
@@ -97,8 +97,9 @@ static void rotate_vector(const double q[4], const double v[3], double at[3])
     at[2] = v[2] + 2 * (q[0] * c[2] + q[1] * c[1] - q[2] * c[0]);
 }
 
-/* Returns the margin, radians, by which food F of FRAME is inside the detection
- * angle of sensor S; negative: outside (formula of requirement D7). */
+/* Returns the angle, radians, by which food F of FRAME is inside the
+ * detection angle of sensor S, by the formula of requirement D7. Negative: F
+ * is outside. */
 static double compute_detection_margin(const struct glint_motion_frame *frame,
                                        double size, int s, int f)
 {
@@ -123,9 +124,9 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
            acos(dot / sqrt(square));
 }
 
-/* D7: checks that detection by angle, and by angle and intensity, equals brute
- * force, in 10 000 frames of random steps, rotations and foods, with six
- * sensors and five foods. */
+/* Requirement D7: compares detection by angle, and by angle and intensity, with
+ * brute force. There are 10 000 frames of random steps, rotations and foods,
+ * with six sensors and five foods. */
 TEST(row_d7_detection_is_brute_force)
 {
     enum { N = 10000 };
@@ -214,8 +215,9 @@ TEST(angles_are_compared_exactly)
     "material light ward diffuse .5 .5 .5 specular .2 .2 .2 alpha .1 .1\n" \
     "sphere a at 0 8 0 radius 1 material dark\n"
 
-/* Checks that a control line that fails changes neither camera (in a sensor or
- * free) nor appearances, and that the next line is executed. */
+/* Checks that a control line that fails changes nothing: neither the camera,
+ * whether it is in a sensor or free, nor the look of objects. The next line
+ * must be executed. */
 TEST(failed_control_lines_change_nothing)
 {
     static const struct control_line bright = {
@@ -264,7 +266,7 @@ TEST(failed_control_lines_change_nothing)
 
 /* Returns the mean column of the pixels with more red than blue; -1: there are
  * none. Sets *N to their number. */
-static double compute_mean_column_of_red_pixels(const struct moving *d, int *n)
+static double compute_mean_column_of_red(const struct moving *d, int *n)
 {
     double sum = 0;
 
@@ -280,9 +282,9 @@ static double compute_mean_column_of_red_pixels(const struct moving *d, int *n)
     return *n ? sum / *n : -1;
 }
 
-/* D9: checks that a camera in a sensor has the object ahead in the image centre
- * and the field of view of the sensor, and that leaving the sensor restores the
- * previous image. */
+/* Requirement D9: checks a camera in a sensor. The object ahead must be in the
+ * image centre, and the field of view must be that of the sensor. Leaving the
+ * sensor must restore the previous image. */
 TEST(row_d9_camera_in_a_sensor)
 {
     /* foods: one ahead of sensor 0, one ahead of sensor 1, and two others */
@@ -295,12 +297,12 @@ TEST(row_d9_camera_in_a_sensor)
     d = moving_open_scene(LOOK RUN, 5, 4);
     moving_draw_frame(d);
     outside = hash_image(d);
-    for (int k = 0; k < 2; k++) { /* sensor k points at food k */
+    for (int k = 0; k < 2; k++) { /* Sensor k points at food (landmark) k. */
         assert_ok(glint_scene_enter(d->frame.scene, k));
         glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
         moving_draw_frame(d);
-        assert_true(fabs(compute_mean_column_of_red_pixels(d, &n) -
-                         (WIDTH - 1) / 2.) < .5);
+        assert_true(fabs(compute_mean_column_of_red(d, &n) - (WIDTH - 1) / 2.) <
+                    .5);
         /* radius .5 at a distance of 6 - .6, in an image whose width is 2 tan
          * 30 degrees */
         assert_true(fabs(sqrt(n / GLINT_PI) -
@@ -319,16 +321,16 @@ TEST(row_d9_camera_in_a_sensor)
         5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
     moving_draw_frame(d);
-    assert_true(
-        fabs(compute_mean_column_of_red_pixels(d, &n) - (WIDTH - 1) / 2.) < .5);
+    assert_true(fabs(compute_mean_column_of_red(d, &n) - (WIDTH - 1) / 2.) <
+                .5);
     moving_close_scene(d);
 }
 
 /* ------------------------------------------------------------------- row D10
  */
 
-/* D10: checks detections of foods: three by one sensor each, two by all
- * sensors, and two by two sensors. */
+/* Requirement D10: checks detections of foods: three foods by one sensor each,
+ * two by all sensors, and two by two sensors. */
 TEST(row_d10_detections)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -388,9 +390,9 @@ TEST(object_types_can_be_hidden_and_resized)
     moving_close_scene(d);
 }
 
-/* Checks that a shell over black has the fraction of light that its material
- * does not transmit, and half of that in its middle, and that a food inside the
- * shell is visible through it. */
+/* Checks a shell over black: it has the fraction of light that its material
+ * does not transmit, and half of that in its middle. A food inside the shell
+ * must be visible through it. */
 TEST(shells_let_light_pass)
 {
     double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -512,9 +514,9 @@ TEST(missing_module_is_named)
     moving_close_scene(d);
 }
 
-/* Checks cameras at any position, also inside shells and lines, and objects
- * from one step to a quarter of the space: no overflow (CONFIG=qcheck) and no
- * endless loop. */
+/* Checks cameras at any position, also inside shells and lines, and objects of
+ * any size, from one step to a quarter of the space. No sum may overflow
+ * (CONFIG=qcheck), and no loop may be endless. */
 TEST(extreme_positions_and_sizes_do_not_overflow)
 {
     struct moving *d;

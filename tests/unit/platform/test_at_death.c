@@ -36,8 +36,8 @@ static void write_2_at_exit(void)
 }
 
 /* Runs DIE(NUMBER) in a child process that has registered two functions. Checks
- * that the child ends with CODE, an exit code as a shell reports it (128 + N
- * for signal N), and that the functions wrote TEXT. */
+ * the exit code CODE, as a shell reports it (128 + N for signal N), and that
+ * the functions have written TEXT. */
 static void expect_end_of_child(void (*die)(int), int number, int code,
                                 const char *text)
 {
@@ -170,8 +170,8 @@ TEST(functions_run_at_faults)
     expect_end_of_child(end_by_abort, 0, 128 + SIGABRT, "21");
 }
 
-/* Checks that abort() called in a library ends the process with exit code 1,
- * and abort() called by glint with SIGABRT. */
+/* Checks two calls of abort(). In a library, it must end the process with exit
+ * code 1. In glint itself, it must end the process by SIGABRT. */
 TEST(abort_in_a_library_ends_with_code_1)
 {
     expect_end_of_child(end_by_abort_in_library, 1, 1, "21r");
@@ -185,8 +185,8 @@ TEST(functions_run_at_exit)
     expect_end_of_child(end_by_quick_exit, 3, 3, "");
 }
 
-/* Checks that the functions run if a signal handler of the application calls
- * glint_at_death_end_by_signal(). */
+/* Checks that the functions run if an application has a signal handler of its
+ * own that calls glint_at_death_end_by_signal(). */
 TEST(functions_run_from_own_handler)
 {
     expect_end_of_child(end_by_own_handler, SIGINT, 128 + SIGINT, "h21");

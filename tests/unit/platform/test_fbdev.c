@@ -121,8 +121,9 @@ static void draw_and_free_image(struct glint_fbdev *fb,
         fail_msg("%s", error.text);
 }
 
-/* Checks six rows of 40 bytes, from byte FIRST of the framebuffer on: each
- * pixel is CODE, CODE, CODE, 0, and the 8 bytes of padding are unchanged. */
+/* Checks six rows of 40 bytes in the framebuffer, from byte FIRST on. Each
+ * pixel must be CODE, CODE, CODE, 0, and the 8 bytes of padding per row must be
+ * unchanged. */
 static void expect_screen_rows(size_t first, int code)
 {
     const uint8_t *const mem = read_screen_byte() + first;
@@ -149,7 +150,7 @@ static void end_child_by_signal(int how)
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
     open_framebuffer_sink(
-        /* opens a second sink, so that the list of open sinks changes */
+        /* opening a second sink changes the list of open sinks */
         &fb, NULL);
     fb.sink.close(&fb.sink);
     open_framebuffer_sink(&fb, &options);
@@ -196,7 +197,7 @@ TEST(console_is_restored_after_every_end)
             assert_int_equal(WTERMSIG(how), ends[i]);
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
-        /* The sink pans back before it sets text mode. */
+        /* The sink must show the first page before it sets text mode. */
         assert_int_equal(fake_fb->yoffset_at_text, 0);
     }
 }
@@ -234,7 +235,7 @@ TEST(border_around_the_image_is_black)
     mem = read_screen_byte();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
-    /* the border is not drawn again for an image of the same size */
+    /* A second image of the same size does not draw the border again. */
     write_screen_byte(0, 123);
     draw_and_free_image(&fb, make_grey_image(8, 2, 50));
     assert_int_equal(read_screen_byte()[0], 123);
@@ -251,7 +252,7 @@ TEST(screen_may_start_inside_a_page)
     expect_screen_rows(0x64, 77);
     assert_int_equal(read_screen_byte()[0x63], 0xaa);
     fb.sink.close(&fb.sink);
-    /* a console that was scrolled shows rows further down */
+    /* A console that was scrolled begins at a later row. */
     reset_fake_to_one_page();
     fake_fb->var.yres_virtual = 20;
     fake_fb->var.yoffset = 5;
@@ -307,7 +308,7 @@ TEST(without_panning_one_page_is_used)
     fb.sink.close(&fb.sink);
 
     reset_fake_to_two_pages();
-    /* framebuffer memory is smaller than two pages of 6 rows */
+    /* The framebuffer memory is too small for two pages of 6 rows. */
     fake_fb->fix.smem_len = 11 * 40;
     open_framebuffer_sink(&fb, NULL);
     assert_int_equal(fb.n_pages, 1);
@@ -531,7 +532,8 @@ TEST(console_mode_is_set_and_restored)
     /* a program that was killed left graphics mode set */
     fake_fb->tty_mode = KD_GRAPHICS;
     check_console_modes(true, KD_GRAPHICS, KD_TEXT);
-    fake_fb->tty_mode = KD_GRAPHICS; /* an X server owns the console */
+    /* an X server owns the console, which is in graphics mode */
+    fake_fb->tty_mode = KD_GRAPHICS;
     fake_fb->tty_switching = VT_PROCESS;
     check_console_modes(false, KD_GRAPHICS, KD_GRAPHICS);
     reset_fake_to_one_page();
@@ -589,7 +591,7 @@ static bool draw_three_frames(void)
     return !status;
 }
 
-static void check_drawing_with_each_call_failing(bool pages)
+static void check_drawing_failing_calls(bool pages)
 {
     const int fds = scratch_count_entries("/proc/self/fd");
     int n_failed = 0, n = 0, n_last;
@@ -609,15 +611,15 @@ static void check_drawing_with_each_call_failing(bool pages)
         assert_int_equal(fake_fb->tty_mode, KD_TEXT);
         assert_int_equal(fake_fb->var.yoffset, 0);
     } while (n <= n_last);
-    /* some failing calls have no effect, so not every run fails */
+    /* Not every run fails, as some failing calls have no effect. */
     assert_true(n_failed >= 8);
     assert_true(n > 15);
 }
 
 TEST(every_failing_call_is_handled)
 {
-    check_drawing_with_each_call_failing(false);
-    check_drawing_with_each_call_failing(true);
+    check_drawing_failing_calls(false);
+    check_drawing_failing_calls(true);
 }
 
 TEST_OPEN

@@ -155,8 +155,7 @@ TEST(declared_colour_is_used)
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    /* Checks that a colour space without a counterpart in glint returns
-     * false. */
+    /* A colour space that glint does not support is rejected. */
     assert_false(
         convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);

@@ -153,7 +153,7 @@ TEST(rejects_invalid_files)
                            "is a video");
     assert_int_equal(glint_kept_open(&kept, "/nowhere/x", &error), GLINT_E_IO);
     assert_int_equal(glint_kept_check("a.y4m", &error), GLINT_E_UNSUPPORTED);
-    /* a plug-in that is already loaded cannot be made unavailable */
+    /* This check is impossible if the plug-in is already loaded. */
     if (!stated) {
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
         check_file_is_rejected(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"),

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the MJPEG decoder: frames that the test encodes with libjpeg must
- * decode to their original planes and to the scan lines of libjpeg's own
- * decoder; the decoder accepts the deviations of real cameras and rejects
+ * Tests the MJPEG decoder with frames that the test encodes with libjpeg. They
+ * must decode to their original planes, and to the scan lines of libjpeg's own
+ * decoder. The decoder must accept the deviations of real cameras and reject
  * damaged frames.
  */
 #include <stdint.h>
@@ -92,8 +92,8 @@ static void compress_planes(struct jpeg_compress_struct *j,
     }
 }
 
-/* Returns a frame encoded with C. TUNE, unless NULL, changes libjpeg's
- * settings before encoding. */
+/* Returns a frame encoded with the parameters C. If TUNE is not NULL, it is
+ * called before encoding, to change libjpeg's settings. */
 static struct bytes
 encode_jpeg_frame(const struct coding *c,
                   void (*tune)(struct jpeg_compress_struct *))
@@ -226,8 +226,8 @@ static void expect_decoded_planes(const struct glint_image *i,
         assert_null(i->plane[p]);
 }
 
-/* Compares the planes with the scan lines of libjpeg's decoder, where chroma is
- * replicated, not interpolated. */
+/* Compares the planes with the scan lines of libjpeg's decoder, which is set to
+ * repeat chroma samples instead of interpolating them. */
 static void expect_libjpeg_scanlines(const struct glint_image *i,
                                      const struct bytes *b)
 {
@@ -306,10 +306,11 @@ TEST(decodes_every_coding)
         }
 }
 
-/* Checks a frame written by hand, without Huffman tables: one block of 8 x 8
- * samples, quantiser steps of 1. The DC difference is 400: category 9 (code
- * 1111110), value 110010000, end of block 1010, padding. All samples must
- * decode to 128 + 400 / 8 = 178. */
+/* Checks a frame without Huffman tables that was written by hand: one block of
+ * 8 x 8 samples, with quantiser steps of 1. Its DC difference of 400 has
+ * category 9 (code 1111110) and the value bits 110010000. Then follow the end
+ * of the block, 1010, and padding. All samples must decode to 128 + 400 / 8 =
+ * 178. */
 TEST(decodes_a_frame_written_by_hand)
 {
     static const uint8_t head[] = {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0};
@@ -354,7 +355,7 @@ TEST(missing_huffman_tables_are_the_standard_ones)
     image = decode_valid_frame(d, &other);
     expect_decoded_planes(&image, &own);
     image =
-        /* the decoder must not use the Huffman tables of the frame OTHER */
+        /* frame B has no tables, so the tables of frame OTHER must not apply */
         decode_valid_frame(d, &b);
     expect_decoded_planes(&image, &y422);
     free(other.data);
@@ -528,7 +529,8 @@ TEST(rejects_other_depths_and_processes)
     b.data[frame + 1] = 0xc3;
     expect_decoding_fails(d, &b, GLINT_E_UNSUPPORTED, "SOF type 0xc3");
     b.data[frame + 1] = 0xc0;
-    b.data[frame + 6] = 0; /* height 0, as if a later DNL marker would set it */
+    /* The height is 0, as if a DNL marker followed that sets it. */
+    b.data[frame + 6] = 0;
     expect_decoding_fails(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
     free(b.data);
     glint_mjpeg_close(d);
@@ -671,8 +673,8 @@ TEST(rejects_random_bytes)
     glint_mjpeg_close(d);
 }
 
-/* Checks that a missing restart interval, which would shift all later blocks,
- * is detected by the numbers in the restart markers. */
+/* The restart markers of a frame are numbered. Checks that these numbers reveal
+ * a missing restart interval, which would shift all later blocks. */
 TEST(detects_a_missing_restart_interval)
 {
     struct coding c = y422;

@@ -118,7 +118,8 @@ TEST(no_file_is_left_after_signals)
     check_no_file_after_signal(SIGTERM, 0);
     check_no_file_after_signal(SIGHUP, 0);
     check_no_file_after_signal(SIGHUP,
-                               1); /* nohup makes the process ignore SIGHUP */
+                               /* nohup starts processes that ignore SIGHUP */
+                               1);
 }
 
 TEST(no_file_is_left_after_exit)
@@ -153,7 +154,7 @@ TEST(commit_creates_the_file)
     expect_file_text("one");
     assert_int_equal(read_file_mode(path), 0640);
     assert_int_equal(scratch_count_entries(scratch_dir), 1);
-    glint_output_abort(&out); /* nothing to remove after a commit */
+    glint_output_abort(&out); /* After a commit, there is nothing to remove. */
     unlink(path);
 }
 
@@ -186,8 +187,8 @@ TEST(replaces_at_commit)
     unlink(path);
 }
 
-/* Checks that a temporary file is locked, which prevents other processes from
- * deleting it as an abandoned file. */
+/* Checks that a temporary file is locked. Without the lock, other processes
+ * would take it for an abandoned file and delete it. */
 TEST(temporary_file_is_locked)
 {
     struct glint_output out;
@@ -245,8 +246,8 @@ TEST(flushed_data_is_in_the_file)
     unlink(path);
 }
 
-/* Checks that a loss of data that the file system reports only at close() is an
- * error. */
+/* Checks that close() is tested for errors: some file systems report the loss
+ * of data only there. */
 TEST(failing_close_is_an_error)
 {
     struct glint_error error;
@@ -285,8 +286,8 @@ TEST(follows_links)
     unlink(path);
 }
 
-/* Checks that data arrives in order, from writes smaller than, equal to and
- * larger than the buffer. */
+/* Checks that data arrives in order if writes are smaller than the buffer, as
+ * large as the buffer, or larger. */
 TEST(writes_of_any_size_keep_their_order)
 {
     static const size_t sizes[] = {1, 65535, 1, 65536, 3, 200000, 65537, 7};
@@ -328,7 +329,7 @@ TEST(full_device_is_an_error)
     assert_int_equal(glint_output_write(&out, data, 1, &error), GLINT_E_OUTPUT);
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
 
-    /* if all data fits into the buffer, writing fails only at the commit */
+    /* If all data fits into the buffer, only the commit can fail. */
     assert_ok(glint_output_open(&out, "/dev/full", GLINT_OUTPUT_TEXT, &error));
     assert_ok(glint_output_write(&out, data, 10, &error));
     assert_int_equal(glint_output_commit(&out, &error), GLINT_E_OUTPUT);
@@ -444,8 +445,8 @@ TEST(rejects_paths_that_cannot_be_written)
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     check_path_is_rejected(scratch_dir, text);
 
-    /* The message truncates a long file name at its beginning, and contains the
-     * whole cause. */
+    /* The message must omit the beginning of a long file name, and contain the
+     * complete cause. */
     snprintf(name, sizeof name, "/nowhere/%0250d/x\n.ppm", 1);
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
                      GLINT_E_OUTPUT);

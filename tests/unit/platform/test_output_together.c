@@ -12,8 +12,8 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
-/* how many more times another process replaces the file while it is being
- * opened */
+/* number of times that another process will still replace the file while this
+ * process opens it */
 static int others;
 
 char *__real_realpath(const char *path, char *resolved);

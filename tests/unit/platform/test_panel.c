@@ -71,7 +71,8 @@ static void check_row_of_all_luma_codes(struct tally *t,
             t->n_equal += off == 0;
             t->worst = off > t->worst ? off : t->worst;
             if (cb == 128 && cr == 128)
-                assert_int_equal(off, 0); /* greys have no error */
+                /* Greys are converted without an error. */
+                assert_int_equal(off, 0);
         }
     }
 }
@@ -212,8 +213,8 @@ TEST(writes_every_pixel_layout)
     }
 }
 
-/* Checks that RGB565 codes, which are widened to 8 bits in between, are
- * unchanged on a panel of 16 bits. */
+/* Checks that RGB565 codes are unchanged on a panel of 16 bits, although they
+ * are widened to 8 bits per channel in between. */
 TEST(writes_565_there_and_back)
 {
     static uint8_t codes[2 * 65536], mem[2 * 65536];
@@ -308,7 +309,7 @@ TEST(rejects_invalid_layouts)
 /* ------------------------------------------------------------------ formats */
 
 /* Returns an image of random codes in FORMAT, whose memory the caller frees.
- * PAD: bytes of padding per row; negative: |PAD| bytes, and the bottom row is
+ * Rows have |PAD| bytes of padding. If PAD is negative, the bottom row is
  * stored first. */
 static uint8_t *make_random_picture(struct glint_image *image,
                                     enum glint_pixel_format format, int width,
@@ -399,7 +400,8 @@ static void compute_panel_pixel(int rgb[3], const struct glint_image *im, int x,
     case GLINT_RGB565: {
         const int word = row[2 * x] | row[2 * x + 1] << 8;
 
-        /* by definition; differs by at most 1 from widening by repeated bits */
+        /* This conversion by definition differs by at most 1 from widening a
+         * code by repeating its bits. */
         rgb[0] = (word >> 11) * 255 / 31;
         rgb[1] = (word >> 5 & 63) * 255 / 63;
         rgb[2] = (word & 31) * 255 / 31;
@@ -470,7 +472,7 @@ TEST(draws_every_format)
         check_drawing_of_format(format, 1, 1, 0, 1);
         check_drawing_of_format(format, 37, 5, 11, 37);
         check_drawing_of_format(format, 37, 5, -3, 37);
-        /* cropped, starting at an odd pixel */
+        /* The image is cropped, from an odd pixel on. */
         check_drawing_of_format(format, 66, 3, 0, 63);
         check_drawing_of_format(format, 33, 3, 0,
                                 70); /* centred on a wider panel */
@@ -520,8 +522,8 @@ TEST(image_areas_fit_the_panel)
                                480, 320);
 }
 
-/* Draws the grey ramp 0 .. 8 as an image of 9 x 1 pixels, or of 3 x 3 pixels if
- * DOWN, and stores the code of each panel pixel in SHOWN. */
+/* Draws the grey ramp 0 .. 8 and stores the code of each panel pixel in SHOWN.
+ * The ramp is an image of 9 x 1 pixels, or of 3 x 3 pixels if DOWN is set. */
 static void draw_and_read_grey_ramp(uint8_t *shown, bool down, int panel_width,
                                     int panel_height, int bytes)
 {

@@ -37,7 +37,8 @@ TEST(file_type_is_read_from_the_content)
 {
     expect_loaded_pixels("a.png", BYTES("P6 2 1 255 abcdef"), "abcdef");
     expect_loaded_pixels("a", BYTES("P5 2 1 255 ab"), "aaabbb");
-    /* pixels of linear light 0, 0.5 and 1; then -1, 2 and NaN */
+    /* The first pixel has the linear light 0, 0.5 and 1, the second one -1, 2
+     * and NaN. */
     expect_loaded_pixels("a.ppm",
                          BYTES("PF 2 1 1 \0\0\0\0\x3f\0\0\0\x3f\x80\0\0"
                                "\xbf\x80\0\0\x40\0\0\0\x7f\xc0\0\0"),

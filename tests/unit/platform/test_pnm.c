@@ -86,8 +86,8 @@ TEST(accepts_comments)
 {
     expect_pnm_pixels(BYTES("P5#made by\n# GIMP\n 2\t\r\n#x\n1#y\n255\nab"),
                       GLINT_GREY, 2, 1, "ab");
-    /* a comment may end the header; its line feed separates header and
-     * samples */
+    /* The header may end with a comment. Its line feed separates the header
+     * from the samples. */
     expect_pnm_pixels(BYTES("P5 2 1 255#end\nab"), GLINT_GREY, 2, 1, "ab");
     expect_pnm_pixels(BYTES("P5 0002 01 00255 ab"), GLINT_GREY, 2, 1, "ab");
 }
@@ -103,7 +103,8 @@ TEST(scales_samples_to_255)
     expect_pnm_pixels(
         BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
         GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
-    /* 10 bits, and a sample above the maximum, which is clamped */
+    /* The samples have 10 bits. The third sample exceeds the maximum of 1023
+     * and is clamped. */
     expect_pnm_pixels(BYTES("P6 1 1 1023 \x03\xff\x02\x00\xff\xff"),
                       GLINT_RGB24, 1, 1, "\xff\x80\xff");
 }
@@ -313,8 +314,8 @@ TEST(writes_pfm)
                         BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
-/* Checks that writing and reading preserves an image of odd width with more
- * rows than are encoded at a time. */
+/* Checks that an image of odd width is unchanged after writing and reading. It
+ * has more rows than are encoded at a time. */
 TEST(pfm_round_trip)
 {
     enum { W = 333, H = 3, N = W * H * 3 };

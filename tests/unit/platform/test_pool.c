@@ -26,7 +26,7 @@
 
 struct tally {
     int runs[MAX_JOBS]; /* number of runs of each job */
-    /* atomic; number of threads that at present use each worker index */
+    /* number of threads that now use each worker index; atomic */
     int busy[GLINT_MAX_WORKERS];
     int n_workers;
     /* atomic; number of times that two threads used the same worker index */
@@ -173,8 +173,8 @@ TEST(missing_threads_do_not_lose_jobs)
 
 /* ------------------------------------------------------------------- stacks */
 
-/* Uses as much stack as baking may need. Not inlined, so that its callers do
- * not need as much stack themselves. */
+/* Uses as much stack as a bake may need. The function is not inlined, as its
+ * callers would then need as much stack themselves. */
 __attribute__((noinline)) static int use_stack(void *ctx)
 {
     volatile char hole[GLINT_BAKE_STACK_BYTES];
@@ -184,8 +184,8 @@ __attribute__((noinline)) static int use_stack(void *ctx)
     return *(int *)ctx + hole[512];
 }
 
-/* Makes the calling thread wait, so that the helper thread runs use_stack() on
- * its own stack. */
+/* Runs use_stack() in the helper thread, on the stack of that thread. The
+ * calling thread only waits. */
 static void use_stack_in_helper(void *ctx, int job, int worker)
 {
     int *const dug = ctx;

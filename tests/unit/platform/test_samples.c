@@ -232,9 +232,9 @@ static void expect_float_near(float is, double wanted)
     assert_true(fabs((double)is - wanted) < 1e-6);
 }
 
-/* Checks the alpha of a pixel after compositing an object of coverage 0.5 and
- * light 0.5 over a pixel of alpha 0.25 and light 0.2, with straight and with
- * premultiplied alpha. */
+/* An object of coverage 0.5 and light 0.5 is composited over a pixel of alpha
+ * 0.25 and light 0.2. Checks the alpha and the light of the result, for
+ * straight and for premultiplied alpha. */
 TEST(alpha_after_compositing)
 {
     const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;

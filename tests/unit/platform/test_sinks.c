@@ -38,8 +38,8 @@ static struct glint_image make_image_over_memory(enum glint_pixel_format format,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Converts FROM, 3 x 3 pixels of FORMAT, to PLANAR and checks that the
- * concatenated planes equal WANT. */
+/* Converts the 3 x 3 pixels FROM, which have the format FORMAT, to the format
+ * PLANAR. Checks that the resulting planes, one after the other, equal WANT. */
 static void expect_converted_planes(enum glint_pixel_format format,
                                     const uint8_t *from,
                                     enum glint_pixel_format planar,
@@ -65,7 +65,8 @@ static void expect_converted_planes(enum glint_pixel_format format,
     assert_int_equal(mem[n], '-');
 }
 
-/* Letters stand for samples: luma is a .., Cb is A .., Cr is 1 .. */
+/* Letters stand for samples: a, b, c .. are luma, A, B .. are Cb, and 1, 2 ..
+ * are Cr. */
 TEST(converts_packed_to_planar)
 {
     expect_converted_planes(GLINT_YUYV,
@@ -132,7 +133,7 @@ static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
             }
         }
     }
-    /* only ties may round differently */
+    /* Only ties may be rounded differently. */
     assert_true(n_off < 256 * 256 * 3 / 500);
 }
 
@@ -234,8 +235,8 @@ TEST(y4m_writes_supported_formats_without_copy)
     expect_file_bytes(white, sizeof white - 1);
 }
 
-/* Checks that frames are dropped, without blocking, when no program reads from
- * a pipe of 64 KiB. */
+/* Checks a pipe of 64 KiB from which no program reads: frames are dropped, and
+ * writing does not block. */
 TEST(y4m_drops_frames_for_a_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
@@ -300,7 +301,7 @@ TEST(null_sink_accepts_images)
 static struct {
     /* values that the fake driver sets; 0: the requested value */
     uint32_t caps, stride, size, fourcc;
-    /* ioctl() request that the fake driver makes fail */
+    /* the ioctl() request that fails */
     unsigned long fail_request;
     int fail_errno, write_errno;
     int n_streaming;
@@ -541,7 +542,7 @@ TEST(v4l2_rejects_unsuitable_devices)
         glint_v4l2_sink_open(&out, "/dev/video-none", &image, 0, 0, &error),
         GLINT_E_DEVICE);
     assert_non_null(strstr(error.text, "modprobe v4l2loopback"));
-    /* the driver returns this pixel format under another FOURCC */
+    /* The driver reports the same pixel format by another FOURCC. */
     reset_fake_v4l2_node();
     node.fourcc = V4L2_PIX_FMT_BGR32;
     image.format = GLINT_XRGB8888;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the V4L2 source on a fake driver without faults: the choice of format,
- * the layout of planes, which frames are delivered, and the counts of dropped
- * frames.
+ * Tests the V4L2 source on a fake driver without faults: how it chooses a
+ * format, where it expects the planes of an image, which frames it delivers,
+ * and how many dropped frames it counts.
  */
 #include "support/fakes/camera_check.h"
 
@@ -64,8 +64,8 @@ TEST(chooses_the_cheapest_format)
     assert_int_equal(open_and_read_fourcc(foreign, 2, 30), V4L2_PIX_FMT_GREY);
 }
 
-/* Checks that if only a frame rate is requested, it is searched among the modes
- * of the camera's present size. */
+/* Requests a frame rate but no size. Checks that the source chooses among the
+ * modes that have the camera's present size. */
 TEST(rate_without_size_keeps_the_size)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -80,9 +80,9 @@ TEST(rate_without_size_keeps_the_size)
     must_close_camera();
 }
 
-/* Checks that frame intervals of 333334 units of 100 ns (as some USB cameras
- * report) and of 1001/30000 s match a request of 30 frames per second, and that
- * 24 frames per second do not match 25. */
+/* Checks that two frame intervals match a request of 30 frames per second:
+ * 1001/30000 s, and 333334 units of 100 ns, as some USB cameras report. 24
+ * frames per second must not match 25. */
 TEST(nearly_equal_rates_match)
 {
     static const struct fake_mode usb[] = {
@@ -254,8 +254,8 @@ static void set_camera_format(uint32_t fourcc, bool multiplanar)
         camera.caps = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
 }
 
-/* Checks the offset of a plane from the start of BLOCK and its stride, both in
- * bytes. */
+/* Checks that PLANE begins OFFSET bytes after BLOCK, and that its rows are
+ * STRIDE bytes apart. */
 static void expect_plane_offset_and_stride(int plane, const uint8_t *block,
                                            ptrdiff_t offset, ptrdiff_t stride)
 {
@@ -371,7 +371,7 @@ TEST(skips_data_before_the_image)
     assert_int_equal(frame.n_corrupt, 1);
     f = fake_camera_add_frame(2, 9);
     f->is_odd = true;
-    f->data_offset[0] = 4000; /* an offset beyond the 100 bytes in use */
+    f->data_offset[0] = 4000; /* an offset outside the 100 bytes in use */
     f->bytesused[0] = 100;
     must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
@@ -385,7 +385,7 @@ TEST(rejects_too_small_buffers)
         NULL, GLINT_E_DEVICE,
         "64x48 YUYV needs more bytes than the 6143 that the driver reports");
     fake_camera_reset();
-    /* the driver states a larger buffer than it has */
+    /* The driver states that its buffer is one byte larger than it is. */
     camera.length_less = 1;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
@@ -489,8 +489,8 @@ TEST(time_stamps_are_never_in_the_future)
     must_close_camera();
 }
 
-/* Checks that a frame lent to the caller does not change while other frames
- * arrive. */
+/* The source lends the buffer of a frame to the caller. Checks that this frame
+ * does not change while other frames arrive. */
 TEST(lent_frame_is_unchanged)
 {
     struct glint_source_frame kept;
@@ -510,8 +510,9 @@ TEST(lent_frame_is_unchanged)
     must_close_camera();
 }
 
-/* Checks that an open camera has its format locked but does not stream before
- * start(), also after a restart, and that next() also starts streaming. */
+/* Checks when streaming starts. An open camera has its format locked but must
+ * not stream before start(). The same must hold after a restart. A call of
+ * next() must start streaming, too. */
 TEST(streams_only_when_started)
 {
     assert_int_equal(
@@ -563,7 +564,7 @@ TEST(sequence_gaps_are_dropped_frames)
     assert_int_equal(count_dropped_before_sequence(2), 1);
     must_close_camera();
     must_open_camera(NULL);
-    /* v4l2loopback delivers a frame from before the stream began */
+    /* The first frame of v4l2loopback is from before the stream began. */
     assert_int_equal(count_dropped_before_sequence(0), 0);
     assert_int_equal(count_dropped_before_sequence(28), 0);
     assert_int_equal(count_dropped_before_sequence(30), 1);
@@ -658,8 +659,8 @@ TEST(every_memory_type_is_used)
     check_chosen_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
-/* Checks that a memory type that the device does not support is reported as
- * such, not as a failed request. */
+/* Checks the message for a memory type that the device does not support: it
+ * must say so instead of naming a failed request. */
 TEST(reports_a_missing_memory_type)
 {
     assert_int_equal(try_open_camera(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the V4L2 source on a fake driver with faults: which faults it recovers
- * from; which faults end the stream, after what time and with which message;
- * and that no resource leaks.
+ * Tests the V4L2 source on a fake driver with faults. From some faults the
+ * source must recover. Other faults must end the stream, after the right time
+ * and with the right message. No fault may leak a resource.
  */
 #include "support/fakes/camera_check.h"
 #include "support/scratch.h"
@@ -87,8 +87,8 @@ TEST(reports_failed_requests)
                         "'Fake' does not capture pictures");
 }
 
-/* Checks that the source works with drivers that do not support these
- * requests. */
+/* Checks that the source works with drivers that do not support the requests in
+ * the list. */
 TEST(works_without_optional_requests)
 {
     static const unsigned long request[] = {
@@ -119,8 +119,8 @@ static void must_get_frame_of_width(int width, int code)
     done();
 }
 
-/* Checks that a stream that breaks is restarted, at the size that another
- * program has set in the meantime. */
+/* Breaks a stream while another program sets another size. Checks that the
+ * stream is restarted at this size. */
 TEST(broken_stream_is_restarted)
 {
     must_open_camera(NULL);
@@ -249,7 +249,7 @@ TEST(reports_an_unplugged_camera)
     must_close_camera();
     must_refuse_to_open(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
 
-    /* which request reports the loss of the camera first */
+    /* The loss of the camera is reported first by request[i]. */
     for (int i = 0; i < 2; i++) {
         fake_camera_reset();
         must_open_camera(NULL);
@@ -338,8 +338,8 @@ TEST(unqueued_buffer_causes_a_restart)
     assert_int_equal(next(), GLINT_OK);
     kept = frame;
     fake_camera_add_frame(1, 2);
-    /* returned_index is 1 plus the index: this is buffer 0, which is lent to
-     * the caller */
+    /* returned_index is 1 plus a buffer index: buffer 0 is returned, which is
+     * lent to the caller. */
     camera.returned_index = 1;
     must_get_no_frame();
     assert_int_equal(v4l2.source.n_restarts, 2);
@@ -369,7 +369,7 @@ TEST(missing_frames_cause_a_restart)
     fake_camera_add_frame(0, 1); /* after the restart frames arrive again */
     must_get_frame(1);
     assert_int_equal(get_frames_during_ms(10000, &failed_ms), GLINT_E_DEVICE);
-    /* this restart has no effect */
+    /* The second restart has no effect, so the stream ends. */
     assert_in_range(failed_ms, 4200, 4400);
     assert_string_equal(said.text, FAKE_PATH ": no frames come; restarting "
                                              "the stream failed");
@@ -418,7 +418,7 @@ TEST(changed_timings_cause_a_restart)
     reset_camera_with_hdmi();
     must_open_camera(NULL);
     assert_true(v4l2.device.has_signal);
-    camera.n_events = 1; /* an event that reports no change */
+    camera.n_events = 1; /* This event reports that nothing has changed. */
     fake_camera_add_frame(0, 1);
     must_get_frame(1);
     assert_int_equal(v4l2.source.n_restarts, 0);
@@ -459,8 +459,8 @@ TEST(signal_may_be_absent_for_any_time)
     }
 }
 
-/* Checks that the timings currently set at the input are used while no signal
- * is detected. */
+/* Checks an input at which no signal is detected: the source uses the timings
+ * that are set there. */
 TEST(timings_without_signal_are_used)
 {
     reset_camera_with_hdmi();
@@ -473,9 +473,9 @@ TEST(timings_without_signal_are_used)
     must_close_camera();
 }
 
-/* Checks a signal that is repeatedly lost and found again without a frame, for
- * longer than the time limit for restarts, as happens while a cable is plugged
- * in. */
+/* Checks a signal that is repeatedly lost and found again without a frame, as
+ * happens while a cable is plugged in. The stream must survive this for longer
+ * than the time limit for restarts. */
 TEST(wavering_signal_is_not_a_failure)
 {
     int failed_ms;
@@ -572,10 +572,9 @@ static enum glint_status run_capture_session(enum glint_v4l2_io io,
     return status;
 }
 
-static void check_session_with_each_call_failing(int number, bool forever,
-                                                 enum glint_v4l2_io io,
-                                                 bool multiplanar,
-                                                 uint32_t fourcc)
+static void check_session_failing_calls(int number, bool forever,
+                                        enum glint_v4l2_io io, bool multiplanar,
+                                        uint32_t fourcc)
 {
     const int fds = scratch_count_entries("/proc/self/fd");
     int n_failed = 0, n_calls, n = 0;
@@ -613,17 +612,15 @@ TEST(every_failing_call_is_handled)
 
     for (int i = 0; i < 6; i++)
         for (int forever = 0; forever < 2; forever++) {
-            check_session_with_each_call_failing(
-                number[i], forever, GLINT_V4L2_AUTO, false, V4L2_PIX_FMT_YUYV);
-            check_session_with_each_call_failing(number[i], forever,
-                                                 GLINT_V4L2_AUTO, true,
-                                                 V4L2_PIX_FMT_YUV420M);
-            check_session_with_each_call_failing(number[i], forever,
-                                                 GLINT_V4L2_USERPTR, true,
-                                                 V4L2_PIX_FMT_NV12M);
-            check_session_with_each_call_failing(
-                number[i], forever, GLINT_V4L2_READ, false, V4L2_PIX_FMT_YUYV);
-            check_session_with_each_call_failing(
-                number[i], forever, GLINT_V4L2_AUTO, false, V4L2_PIX_FMT_MJPEG);
+            check_session_failing_calls(number[i], forever, GLINT_V4L2_AUTO,
+                                        false, V4L2_PIX_FMT_YUYV);
+            check_session_failing_calls(number[i], forever, GLINT_V4L2_AUTO,
+                                        true, V4L2_PIX_FMT_YUV420M);
+            check_session_failing_calls(number[i], forever, GLINT_V4L2_USERPTR,
+                                        true, V4L2_PIX_FMT_NV12M);
+            check_session_failing_calls(number[i], forever, GLINT_V4L2_READ,
+                                        false, V4L2_PIX_FMT_YUYV);
+            check_session_failing_calls(number[i], forever, GLINT_V4L2_AUTO,
+                                        false, V4L2_PIX_FMT_MJPEG);
         }
 }

@@ -80,7 +80,7 @@ TEST(parses_a_header_of_ffmpeg)
     assert_memory_equal(printed, line, sizeof line - 1);
     assert_int_equal(printed[len - 1], '\n');
 
-    h.range = GLINT_RANGE_FULL; /* this range differs from that in the tags */
+    h.range = GLINT_RANGE_FULL; /* This range contradicts the tags. */
     glint_y4m_header_print(printed, &h);
     assert_non_null(strstr(printed, " XCOLORRANGE=FULL\n"));
     assert_null(strstr(printed, "LIMITED"));
@@ -274,9 +274,9 @@ static enum glint_status read_all_frames(const char *data, size_t bytes,
     return status;
 }
 
-/* Checks that a stream that is truncated at any byte ends with the right
- * message. The header has 22 bytes, the first frame 6 + 17, the second frame 14
- * + 17. */
+/* Checks that a stream truncated at any byte ends with the right message. The
+ * header has 22 bytes. The first frame has a line of 6 bytes and 17 bytes of
+ * samples, the second frame 14 and 17. */
 TEST(reports_every_truncation)
 {
     long frames;
@@ -488,8 +488,8 @@ TEST(adds_light_to_10_bit_codes)
                                                                : 512);
     add_light_to_frame("Cmono12 XCOLORRANGE=FULL", 0, 0, layer, planes);
     assert_int_equal(read_16bit_sample(planes, 4), 1675); /* 4095 * 0.40901 */
-    /* red light of 9, which clips, on the last of 3 x 3 pixels; no other pixel
-     * shares its chroma sample */
+    /* The last of 3 x 3 pixels gets red light of 9, which clips. No other pixel
+     * shares its chroma sample. */
     layer[3 * 8] = 9;
     add_light_to_frame("C420p10", 64, 512, layer, planes);
     /* luma of red: 64 + 876 * 0.299 */
@@ -594,9 +594,9 @@ static double encode_transfer_light(enum glint_transfer_curve curve,
     return high;
 }
 
-/* Adds LIGHT (red of BT.709 if IS_RED, otherwise white) to 16-bit pixels of
- * 0.001 .. 4 times white, encoded by CURVE, and compares the increase of their
- * light with LIGHT. */
+/* Adds LIGHT to 16-bit pixels of 0.001 .. 4 times white, encoded by CURVE, and
+ * checks that their light increases by LIGHT. The light is white, or red of
+ * BT.709 if IS_RED is set. */
 static void check_added_light(enum glint_transfer_curve curve,
                               enum glint_primaries primaries, double light,
                               bool is_red)

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares quotients computed by multiplication with exact ones: of
- * y4m_scaled_quotient() for every numerator; of y4m_divide_fraction() at both
- * ends of each range of numerators with the same quotient, which is sufficient
- * because the quotient is monotonic.
+ * Checks divisions that are done by multiplication. y4m_scaled_quotient() is
+ * checked for every numerator. y4m_divide_fraction() is monotonic, so that for
+ * each quotient only the first numerators with this quotient and the last ones
+ * before it need a check.
  */
 
 #include "support/test.h"
@@ -15,8 +15,8 @@ static int64_t divide_rounded(int64_t n, int64_t d)
     return n >= 0 ? (2 * n + d) / (2 * d) : -((-2 * n + d) / (2 * d));
 }
 
-/* Returns the number of K in -MOST .. MOST for which the quotient K 2^UP / D is
- * wrong. */
+/* Returns the number of integers K in -MOST .. MOST for which the quotient of K
+ * 2^UP and D is wrong. */
 static long count_wrong_quotients(int32_t most, int up, int32_t d)
 {
     const int64_t factor = y4m_scaled_quotient_factor(up, d);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests extreme angles of lights: on the axis and 1e-6 degrees off it, at the
- * borders of angular zones and of the angles at which each ghost is visible,
- * at the largest angles, at all azimuths, and at pixel borders.
+ * Tests extreme angles of lights: on the axis and 1e-6 degrees off it; at the
+ * borders of angular zones, which have polynomials of their own; at the angles
+ * at which a ghost appears or vanishes; at the largest angles, at all azimuths,
+ * and at pixel borders.
  */
 #include <math.h>
 #include <stdint.h>
@@ -21,11 +22,11 @@ static uint8_t codes[3][3 * W * H];
 
 #define DEGREE 0.017453292519943295
 
-/* Max difference between two images of the same light with different grids:
- * codes, in the mean of a block of 8 x 8 pixels. Grids of images in codes have
- * 3/4 of the cells in each direction, so an outline may be displaced by 0.1 /
- * (3/4)^2 = 0.18 pixel. Along one side of a block this changes the mean by 255
- * * 0.18 / 8. */
+/* Max difference, codes, between the means of 8 x 8 pixels in two images of the
+ * same light that have different grids. Grids of images in codes have 3/4 of
+ * the cells in each direction, so they may displace an outline by 0.1 / (3/4)^2
+ * = 0.18 pixel. Along one side of a block, this changes the mean by 255 * 0.18
+ * / 8 codes. */
 #define GRID_CODES 5.7
 
 TEST_OPEN
@@ -53,10 +54,10 @@ static double compare_model_with_exact(struct stage *s,
 /* -------------------------------------------------------------------- axis */
 
 /* Checks that an image with a light on the axis has a PSNR of at least 45 dB,
- * as elsewhere at this size, and that a light 1e-6 degrees away gives the same
- * image: its ghosts move by 1e-6 pixel, and cells whose irradiance is half-way
- * between two steps of 1 % (1.2 codes in bright parts) may be rounded to the
- * other step. */
+ * as elsewhere at this size. A light 1e-6 degrees off the axis must give the
+ * same image, as its ghosts move by 1e-6 pixel only. Cells whose irradiance is
+ * half-way between two steps of 1 % (1.2 codes in bright parts) may be rounded
+ * to the other step. */
 TEST(lights_near_the_axis_match_exact_rays)
 {
     static const double theta[] = {0, 1e-9, 1e-6, 1e-3, 0.1};
@@ -132,9 +133,9 @@ TEST(flux_does_not_depend_on_azimuth)
                    "");
 }
 
-/* Checks that rotating a light by 90 degrees rotates the image, as stop (an
- * octagon) and image (a square) are symmetric. Rows and columns are exchanged,
- * which changes the rounding of edges. */
+/* The stop, an octagon, and the square image are symmetric. Checks that
+ * rotating a light by 90 degrees rotates the image. The rotation exchanges rows
+ * and columns, which changes the rounding of edges. */
 TEST(quarter_turn_of_the_light_rotates_the_image)
 {
     double worst = 0;
@@ -219,10 +220,10 @@ static double measure_jump_of_block_means(int32_t sine_q30, double *flux)
 }
 
 /* Checks the borders of angular zones. Neighbouring zones are fitted separately
- * (energy within 0.6 %, interpolation between rays 1 %), so an almost white
+ * (energy within 0.6 %, interpolation between rays 1 %). So an almost white
  * flat part of a ghost may change by 2 codes at the border, and by 2 more if
- * one side rounds to the next irradiance step. Ghosts appear and vanish outside
- * the image, so the borders where they do must be invisible. */
+ * one side rounds to the next irradiance step. Where a ghost appears or
+ * vanishes, it is outside the image, so such a border must be invisible. */
 TEST(zone_borders_cause_no_jump)
 {
     const struct glint_lens *lens;
@@ -245,8 +246,8 @@ TEST(zone_borders_cause_no_jump)
                     continue;
                 if (is_border_between_zones(lens, ghost, border[e])) {
                     if (e == 0)
-                        /* this border is measured as the upper border of the
-                         * neighbouring zone */
+                        /* The neighbouring zone measures this border as its
+                         * upper border. */
                         continue;
                     inner = fmax(inner,
                                  measure_jump_of_block_means(border[e], &flux));

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests caustics: the total light of the lens is right and folds have the
- * right brightness, for ghosts that are in focus, are points, or are a hundred
- * times larger than the frame.
+ * Tests caustics: the total light and the brightness of folds must be right,
+ * for ghosts that are in focus, are points, or are a hundred times larger than
+ * the frame.
  */
 #include <math.h>
 #include <stdint.h>
@@ -28,9 +28,9 @@ static double find_peak_light(const float *rgb)
 }
 
 /* Checks that the total light of all ghosts, including folds and foci, equals
- * that of the exact image within 1 % (outlines are displaced by 0.1 pixel,
- * ghosts about twenty pixels wide). The irradiance at the edge of a fold is
- * unbounded, but a pixel averages it; there the grid may deviate by 10 %. */
+ * that of the exact image within 1 %, as outlines are displaced by 0.1 pixel
+ * and ghosts are about twenty pixels wide. The irradiance at the edge of a fold
+ * is unbounded. Pixels average it; there the grid may deviate by 10 %. */
 TEST(folded_ghosts_keep_their_light)
 {
     double flux = 0, high = 0;

@@ -55,10 +55,11 @@ static void draw_lamp_in_format(enum glint_pixel_format format, int width,
 
 /* ------------------------------------------------------------------- sizes */
 
-/* Returns the number of samples of a small image that differ from the middle of
- * a larger image with the same scale and parity of sides. None may differ,
- * except if one frame drops a ghost as invisible that the other draws: in the
- * larger image, light outside the small one counts as visible. */
+/* Draws a small image. Returns the number of its samples that differ from the
+ * middle of the larger image LARGE, which has the same scale and parity of
+ * sides. Samples may differ only if one image drops a ghost as invisible that
+ * the other draws: in the larger image, light outside the small one counts as
+ * visible. */
 static int count_differing_samples(int width, int height, const uint8_t *large,
                                    int large_w, int large_h, double px_mm)
 {
@@ -165,8 +166,8 @@ TEST(middle_of_the_longest_frames_is_exact)
 /* Draws an image with rows padded by PAD bytes, bottom row first if DOWN is -1.
  * Returns the number of rows that differ from an image without padding, plus
  * the number of bytes written outside the rows. */
-static int count_wrong_rows_of_memory_layout(enum glint_pixel_format format,
-                                             int pad, int down)
+static int count_wrong_rows_of_layout(enum glint_pixel_format format, int pad,
+                                      int down)
 {
     enum { W = 157, H = 83, ROOM = 1 << 19 };
     static uint8_t want[ROOM], got[ROOM];
@@ -216,12 +217,9 @@ TEST(strides_do_not_change_the_image)
 
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         /* YUYV and UYVY need even strides, int32 needs multiples of 4 */
-        n += count_wrong_rows_of_memory_layout((enum glint_pixel_format)format,
-                                               52, 1);
-        n += count_wrong_rows_of_memory_layout((enum glint_pixel_format)format,
-                                               0, -1);
-        n += count_wrong_rows_of_memory_layout((enum glint_pixel_format)format,
-                                               4, -1);
+        n += count_wrong_rows_of_layout((enum glint_pixel_format)format, 52, 1);
+        n += count_wrong_rows_of_layout((enum glint_pixel_format)format, 0, -1);
+        n += count_wrong_rows_of_layout((enum glint_pixel_format)format, 4, -1);
     }
     assert_at_most("frames: strides of 13 formats, rows or bytes that differ",
                    n, 0, "");

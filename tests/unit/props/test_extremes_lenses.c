@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests extreme lenses: f-numbers up to 1000, stops of 3 to 64 blades, sensors
- * of 1 to 100 mm, focal lengths of 1 mm to 10 m, a lens scaled by 1/1000 and
- * 1000, radii of 1e-2 and 1e7 mm, 2 to 64 surfaces, no ghosts and two
- * thousand. Images drawn by models are compared with exact ones.
+ * Tests extreme lenses, drawn by models and compared with exact images:
+ * f-numbers up to 1000, stops of 3 to 64 blades, sensors of 1 to 100 mm, focal
+ * lengths of 1 mm to 10 m, a lens scaled by 1/1000 and 1000, radii of 1e-2 and
+ * 1e7 mm, 2 to 64 surfaces, no ghosts and two thousand ghosts.
  */
 #include <math.h>
 #include <stdint.h>
@@ -17,9 +17,9 @@
 
 /* Images are so small that each takes 0.1 s. A draft model (tolerance 4) may
  * displace outlines by 0.12 pixel, in faint ghosts by a pixel, and its energy
- * may deviate by 2.4 %. This is a PSNR of 40 dB if ghosts are about ten pixels
- * wide; most lenses reach 50 dB. Flux must be within 3 %: 2.4 % plus outlines
- * displaced by 0.1 pixel. */
+ * may deviate by 2.4 %. For ghosts about ten pixels wide, this means a PSNR of
+ * 40 dB; most lenses reach 50 dB. The flux must be within 3 %: 2.4 %, and the
+ * displacement of outlines by 0.1 pixel. */
 enum { W = 144, H = 96 };
 
 #define LEAST_DB  40.0
@@ -123,9 +123,10 @@ TEST(extreme_numbers_of_blades_match_exact_rays)
         report_worst_errors("stops of 3 to 64 blades and a circle", worst));
 }
 
-/* Checks that the outline of a ghost 300 pixels wide with a round stop, which
- * is otherwise hardly bent, shows no chords. The limit of 50 dB lies between
- * the 44.4 dB of 8 cells and the 54.5 dB of the planned number of cells. */
+/* Checks that the outline of a ghost 300 pixels wide with a round stop shows no
+ * chords. Apart from the stop, the ghost is hardly bent. The limit of 50 dB
+ * lies between the 44.4 dB of a grid of 8 cells and the 54.5 dB of the planned
+ * number of cells. */
 TEST(outline_of_a_round_stop_shows_no_chords)
 {
     enum { WIDE = 432, HIGH = 288 };
@@ -412,7 +413,6 @@ TEST(lenses_of_2_to_64_surfaces_match_exact_rays)
                                     worst));
 }
 
-/* Checks that a model without ghosts does not change the image. */
 TEST(model_without_ghosts_changes_nothing)
 {
     const struct glint_lamp lamp = stage_make_lamp(2, 25, 1e9);

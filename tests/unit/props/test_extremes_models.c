@@ -15,8 +15,8 @@
 
 static struct stage stage;
 
-/* Returns whether drawing a model of FAMILY takes seconds, as it has thousands
- * of ghosts. */
+/* Returns whether a model of FAMILY has thousands of ghosts, so that drawing it
+ * takes seconds. */
 static bool is_slow_family(int family)
 {
     return family == HOSTILE_WHOLE || family == HOSTILE_FOLDS ||

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests one model for all f-numbers: it is baked for the full aperture, then
- * stopped down, and compared with exact images and with models baked at that
- * f-number. The image must change continuously while the stop closes to an
- * eleventh of its diameter, as from f/2 to f/22.
+ * Tests one model at all f-numbers. It is baked for the full aperture, stopped
+ * down, and compared with exact images and with models baked at that f-number.
+ * While the stop closes to an eleventh of its diameter, as from f/2 to f/22,
+ * the image must change continuously.
  */
 #include <math.h>
 #include <stdint.h>
@@ -133,9 +133,9 @@ static void compute_block_means(const float *rgb, double exposure, double *mean)
                 encode_srgb(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
 }
 
-/* Checks, while the stop closes and ghosts shrink, that the error of each block
- * against the exact image changes by at most 1.5 codes per frame. The blocks of
- * the exact image change by tens of codes. */
+/* Checks, while the stop closes and ghosts shrink, the error of each block of
+ * pixels against the exact image. From frame to frame it may change by at most
+ * 1.5 codes, while the blocks of the exact image change by tens of codes. */
 TEST(closing_stop_causes_no_jump)
 {
     const int frames = extreme_is_long_run() ? 100 : 34;
@@ -154,8 +154,8 @@ TEST(closing_stop_causes_no_jump)
         assert_true(stage_draw_exact(&stage, &lamp, 1, 128, exact));
         if (k == 0)
             exposure = stage_find_exposed_power(&stage, &lamp);
-        /* the ghosts' irradiance stays constant, while the direct image gets
-         * darker */
+        /* The irradiance of ghosts stays constant while the direct image gets
+         * darker. */
         compute_block_means(drawn, exposure * pow(OPEN_F / f, 2), now);
         compute_block_means(exact, exposure * pow(OPEN_F / f, 2), exactly);
         for (int b = 0; k > 0 && b < BLOCKS; b++) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the accuracy of outlines with --error, in pixels: compares the
- * position of each ghost's outline, drawn with the grid that is chosen for
- * that error, with its position in the finest grid.
+ * Tests how exactly --error, in pixels, limits the error of outlines. It
+ * compares the position of each ghost's outline, drawn with the grid that is
+ * chosen for that error, with the position in the finest grid.
  */
 #include <math.h>
 #include <stdint.h>
@@ -28,10 +28,10 @@ struct offsets {
     double sum, squares, most;
 };
 
-/* Returns the position of an outline in a window of pixels across it, pixels
- * from the start of the window: the light of the window divided by the light of
- * the pixel before it. AT is the last pixel of the inner part; STEP leads
- * outwards. */
+/* Returns the position of an outline, pixels from the start of a window of
+ * pixels across it. The position is the sum of light in the window divided by
+ * the light of the last pixel before the window. AT is the last pixel inside
+ * the outline; STEP is the offset to the next pixel outwards. */
 static double find_outline_position(const float *rgb, int at, int step)
 {
     double sum = 0;
@@ -100,8 +100,7 @@ static void add_outline_offsets_of_ghost(struct offsets *o)
             }
 }
 
-static void add_outline_offsets_at_light_angle(double theta_deg,
-                                               struct offsets *o)
+static void add_offsets_at_light_angle(double theta_deg, struct offsets *o)
 {
     const struct glint_lamp lamp = stage_make_lamp(theta_deg, 33, 1);
     struct glint_frame *f = &stage.frame;
@@ -118,7 +117,8 @@ static void add_outline_offsets_at_light_angle(double theta_deg,
         for (int k = 0; k < ERRORS; k++) {
             f->dials =
                 glint_quality_at(glint_quality_for_error(error_px[k])).dials;
-            /* rounding irradiance to steps does not affect outlines */
+            /* Rounding irradiance to steps does not affect outlines, so it is
+             * switched off. */
             f->dials.irradiance_steps = 0;
             assert_true(stage_draw_linear(&stage, &lamp, 1, drawn));
             add_outline_offsets_of_ghost(&o[k]);
@@ -126,9 +126,10 @@ static void add_outline_offsets_at_light_angle(double theta_deg,
     }
 }
 
-/* Checks that no outline is displaced by more than 1.5 times --error plus 1/20
- * pixel, as grids depend on the mean bend of a ghost; and that the mean offset
- * is at most a fifth of --error, as most outlines are far more exact. */
+/* Checks the errors of all outlines. As grids depend on the mean bend of a
+ * ghost, an outline may be displaced by up to 1.5 times --error plus 1/20
+ * pixel. Most outlines are far more exact, so the mean offset must be at most a
+ * fifth of --error. */
 static void check_outline_offsets(const char *lens)
 {
     struct offsets o[ERRORS] = {{0, 0, 0, 0}};
@@ -139,8 +140,8 @@ static void check_outline_offsets(const char *lens)
     assert_true(stage_set_up_lens(&stage, 8) &&
                 stage_bake_or_load_model(&stage, 1, 60));
     stage_set_view(&stage, W, H, 0);
-    add_outline_offsets_at_light_angle(5, o);
-    add_outline_offsets_at_light_angle(12, o);
+    add_offsets_at_light_angle(5, o);
+    add_offsets_at_light_angle(12, o);
     for (int k = 0; k < ERRORS; k++) {
         char name[100];
 

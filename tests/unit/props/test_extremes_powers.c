@@ -66,8 +66,8 @@ TEST(image_is_linear_in_power)
 
 /* Raises the power by factors of 4 (above 1e9 by 10 000), from below one code
  * to saturation. Checks that no sample becomes darker than the background or
- * than at the previous power, as it would if a sum wrapped. The brightest light
- * must make all pixels white that it reaches. */
+ * than at the previous power; a sum that wraps would make it darker. The
+ * brightest light must make every pixel that it reaches white. */
 TEST(more_power_never_darkens_codes)
 {
     uint64_t r = 5;

@@ -87,7 +87,7 @@ TEST(repeated_frames_are_identical)
     }
     if (extreme_is_long_run())
         fprintf(stderr, "\r%d frames            \n", n);
-    /* frames must differ, otherwise the comparison would prove nothing */
+    /* If frames did not differ, comparing them would prove nothing. */
     assert_true(first[0] != first[ROUND / 4]);
     assert_at_most(
         extreme_is_long_run()

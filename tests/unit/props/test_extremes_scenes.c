@@ -93,7 +93,7 @@ static int is_inside_object(const struct twin_pixel *p, int width, int height,
 }
 
 /* Draws TEXT at WIDTH x HEIGHT with both renderers. Raises the errors in WORST
- * to those of this image. */
+ * to the errors of this image if these are larger. */
 static void compare_renderers(const char *text, int width, int height,
                               struct outcome *worst)
 {
@@ -202,8 +202,8 @@ TEST(tiny_and_huge_objects_match_the_reference)
     check_worst_errors("sizes 1e-6 to 1e3", &worst);
 }
 
-/* Checks objects of sizes up to 1e6 lit by a sun, whose light does not depend
- * on position. */
+/* Checks objects of sizes up to 1e6. They are lit by a sun, whose light is the
+ * same everywhere. */
 TEST(large_objects_in_sunlight_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
@@ -264,8 +264,8 @@ TEST(objects_behind_the_camera_match_the_reference)
         "triangle t -1 -1 2  1 -1 2  0 1 2 material m\n",
         "triangle t -9 -1 9  9 -1 9  0 -1 -40 material m\n",
         "triangle t -9 -1e-3 9  9 -1e-3 9  0 -1e-3 -40 material m\n",
-        /* At 1e5 all corners would lie within 1/512 pixel of the horizon; a
-         * floor as large as this must be a plane. */
+        /* At a size of 1e5, all corners would lie within 1/512 pixel of the
+         * horizon. So large a floor must be a plane instead. */
         "triangle t -2e4 -1 2e4  2e4 -1 2e4  0 -1 -2e4 material m\n",
         "plane p at 0 0 2 normal 0 0 1 material m\n",
         "plane p at 0 -1e-3 0 normal 0 1 .001 material m\n"};

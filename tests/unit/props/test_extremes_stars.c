@@ -30,9 +30,9 @@ enum { PLACES = sizeof place / sizeof *place };
 static int32_t linear_q20[N];
 static uint8_t codes[N], others[N];
 
-/* Returns the max relative difference between the drawn star of a light of
- * power 2^POWER_LOG2 at AT and the star's tables. Ignores differences below one
- * step of a linear image. */
+/* Draws the star of a light of power 2^POWER_LOG2 at AT. Returns the max
+ * relative difference between the image and the star's tables. Ignores
+ * differences below one step of a linear image. */
 static double measure_max_relative_difference(const struct glint_star_tables *t,
                                               const double at[2],
                                               int power_log2)

@@ -51,8 +51,8 @@ TEST(ten_thousand_lights_at_one_position_add_up)
 }
 
 /* Checks that lights distributed over the frame are merged to 128 without loss
- * of light. Merged lights draw their ghosts in one place, which moves some
- * light out of the frame: 3 % are allowed. */
+ * of light. 3 % are allowed, as merged lights draw their ghosts in one place,
+ * which moves some light out of the frame. */
 TEST(spread_lights_are_merged_without_loss)
 {
     const int n = extreme_is_long_run() ? LIGHTS : 1000;
@@ -102,8 +102,9 @@ enum { SIDE = 64, MANY = 1 << 15 };
 
 /* Draws COUNT bundles of 2^LOG2 times white over the whole image, in codes and
  * in linear light. Returns the linear light of the pixels, or -1 if pixels
- * differ or codes are not white. Sets HELD to the numbers of clamped values: of
- * cells before they were added, and of samples. */
+ * differ or codes are not white. Sets HELD[0] to the number of cells whose
+ * light was clamped before it was added, and HELD[1] to the number of clamped
+ * samples. */
 static double draw_overlapping_bundles(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
@@ -115,7 +116,8 @@ static double draw_overlapping_bundles(int count, int log2, int held[2])
                                    .max_refs = 8 * count};
     const struct glint_bundle b = {.n_cells = 1,
                                    .flux_q31 = 1 << 30,
-                                   /* light of 1 per pixel in 64 x 64 pixels */
+                                   /* This flux gives the light 1 to each of 64
+                                    * x 64 pixels. */
                                    .flux_exponent = 13 + log2,
                                    .rgb_q14 = {16384, 16384, 16384}};
     static int32_t linear[3 * SIDE * SIDE];
@@ -158,10 +160,11 @@ static double draw_overlapping_bundles(int count, int log2, int held[2])
     return value;
 }
 
-/* Checks that pixels of linear light are exact below the limit, just under 2048
- * times white, and saturate above. One cell adds at most 2048 to a pixel, and
- * all cells together at most 2^24; more is clamped before it is added
- * (by_edges.c). Both clamps must be counted. */
+/* Checks that pixels of linear light are exact up to the limit, which is
+ * just under 2048 times white, and saturate above. There are two clamps, and
+ * both must be counted. One cell adds at most 2048 to a pixel, and all cells
+ * together at most 2^24; more light is clamped before it is added
+ * (by_edges.c). */
 TEST(piled_light_saturates)
 {
     static const struct {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the statistics of a scene: what became of each object (drawn, hidden,
- * ...), which object covers it, and counts with known values.
+ * Tests the statistics of a scene: the state of each object (drawn, hidden,
+ * ...), the object that covers it, and counts with known values.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -32,10 +32,10 @@ static struct glint_scene *draw_scene_with_statistics(int edge_samples,
     return s;
 }
 
-/* Checks the count of intersection tests. A lamp of four points lights a ball
- * that fills the picture. Tests per pixel: 3 for a pixel of the ball's box, 4
- * for the lamp, and four shadow rays, each tested against both balls. The count
- * saturates at its limit. */
+/* Checks the number of intersection tests. A lamp of four points lights a ball
+ * that fills the picture. Each pixel needs 3 tests for the box of the ball and
+ * 4 for the lamp. With shadows, each of four shadow rays is tested against both
+ * balls. The count saturates at its limit. */
 TEST(counts_intersection_tests)
 {
     static const int32_t at[3] = {0, 0, 0};
@@ -89,9 +89,10 @@ TEST(counts_the_outcome_of_each_object)
     assert_int_equal(seen[0], -1);
 }
 
-/* Checks the counts of pixels and rays. A ball of radius 1 at distance 4 covers
- * a circle of tangent 1 / sqrt 15, which has 2095 pixels at 100 pixels per unit
- * of tangent. A lamp lights the whole circle, a sun half of it. */
+/* Checks the counts of pixels and rays. A ball of radius 1 at the distance 4
+ * covers a circle with the tangent 1 / sqrt 15, which has 2095 pixels if the
+ * tangent 1 is 100 pixels wide. A lamp lights the complete circle, a sun half
+ * of it. */
 TEST(counts_pixels_and_rays)
 {
     static const int32_t toward_q30[3] = {1 << 30, 0, 0};
@@ -126,7 +127,7 @@ TEST(counts_pixels_and_rays)
                 full[GLINT_SCENE_SHADED] * 2 / 5);
     assert_int_equal(object[0].count[GLINT_SCENE_COVERING],
                      full[GLINT_SCENE_COVERING]);
-    /* reflective surfaces are shaded at each sample */
+    /* A reflective surface is shaded at each sample, not once per pixel. */
     file.material[0].reflect_q15 = 1 << 14;
     draw_scene_with_statistics(4, 0);
     assert_int_equal(object[0].count[GLINT_SCENE_BOUNCED],

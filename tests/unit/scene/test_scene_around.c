@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests reflections and refractions of the camera's own image used as a
- * 360-degree environment: values are compared with double precision in every
- * pixel format, and scenes that do not show the image must not compute it.
+ * Tests scenes that reflect and refract the camera's own image, used as a
+ * 360-degree environment. Values are compared with double precision in every
+ * pixel format. Scenes that do not show the environment must not compute it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -100,8 +100,9 @@ static double intersect_ball_at_pixel(int i, int k, double d[3])
     return off2 < 2.1 ? along - sqrt(2.25 - off2) : 0; /* excludes the rim */
 }
 
-/* Sets AT to the position of direction D in the image: x right, y down, -1 ..
- * 1. Directions off-screen are mirrored at the image border. */
+/* Sets AT to the position in the image that shows the direction D: x to the
+ * right, y down, each -1 .. 1. A direction off-screen is mirrored at the image
+ * border. */
 static void find_image_position(const double d[3], double at[2])
 {
     const double x = d[0], y = -d[1] * WIDTH / HEIGHT;
@@ -146,7 +147,6 @@ TEST(mirror_shows_the_image_around_the_scene)
     assert_true(worst < .02);
 }
 
-/* Checks that glass with an index near 1 shows the image behind it. */
 TEST(glass_of_index_1_shows_the_image_behind_it)
 {
     double worst = 0;
@@ -184,8 +184,8 @@ TEST(image_is_bit_identical_for_all_workers)
     }
 }
 
-/* Checks that the image is sampled only for scenes that show it, and that
- * scenes without it show black instead. */
+/* Checks that the image is sampled only for scenes in which surfaces reflect or
+ * refract it. A scene without sampling shows black instead. */
 TEST(only_scenes_that_show_the_image_pay_for_it)
 {
     struct glint_image image = make_linear_image_over(drawn_q20);

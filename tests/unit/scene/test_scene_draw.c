@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests drawing scenes: images do not depend on tiles, workers or order, in
- * every format; closed meshes have no gaps; the lights passed to the flare are
- * right.
+ * Tests drawing scenes in every format. Images must not depend on tiles,
+ * workers or the order of jobs, closed meshes must have no gaps, and the lights
+ * passed to the flare must be right.
  */
 #include <math.h>
 #include <stdio.h>
@@ -278,7 +278,6 @@ TEST(closed_mesh_has_no_leaks)
     }
 }
 
-/* Checks that each sample shows the first object that its ray hits. */
 TEST(sample_shows_the_first_object)
 {
     const struct glint_scene_config cfg = make_scene_config();
@@ -346,9 +345,9 @@ static double compute_rms_difference(const int32_t *a_q20, const int32_t *b_q20)
     return sqrt(sum / (3 * WIDTH * HEIGHT));
 }
 
-/* Checks that images with more samples per pixel are closer to one with 16
- * samples, and that shading 2 x 2 pixels at once changes only pixels whose
- * neighbours show the same object. */
+/* Checks that more samples per pixel give images closer to one with 16 samples.
+ * Shading 2 x 2 pixels at once must change only pixels whose neighbours show
+ * the same object. */
 TEST(more_samples_come_closer)
 {
     static int32_t all[3 * WIDTH * HEIGHT], some[3 * WIDTH * HEIGHT];
@@ -461,9 +460,9 @@ static void set_random_surface_point(uint32_t *seed,
     }
 }
 
-/* Checks that shadows by the grid of a sun equal shadows by rays that are
- * tested against all objects: also far below objects, outside the grid, and
- * from oblique surfaces. */
+/* The shadows of a sun are found by a grid. Checks that they equal shadows by
+ * rays that are tested against all objects, also far below objects, outside the
+ * grid, and from oblique surfaces. */
 TEST(shadow_grid_equals_brute_force)
 {
     uint32_t seed = 1;
@@ -503,9 +502,9 @@ TEST(shadow_grid_equals_brute_force)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
-/* Checks a square mesh perpendicular to each axis in turn, which coincides with
- * a side of its grid: it occludes a lamp for points behind it, from either
- * side. */
+/* Checks a square mesh that is perpendicular to each axis in turn, and so
+ * coincides with a side of its triangle grid. For points behind it, on either
+ * side, it must occlude a lamp. */
 TEST(flat_mesh_shadows_a_lamp)
 {
     static const uint32_t t[2][3] = {{0, 1, 2}, {0, 2, 3}};
@@ -546,8 +545,8 @@ TEST(flat_mesh_shadows_a_lamp)
 }
 
 /* Checks two shortcuts: shadow catchers are shaded only where shadows may fall,
- * and small balls have a single depth. Images must equal those in which all
- * pixels are shaded and have exact depths. */
+ * and small balls have a single depth. Images must equal images drawn without
+ * these shortcuts. */
 TEST(confined_shading_equals_full_shading)
 {
     static uint8_t px[2][BYTES];
@@ -606,8 +605,8 @@ static double real_to_double(struct glint_real x)
 }
 
 /* Checks the position and power of the lights that the scene passes to the
- * flare, and of the same lights seen through a pinhole, against double
- * precision. */
+ * flare, against double precision. They must be those of lights seen through a
+ * pinhole. */
 TEST(lights_for_the_lens_match_double_precision)
 {
     const struct glint_scene_config cfg = make_scene_config();
@@ -649,9 +648,9 @@ TEST(lights_for_the_lens_match_double_precision)
         glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp), 0);
 }
 
-/* Checks that scene and flare agree on the direction of a light: the pixel that
- * the scene reports, converted by the flare's pinhole camera, gives the light's
- * direction in the scene. */
+/* Checks that scene and flare agree on the direction of a light. The scene
+ * reports the pixel of the light. The flare's pinhole camera must convert this
+ * pixel to the direction that the light has in the scene. */
 TEST(lens_and_scene_agree_on_directions)
 {
     struct model_image image = model_make_three_ghosts();
@@ -717,8 +716,8 @@ TEST(setting_sun_is_occluded_gradually)
     assert_true(last == 0 && levels >= 6);
 }
 
-/* Checks that lamps in the image are dimmed by the coverage of the objects in
- * front of them. */
+/* Checks that objects in front of lamps in the image dim these lamps by their
+ * coverage. */
 TEST(lamps_are_dimmed_by_coverage)
 {
     static uint8_t px[BYTES];
@@ -731,7 +730,8 @@ TEST(lamps_are_dimmed_by_coverage)
     file.object[2].hidden = 1;
     s = scene_init_renderer(&file, &cfg, &stats);
     glint_scene_draw(s, &image);
-    /* tests the middle of the mesh, and a corner of the image */
+    /* The first position is in the middle of the mesh, the second one in a
+     * corner of the image. */
     assert_int_equal(glint_scene_cover(s, 128 * WIDTH, 128 * HEIGHT, 256), 256);
     assert_int_equal(glint_scene_cover(s, 256, 256, 2000), 0);
     assert_int_equal(glint_scene_cover(s, -99999, 256, 2000), 0);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests environment maps and brushed metal in scenes: images are compared with
- * the reference renderer in double precision; the lines of scene texts for
- * them and the brightness of highlights are checked.
+ * Tests environment maps and brushed metal in scenes. Images are compared with
+ * the reference renderer in double precision. The lines for them in scene texts
+ * and the brightness of highlights are checked, too.
  */
 #include <math.h>
 #include <stdint.h>
@@ -27,8 +27,8 @@ enum {
     PIXELS = WIDTH * HEIGHT
 };
 
-/* Paints a smooth sky over ground, with a lamp by the window and a sun.
- * IS_DUSK: two more lamps. */
+/* Paints the light of a sky over ground: the sky is smooth, with a lamp by a
+ * window and a sun. With IS_DUSK, there are two more lamps. */
 static void paint_sky(float sky[SKY_HEIGHT][SKY_WIDTH][3], bool is_dusk)
 {
     for (int y = 0; y < SKY_HEIGHT; y++)
@@ -131,8 +131,8 @@ TEST(image_equals_the_reference)
 
 /* ------------------------------------------------------------------- texts */
 
-/* B7: checks that an anisotropy ratio above 10 is clamped to 10, with a
- * warning. */
+/* Requirement B7: checks that an anisotropy ratio above 10 is clamped to 10,
+ * and that the parser warns of this. */
 TEST(clamped_anisotropy_is_warned_of)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -152,8 +152,8 @@ TEST(clamped_anisotropy_is_warned_of)
     free(s);
 }
 
-/* Checks that a scene model opens only if the program provides the module it
- * needs and its environment is intact. */
+/* Checks two conditions for opening a scene model: the program must provide the
+ * module that the scene needs, and the scene's environment must be intact. */
 TEST(missing_module_is_rejected)
 {
     static const struct scene_dials dials = {
@@ -185,8 +185,8 @@ TEST(missing_module_is_rejected)
     drawn_close_scene(&d);
 }
 
-/* B2: changes colours and alphas between frames. Checks that the image equals
- * that of a scene baked with the new values. */
+/* Requirement B2: changes colours and alphas between frames. Checks that the
+ * image equals that of a scene baked with the new values. */
 TEST(b2_changed_materials_equal_a_new_scene)
 {
     static const char *const text[2] = {
@@ -234,8 +234,9 @@ TEST(b2_changed_materials_equal_a_new_scene)
           "material white\nsphere a at 0 .5 0 radius " radius      \
           " material " material "\n"
 
-/* B8: changes material, radius and environment of objects between frames.
- * Checks that the image equals that of a scene baked with the new values. */
+/* Requirement B8: changes material, radius and environment of objects between
+ * frames. Checks that the image equals that of a scene baked with the new
+ * values. */
 TEST(b8_changed_objects_equal_a_new_scene)
 {
     static const struct scene_dials dials = {
@@ -281,8 +282,9 @@ TEST(b8_changed_objects_equal_a_new_scene)
 #define UNDER(environments) \
     STAGE environments "shadow on\nbackground environment\n" BALLS "white\n"
 
-/* B8: changes the visible environment and its brightness between frames. Checks
- * that the image equals that of a scene that has only this environment. */
+/* Requirement B8: changes the visible environment and its brightness between
+ * frames. Checks that the image equals that of a scene that has only this
+ * environment. */
 TEST(b8_changed_environment_equals_a_new_scene)
 {
     static const struct scene_dials dials = {
@@ -423,8 +425,8 @@ static double sum_light_of_metal_ball(struct drawn *d, double dx, double dy)
     return sum;
 }
 
-/* Checks a sun's highlight that is smaller than a pixel: its light changes by
- * at most 5 % while it moves by fractions of a pixel. */
+/* Checks that the light of a sun's highlight smaller than a pixel is steady: it
+ * changes by at most 5 % while the highlight moves by fractions of a pixel. */
 TEST(subpixel_highlight_is_steady)
 {
     static const struct scene_dials dials = {
@@ -471,8 +473,8 @@ TEST(lookups_are_counted_per_object)
 
         assert_true(n[GLINT_SCENE_SHADED] > 0);
         assert_int_equal(n[GLINT_SCENE_LOOKUPS] % 9, 0);
-        /* at the rim of a ball, the ray through the pixel's centre may miss
-         * it */
+        /* At the rim of a ball, a pixel may count as shaded although the ray
+         * through its centre misses the ball. */
         assert_true(i == 3 ? n[GLINT_SCENE_LOOKUPS] == 0
                            : 20 * n[GLINT_SCENE_LOOKUPS] >
                                  9 * 19 * n[GLINT_SCENE_SHADED]);

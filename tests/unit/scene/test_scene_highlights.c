@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests highlights, the bright reflections that get flares: they are compared
- * with the reference renderer in double precision, at subpixel positions, and
- * for all tiles and workers; also which bright objects are not highlights,
- * which highlights are merged, and extreme values.
+ * Tests highlights, the bright reflections that get flares. They are compared
+ * with the reference renderer in double precision at subpixel positions, and
+ * must be equal for all tiles and workers. Also tests which bright objects are
+ * not highlights, which highlights are merged, and extreme values.
  */
 #include <math.h>
 #include <stdint.h>
@@ -81,8 +81,8 @@ static double highlight_power(int i)
     "camera fov 20 at 0 0 4 toward 0 0 0\nflare lights highlights 8\n"
 #define STEEL(alpha) "material m ward specular .9 .8 .7 alpha " alpha "\n"
 #define SUN          "light sun direction .5 .6 1 colour 2e4 2e4 1e4\n"
-/* Light for small balls, whose highlights would otherwise barely exceed
- * white. */
+/* a sun for scenes with small balls, whose highlights would barely exceed white
+ * with less light */
 #define BRIGHT "light sun direction .5 .6 1 colour 2e6 2e6 1e6\n"
 #define BALL   "sphere s at 0 0 0 radius .44 material m\n"
 
@@ -157,10 +157,10 @@ static void move_ball_by_pixels(double dx, double dy)
     assert_ok(glint_scene_set_pose(frame.scene, 0, at, o->turn_q30));
 }
 
-/* Checks, at subpixel steps of motion, that the power of a highlight varies by
- * at most 5 % and that its position follows. The highlight of the last text is
- * barely above white: its power may vary, as it is too faint for a visible
- * flare. */
+/* Moves a ball by steps smaller than a pixel. Checks that the power of its
+ * highlight varies by at most 5 %, and that the position follows the ball. In
+ * the last text, the highlight is barely above white; its power may vary more,
+ * as it is too faint for a visible flare. */
 TEST(highlights_are_steady_in_motion)
 {
     enum { TEXTS = 5 };
@@ -252,9 +252,9 @@ static int count_found_highlights(const char *text)
     return n;
 }
 
-/* Checks that visible lights, backgrounds, shadow catchers and pixels below
- * white are not highlights, and that no highlights are searched if none are
- * requested. */
+/* Checks bright objects that are not highlights: visible lights, backgrounds,
+ * shadow catchers and pixels below white. If no highlights are requested, none
+ * must be searched. */
 TEST(other_bright_objects_are_no_highlights)
 {
     assert_int_equal(count_found_highlights(CAMERA STEEL(".05 .05") SUN BALL),
@@ -281,10 +281,9 @@ TEST(other_bright_objects_are_no_highlights)
         count_found_highlights(CAMERA "material m phong 1 0 0\n" BALL), 0);
 }
 
-/* Checks that highlights of touching squares, and highlights whose centres are
- * within 12 pixels, are merged; that the brightest are returned if there are
- * too many; and that merged highlights lie at their centroid, weighted by
- * light. */
+/* Checks that highlights are merged if their squares touch or their centres are
+ * within 12 pixels. If there are too many, the brightest must be returned. A
+ * merged highlight must lie at the centroid, weighted by light. */
 TEST(near_highlights_are_merged)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
@@ -324,9 +323,9 @@ TEST(near_highlights_are_merged)
 
 /* ---------------------------------------------------------------- extremes */
 
-/* Checks that the power of a highlight is proportional to the light up to its
- * saturation. A ball of one pixel, or with its highlight at the image border,
- * has the power of the visible part. */
+/* Checks that the power of a highlight is proportional to the light, up to
+ * saturation. If the ball is one pixel, or its highlight is at the image
+ * border, the highlight must have the power of its visible part. */
 TEST(power_is_linear_up_to_saturation)
 {
     static char text[400];
@@ -376,8 +375,8 @@ TEST(power_is_linear_up_to_saturation)
     assert_true(fabs(found[0].spot.x_q8 / 256. - SIDE / 2) < 1);
 }
 
-/* Checks the brightest light that the sums of a square can represent: it is
- * white. */
+/* Highlights are summed over squares of pixels. Checks the brightest light that
+ * such a sum can represent: the highlight must be white. */
 TEST(brightest_highlight_is_white)
 {
     static const int32_t max_q15[3] = {1 << 30, 1 << 30, 1 << 30};

@@ -12,7 +12,6 @@
 
 static struct scene_file file;
 
-/* Makes a scene with an object of every type. */
 static struct scene_file *make_scene_of_all_types(void)
 {
     static const int32_t at[4][3] = {

@@ -193,9 +193,9 @@ static double compute_double_area(const double a[3], const double b[3],
                 pow(u[0] * w[1] - u[1] * w[0], 2));
 }
 
-/* Area test, a simpler method: a point of the plane is inside a triangle if the
- * areas of the three triangles between the point and the sides sum to the area
- * of the triangle within .005. */
+/* Tests a point by the area test, a simpler method. A point of the plane is
+ * inside a triangle if the three triangles between the point and the sides
+ * together have the area of the triangle, within .005. */
 static int is_inside_by_areas(const double v[9], const double p[3])
 {
     const double s = compute_double_area(v, v + 3, v + 6);
@@ -413,7 +413,7 @@ TEST(a15_sphere_intersections)
     assert_true(glint_ray_intersect_sphere(&ahead, aside, 3 * ONE, &c));
     assert_true(c.t[0] == 10 * ONE && c.t[1] == 10 * ONE);
     assert_false(glint_ray_intersect_sphere(&ahead, aside, 3 * ONE - 1, &c));
-    /* a ray from inside the ball, and a ball behind the origin */
+    /* The ray starts inside the ball; then the ball is behind the origin. */
     assert_true(glint_ray_intersect_sphere(&ahead, me, 2 * ONE, &c));
     assert_true(c.t[0] == -ONE && c.t[1] == 3 * ONE);
     assert_true(glint_ray_intersect_sphere(&ahead, far, 2 * ONE, &c));
@@ -422,8 +422,9 @@ TEST(a15_sphere_intersections)
     assert_true(c.t[0] == 10 * ONE - 1 && c.t[1] == 10 * ONE + 1);
 }
 
-/* Returns the fraction of wrong results (hit or miss) among rays that pass a
- * ball of radius 1/2 at DISTANCE within a hundredth of its rim. */
+/* Aims rays at the rim of a ball of radius 1/2 at DISTANCE; they pass the rim
+ * within a hundredth of the radius. Returns the fraction of rays that are
+ * wrongly found to hit or to miss. */
 static double measure_error_rate_at_ball_rim(double distance)
 {
     const double unit = exp2(floor(log2(GLINT_FAR / 4.0 / distance)));
@@ -554,9 +555,10 @@ static int ray_hits_triangle_q16(const struct glint_scene_ray *ray,
            (dot_q16(e2, q) ^ sign) >= 0;
 }
 
-/* Aims RAYS rays from inside a closed mesh: a third each at vertices, at edges
- * and at the interior of triangles. Returns the number of rays that hit no
- * triangle or, in the last third, not exactly one. */
+/* Aims RAYS rays from inside a closed mesh: a third each at vertices, at
+ * edges and at the interior of triangles. Each ray must hit a triangle, and
+ * rays of the last third must hit exactly one. Returns the number of rays
+ * that do not. */
 static int count_rays_through_mesh(double size, int is_naive)
 {
     enum { RAYS = 1500 };

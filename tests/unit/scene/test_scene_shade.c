@@ -67,8 +67,8 @@ static int32_t shade_ray_red_q15(const struct glint_scene *s,
 
 /* -------------------------------------------------------------------- A5 */
 
-/* Checks that of three triangles behind each other the nearest is visible, in
- * any order, and that a triangle that the ray misses is never the nearest. */
+/* Checks three triangles, one behind the other, in any order: the nearest must
+ * be visible. A triangle that the ray misses must never be the nearest. */
 TEST(a5_nearest_triangle_is_visible)
 {
     static const int at[4][9] = {
@@ -243,8 +243,9 @@ TEST(a8_phong_matches_double_precision)
 
 /* --------------------------------------------------------------------- A10 */
 
-/* Returns the light on a floor below a lamp of height 4. A ball of radius 1,
- * centred at height H, is between them unless HIDDEN. */
+/* Returns the light on a floor below a lamp at height 4. Unless HIDDEN is set,
+ * a ball of radius 1 with its centre at height H is between the lamp and the
+ * floor. */
 static int32_t measure_light_under_ball(double h, int hidden)
 {
     const int32_t lamp[3] = {0, 4 * UNIT, 10 * UNIT};
@@ -414,10 +415,11 @@ TEST(a11_transparent_ball_occludes_nothing)
     assert_true(behind > 3000 && within > behind + 3000);
 }
 
-/* A simpler method for the second hit, which fails: returns whether a ray's
- * entry point into a ball of RADIUS, computed in floats, is outside the ball,
- * that is, its squared distance from the centre exceeds the squared radius plus
- * MORE. The right answer is false. */
+/* A simpler method for the second hit of a ball, which fails. It computes
+ * the point where a ray enters the ball of RADIUS, in floats. Returns
+ * whether the point seems to be outside the ball, with a squared distance
+ * from the centre that exceeds the squared radius by more than MORE. The
+ * right answer is false. */
 static int is_second_hit_outside(const double middle[3], double radius,
                                  const double d[3], double more)
 {
@@ -515,8 +517,8 @@ TEST(a12_glass_ball_refracts)
     for (int i = 0; i < 3000; i++) {
         const double dx = rng_unit(&seed) * .2 - .1;
         const double cosine0 = cos(atan(dx));
-        /* expected path in the x-z plane: entry point, path in the ball, exit
-         * point */
+        /* The expected path of the ray is in the x-z plane: its entry point,
+         * its path in the ball, and its exit point. */
         const double b = 10 * cosine0, q = 10 * sin(atan(dx));
         const double t = b - sqrt(4 - q * q);
         const double px = t * sin(atan(dx)), pz = t * cosine0 - 10;
@@ -637,7 +639,6 @@ TEST(a13_texture_coordinates)
     }
 }
 
-/* Checks that a distant texture shows its mean colour. */
 TEST(a13_distant_texture_has_its_mean)
 {
     uint8_t rgb[3 * 64 * 64];
@@ -665,8 +666,9 @@ TEST(a13_distant_texture_has_its_mean)
         assert_true(near >= 0 && near <= 32768);
         assert_in_range(far, 6900, 7200); /* the linear light of code 127.5 */
     }
-    /* Seen vertically from above, a pixel as wide as 1/32 of the height covers
-     * two texels at height 1, and half a texel at height 1/4. */
+    /* The camera looks down vertically. At height 1, a pixel is as wide as 1/32
+     * of the height and covers two texels; at height 1/4, it covers half a
+     * texel. */
     for (int i = 0; i < 500; i++) {
         const double x = rng_unit(&seed), z = rng_unit(&seed);
         const int32_t close =

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests translucent objects in scenes: comparison with the reference renderer
- * in double precision, bit-identical images for all workers and tiles,
- * incremental updates of light maps, extreme values, and errors.
+ * Tests translucent objects in scenes. Images are compared with the reference
+ * renderer in double precision, and must be bit-identical for all workers and
+ * tiles. Also tests incremental updates of light maps, extreme values, and
+ * errors.
  */
 #include <math.h>
 #include <stdint.h>
@@ -58,8 +59,8 @@ static enum glint_status read_mesh_of_test(void *ctx, const char *name,
     return GLINT_OK;
 }
 
-/* Builds the translucent medium that a scene text refers to. NAME: file name in
- * the scene text. */
+/* Builds the translucent medium of a scene text, with the parameters above.
+ * NAME is the file name in the scene text. */
 static enum glint_status build_medium_by_name(void *ctx, const char *name,
                                               uint8_t **data, size_t *bytes,
                                               struct glint_error *error)
@@ -209,8 +210,8 @@ static double compute_psnr(const int32_t *a, const int32_t *b)
 }
 
 /* Checks the seams of light maps. The texture repeats twice around a ball, and
- * each repetition is symmetric. So a ball rotated by quarter turns must give
- * the same image, whether a seam of the map is visible or its interior. */
+ * each repetition is symmetric. So the image must not change if the ball is
+ * rotated by quarter turns, which shows the seam of the map or its interior. */
 TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
@@ -233,8 +234,8 @@ TEST(seams)
     }
 }
 
-/* Checks that texture charts that are stretched, sheared or mirrored are lit,
- * and seen, at the surface positions of their texels. */
+/* Checks texture charts that are stretched, sheared or mirrored. Each texel
+ * must be lit, and seen, at its position on the surface. */
 TEST(stretch)
 {
     static const char *const places[] = {
@@ -260,8 +261,8 @@ TEST(stretch)
     }
 }
 
-/* Checks a kernel of 63 x 63 texels on a map of 32 x 32, which extends beyond
- * all edges of the map and twice around a ball's pole. */
+/* Checks a kernel of 63 x 63 texels on a map of 32 x 32 texels. The kernel
+ * extends across all edges of the map, and twice around the pole of a ball. */
 TEST(kernel_beyond_map)
 {
     side = 32;
@@ -336,9 +337,9 @@ static void draw_from_rotated_camera(struct drawn *d, double angle,
     draw_translucent_scene(d, light_q20);
 }
 
-/* Checks that each texel is computed once, when it becomes visible, that all
- * images equal those of a newly opened scene, and that no texel is computed
- * unnecessarily. */
+/* Rotates the camera step by step. Checks that each texel is computed once,
+ * when it becomes visible, and that no others are. All images must equal those
+ * of a newly opened scene. */
 TEST(updates)
 {
     static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
@@ -375,7 +376,7 @@ TEST(updates)
 TEST(changed_coat_equals_a_new_scene)
 {
     static int32_t changed[3 * PIXELS], fresh[3 * PIXELS];
-    /* index of the first material after those of LOOKS */
+    /* index of the material that follows the materials of LOOKS */
     enum { MATERIAL = 4 };
     struct tool tool = {.name = "test"};
     struct glint_scene_look look;

@@ -91,8 +91,8 @@ static double integrate_lobe_albedo(int norm, double no, double alpha)
 TEST(furnace_albedo_is_1)
 {
     static const double cosine[4] = {1, .7, .3, .1};
-    /* for the bounded normalisation, whose albedo is below 1 at grazing
-     * angles */
+    /* albedos at these cosines with the bounded normalisation, which is below 1
+     * at grazing angles */
     static const double stated[4] = {.998, .996, .984, .889};
     const int32_t frame_q14[3][3] = {
         {16384, 0, 0}, {0, 16384, 0}, {0, 0, 16384}};
@@ -168,8 +168,8 @@ static double look_up_between_levels(const struct glint_environment *e,
                                 look_up_level_in_double(e, k + 1, toward, c);
 }
 
-/* Computes N half-vector slopes that sample the lobe of alpha 1 with constant
- * footprints. Returns the footprint factor b. */
+/* Sets SLOPE to the slopes of N half vectors that sample the lobe of alpha 1,
+ * all with the same footprint. Returns b, the factor of the footprints. */
 static double compute_half_vector_slopes(int n, const double alpha[2],
                                          double slope[GLINT_WARD_SAMPLES][2])
 {
@@ -315,9 +315,9 @@ static void render_by_sum_of_texels(const double alpha[2], struct reference *r)
     glint_sphere_free(&r->sphere);
 }
 
-/* B1: checks that half vectors drawn by the published density of the lobe have
- * a smaller error than uniform directions, for every number of samples and
- * alphas up to .2. B4: checks that with 8 samples Gaussian levels have a
+/* Requirement B1: half vectors drawn by the published density of the lobe must
+ * have a smaller error than uniform directions, for every number of samples and
+ * alphas up to .2. Requirement B4: with 8 samples, Gaussian levels must have a
  * smaller error than mipmaps. */
 TEST(b1_b4_sampled_lobe_beats_uniform_directions)
 {
@@ -361,8 +361,9 @@ TEST(b1_b4_sampled_lobe_beats_uniform_directions)
     free(mip.data);
 }
 
-/* B2: changes colours and alphas over one baked environment. Checks that each
- * lobe is that of its material, and that colours are factors of it. */
+/* Requirement B2: changes colours and alphas of materials that share one baked
+ * environment. Checks that each lobe is that of its material, and that it is
+ * proportional to the colour. */
 TEST(b2_materials_share_an_environment)
 {
     static ward_picture red, white, wide;
@@ -387,8 +388,8 @@ TEST(b2_materials_share_an_environment)
     free(m.data);
 }
 
-/* B8: checks that 8 samples are sufficient: they give at least 30 dB in display
- * codes, on a map of spots and waves. */
+/* Requirement B8: checks that 8 samples are sufficient: they must reach 30 dB
+ * in display codes, on a map of spots and waves. */
 TEST(b8_eight_samples_are_sufficient)
 {
     static const double alphas[3][2] = {{.05, .05}, {.1, .1}, {.05, .2}};
@@ -413,8 +414,8 @@ TEST(b8_eight_samples_are_sufficient)
     free(m.data);
 }
 
-/* B6: checks that images with more samples are closer to the sum over all
- * texels. */
+/* Requirement B6: checks that images with more samples are closer to the sum
+ * over all texels. */
 TEST(b6_more_samples_come_closer)
 {
     static const int samples[3] = {1, 8, 32};
@@ -442,8 +443,8 @@ TEST(b6_more_samples_come_closer)
     free(m.data);
 }
 
-/* Checks extreme environments (black, one texel of 1e9, scales of 1e-6 .. 1e9):
- * they only scale the image of a ball. */
+/* Checks extreme environments: black, one texel of 1e9, and scales of 1e-6 ..
+ * 1e9. The image of a ball must only be scaled by them. */
 TEST(extreme_environments_only_scale_the_image)
 {
     static ward_picture one, got;
@@ -481,8 +482,8 @@ TEST(extreme_environments_only_scale_the_image)
     free(m.data);
 }
 
-/* B7: checks that an anisotropy ratio of 200 is clamped to 10, and that the
- * call reports this. */
+/* Requirement B7: checks that an anisotropy ratio of 200 is clamped to 10, and
+ * that the call reports this. */
 TEST(b7_extreme_anisotropy_is_clamped)
 {
     struct glint_ward_lobe held, plain;

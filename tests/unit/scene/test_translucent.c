@@ -102,8 +102,7 @@ static int16_t *kernel_taps(const struct glint_translucent_header *h,
     return (int16_t *)(void *)(data + h->tap_at);
 }
 
-/* Each column tap stays within its range, but the taps of a column sum to too
- * large a value. */
+/* Sets column taps that are in their range, but whose sum is too large. */
 static void set_too_large_column_taps(struct glint_translucent_header *h,
                                       unsigned char *data)
 {

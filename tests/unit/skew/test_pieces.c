@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests pieces of light directions, into which the bake divides lenses without
- * rotational symmetry: the halves of a piece cover it; a piece is halved along
- * the variable whose high powers weigh most; pupil parts get the smallest free
- * number.
+ * The bake divides the light directions of lenses without rotational symmetry
+ * into pieces. Checks that the halves of a piece cover it, that a piece is
+ * halved along the variable whose high powers weigh most, and that pupil parts
+ * get the smallest free number.
  */
 #include <math.h>
 
@@ -11,8 +11,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* The rays of a piece: start point, direction, and position in the wavelength
- * band. */
+/* A ray of a piece: start point and direction of the ray, and its position W in
+ * the wavelength band. */
 struct entry {
     double x_mm, y_mm, direction[2], w;
 };

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests models of lenses without rotational symmetry: rays of lights from all
- * sides, of which the model stores only a quarter or a half, and of
- * wavelengths that were not fitted land where exact rays do; rays computed by
- * rows equal single rays.
+ * Tests models of lenses without rotational symmetry, which store only a
+ * quarter or a half of all light directions. For lights from all sides, and
+ * wavelengths that were not fitted, rays must land where exact rays do. Rays
+ * computed by rows must equal single rays.
  */
 #include <math.h>
 #include <stdbool.h>
@@ -75,7 +75,7 @@ struct meter {
     struct glint_path path;
     double direction[3];
     int n; /* number of compared rays that pass the lens */
-    /* number of exact rays that pass, and number of these that no bundle
+    /* THROUGH: exact rays that pass; LOST: how many of them no bundle
      * contains */
     int through, lost;
     double places2, stops2, energies2;
@@ -115,9 +115,9 @@ static bool ray_passes_stop(const struct meter *m, double x_mm, double y_mm,
            hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= 23;
 }
 
-/* Counts the rays of a grid over the front element that pass, and those of them
- * that are outside the pupil box; without a bundle all passing rays count as
- * outside. */
+/* Traces a grid of rays over the front element. Counts the rays that pass, and
+ * how many of them are outside the pupil box. Without a bundle, all rays that
+ * pass count as outside. */
 static void count_passing_rays(struct meter *m, bool has_bundle)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
@@ -136,8 +136,8 @@ static void count_passing_rays(struct meter *m, bool has_bundle)
     }
 }
 
-/* Compares ray (I, J) of a grid with the model. X and Y are the signs by which
- * the lens's coordinates are mirrored to give those of the model. */
+/* Compares vertex V with the exact ray (I, J) of a grid. X and Y, 1 or -1,
+ * mirror the coordinates of the lens to those of the model. */
 static void compare_grid_ray(struct meter *m, int i, int j,
                              const struct glint_vertex *v)
 {
@@ -176,7 +176,8 @@ static void compare_random_bundles(struct meter *m)
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
 
-    /* a pupil part has its own box, and is not a ghost of the table */
+    /* The comparison does not support pupil parts, which have boxes of their
+     * own and are not ghosts of the table. */
     assert_int_equal(model.header->n_parts, 0);
     for (int k = 0; k < BUNDLES; k++) {
         const int ghost = rng_int_below(&seed, (int)model.header->n_ghosts);

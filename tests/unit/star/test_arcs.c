@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the diffraction pattern of a stop with round blades: for roundness 0
- * and 1 it equals that of the polygon and of the circle; far out it
- * approximates the exact pattern without its fringes; it has as many fans of
- * light as straight blades have spikes; it rotates with the blades; a soft
+ * Tests the diffraction pattern of a stop with round blades. For roundness 0
+ * and 1 it must equal that of the polygon and of the circle. Far out it must
+ * approximate the exact pattern without its fringes. It must have as many fans
+ * of light as straight blades have spikes, and rotate with the blades. A soft
  * edge limits it, and the extent of the lamp blurs it.
  */
 #include "engine/star/psf.h"
@@ -16,8 +16,9 @@
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
-/* Returns the mean of |F|^2 / A^2 times q^3 / AT^3 for frequencies q of 0.8 to
- * 1.2 times AT. F: amplitude of the pattern; A: area of the stop. */
+/* Returns the mean of the pattern over the frequencies q of 0.8 to 1.2 times
+ * AT, in the direction PHI: |F|^2 / A^2, times q^3 / AT^3, where F is the
+ * amplitude and A the area of the stop. */
 static double
 mean_scaled_pattern(double (*f)(const struct glint_arcs *, double, double),
                     const struct glint_arcs *arcs, double at, double phi)
@@ -90,8 +91,9 @@ TEST(switching_methods_causes_no_step)
         }
 }
 
-/* Checks the light on a circle around the lamp: its sum over fans and the gaps
- * between them exactly, single directions roughly. */
+/* Checks the approximation of the distant pattern on a circle around the lamp.
+ * The sum over the circle, with all fans and gaps, must be right within 5 %,
+ * each direction within a factor of three. */
 TEST(distant_pattern_sums_over_a_circle)
 {
     enum { PHIS = 48 };
@@ -116,8 +118,8 @@ TEST(distant_pattern_sums_over_a_circle)
     }
 }
 
-/* Returns the number of positions on a circle of R pixels that are brighter
- * than both of their neighbours and brighter than the mean. */
+/* Returns the number of peaks on a circle of R pixels. A peak is brighter than
+ * both of its neighbours and than the mean of the circle. */
 static int count_peaks_on_circle(const struct glint_psf *p, double r)
 {
     enum { N = 720 };
@@ -154,7 +156,7 @@ TEST(fans_rotate_with_the_blades)
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
 
-            /* here y points down */
+            /* In images, y points down. */
             glint_psf_compute_light(&one, 40 * cos(phi), 40 * sin(phi), a);
             glint_psf_compute_light(&turned, 40 * cos(phi - turn),
                                     40 * sin(phi - turn), b);
@@ -200,8 +202,9 @@ static struct glint_star_tables *make_star_tables(int n_blades, double round,
     return t;
 }
 
-/* Returns the full width at half maximum, pixels, of the upward spike of a lamp
- * of RADIUS pixels, at a distance of 100 pixels from the lamp. */
+/* Returns the full width at half maximum, pixels, of a spike. The spike points
+ * upwards from a lamp of RADIUS pixels, and is measured 100 pixels from the
+ * lamp. */
 static int measure_spike_width_px(double round, double soft, double radius)
 {
     enum { SIDE = 255, ROW = 27 };

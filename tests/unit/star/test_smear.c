@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests starbursts of a stop with dust or a mask: comparison with direct
- * summation over the stop, total light, and bit-identical images for any tiles
- * and workers. A white mask must equal no mask; a black mask must give no
- * light.
+ * Tests starbursts of a stop with dust or a mask. They must equal a direct
+ * summation over the stop, have the right total light, and be bit-identical for
+ * any tiles and workers. A white mask must equal no mask; a black mask must
+ * give no light.
  */
 #include <math.h>
 #include <stdio.h>
@@ -211,7 +211,8 @@ TEST(total_light_does_not_depend_on_size)
         for (int i = 1; i < 3 * SIDE * SIDE; i += 3)
             sum += linear[i] * 0x1p-30;
         assert_ok(glint_psf_init(&psf, 8, 10, airy_px));
-        /* light outside a circle that has the area of the image */
+        /* The circle outside which light counts here has the area of the
+         * image. */
         beyond = s.smear.clear *
                      glint_psf_compute_light_beyond(&psf, 0.564 * SIDE, 1) +
                  glint_smear_compute_light_beyond(&s.smear, &psf, airy_px,

@@ -49,8 +49,8 @@ static void draw_lights_linear(const struct glint_star_tables *t,
 static int32_t linear_q20[N];
 static uint8_t codes[N];
 
-/* Returns the sum of channel C over all pixels, divided by the light's power of
- * 2^10. */
+/* Returns the sum of channel C over all pixels, divided by 2^10, the power of
+ * the light. */
 static double sum_channel_of_pixels(const int32_t *q20, int c)
 {
     double sum = 0;
@@ -122,8 +122,8 @@ TEST(first_dark_ring_of_a_circle)
     assert_true(fabs(dark / 1.21967 - 1) < 1e-3);
 }
 
-/* Checks that in an image, which sums all wavelengths, the dark ring, measured
- * in green, is that of 550 nm. */
+/* Checks the dark ring in an image, which sums all wavelengths: measured in
+ * green, it must be that of 550 nm. */
 TEST(drawn_dark_ring_is_that_of_550_nm)
 {
     struct glint_star_tables *t = star_canvas_make_tables(0, 0, 5);
@@ -247,8 +247,8 @@ static void sum_picture_directly(int n_blades, double rotation_deg,
 }
 
 /* Checks that images of three stops at three powers have a PSNR of at least 50
- * dB. In so small an image all pixels are near the light; in 1080p the same
- * errors would give 24 dB more. */
+ * dB. In these small images all pixels are near the light. In 1080p, the same
+ * errors would give a PSNR 24 dB higher. */
 TEST(images_match_direct_summation)
 {
     static const struct {
@@ -291,9 +291,9 @@ TEST(images_match_direct_summation)
     free(direct);
 }
 
-/* Returns the total light along a line across the spike, 30 px right of the
- * lamp. Sets *WIDTH to the number of pixels on that line that are at least half
- * as bright as its middle. */
+/* Measures a line across the spike, 30 px right of the lamp. Returns the total
+ * light of the line. Sets *WIDTH to the number of its pixels that are at least
+ * half as bright as its middle. */
 static double measure_spike_profile(double *width)
 {
     double sum = 0;
@@ -385,9 +385,9 @@ static int count_lit_pixels(void)
     return n;
 }
 
-/* Checks the predicted number of pixels of a star: 0.75 to 1.2 times the number
- * of lit pixels for a round stop; 1 to 2 times for six blades, as pixels of
- * spikes are counted twice. */
+/* Checks the predicted number of pixels of a star. For a round stop, it must be
+ * 0.75 to 1.2 times the number of lit pixels. For six blades, it may be 1 to 2
+ * times, as pixels of spikes are counted twice. */
 TEST(predicts_the_number_of_pixels)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};

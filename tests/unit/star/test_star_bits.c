@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the starburst in integers: bit-identical images for any tiles,
- * workers, order of jobs and machine, and clamping of extreme values. Tables
- * are random and made in integers, so that they do not depend on libm.
+ * Tests starbursts in integers. Images must be bit-identical for any tiles,
+ * workers, order of jobs and machine, and extreme values must be clamped.
+ * Tables are random and made with integers, so that they do not depend on
+ * libm.
  */
 #include <stdbool.h>
 #include <stdint.h>
@@ -23,7 +24,7 @@ static struct star_any any;
 
 static const struct glint_real all = {0, 0};
 
-/* FAINTEST: light that changes a code near black by 1/8, which is 1 / 26357 */
+/* FAINTEST: light of 1 / 26357, which changes a code near black by 1/8 */
 static const struct glint_real eighth = {0x4f8f7a00, -45};
 
 /* ------------------------------------------------------------------ bits */

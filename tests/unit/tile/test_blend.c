@@ -137,7 +137,6 @@ static double compute_expected_light(const struct stripes *s, int n_passes,
     return light;
 }
 
-/* Returns an image of uniform grey. */
 static struct glint_image make_grey_image(enum glint_pixel_format format)
 {
     struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
@@ -228,14 +227,15 @@ TEST(blends_linear_light)
                                        k / 3 / WIDTH, k % 3) *
                 0x1p20;
 
-            /* 1 is 65535, not 65536, in light_q16 */
+            /* In light_q16, the light 1 is 65535, not 65536, so there is a
+             * small error. */
             assert_true(fabs(light_q20[k] - want) < 20);
         }
     }
 }
 
-/* Checks that a completely covered pixel retains no colour of the background,
- * and that a shared chroma sample is the mean of its pixels. */
+/* Checks that nothing of the background's colour remains in a completely
+ * covered pixel. A chroma sample shared by pixels must be their mean. */
 TEST(covered_pixels_keep_no_colour)
 {
     struct stripes s =

@@ -101,8 +101,8 @@ static enum glint_given set_coverage_of_rows(void *state,
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the triangle as a light source of the flare: its colour, and a power
- * of an eighth of its area in pixels. */
+/* Returns the triangle as a light source of the flare. It has the colour of the
+ * triangle, and a power of an eighth of the triangle's area in pixels. */
 static struct glint_light make_light_of_triangle(const struct triangle *t)
 {
     const int(*p)[2] = t->corner;
@@ -148,7 +148,8 @@ static void draw_triangle_pass(struct glint_frame *f, struct glint_flare *flare)
                                     set_current_tile, set_coverage_of_rows};
     const struct glint_flare_under under = {&pass, 1, &glint_blend, rows};
 
-    /* filled rows reveal samples that are left unset */
+    /* Rows that are filled beforehand reveal samples that the pass does not
+     * set. */
     memset(rows, 0xa5, sizeof rows);
     f->triangle.half = f->half;
     f->triangle.linear = f->image.format == GLINT_LINEAR_Q20;
@@ -206,7 +207,7 @@ static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
     free(m.data);
 }
 
-/* image in linear light, Q20, or in codes */
+/* two images, in linear light (Q20) or in codes at the same addresses */
 static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4];
 static uint8_t *const one = (uint8_t *)one_q20, *const other =
                                                     (uint8_t *)other_q20;
@@ -258,9 +259,8 @@ TEST(inactive_pass_changes_nothing)
     }
 }
 
-/* Checks, on any background, that completely covered pixels have the
- * triangle's colour and uncovered pixels are unchanged before the flare is
- * added to both. */
+/* Checks that before the flare is added, completely covered pixels have the
+ * triangle's colour, on any background, and uncovered pixels are unchanged. */
 TEST(covered_pixels_have_the_passs_colour)
 {
     struct glint_frame f = first;

@@ -27,8 +27,8 @@ static const struct option options[] = {
     {"config", required_argument, NULL, 'C'},
     TOOL_COMMON_OPTIONS};
 
-/* A command that logs its options, and rejects some values of the option grid
- * with its own message. */
+/* A command that logs the options that it gets. It rejects some values of the
+ * option grid with a message of its own. */
 struct command {
     struct tool tool;
     /* "name=value;" for each option, in the order in which they were applied */
@@ -250,8 +250,9 @@ TEST(reports_mistakes_with_their_line)
                         "x.ini:1: holds a control character");
 }
 
-/* Checks an error that the command itself reports: its message is preserved and
- * gets the line number; earlier entries are applied, later ones are not. */
+/* Checks an error that the command itself reports. Its message must be
+ * preserved and get the line number. Earlier entries must be applied, later
+ * ones must not. */
 TEST(bad_value_keeps_the_commands_message)
 {
     struct config config = make_empty_config();
@@ -320,8 +321,8 @@ static void write_config_file(const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
-/* Checks that options of the file are applied before those of the command
- * line, which override them. */
+/* Checks that options of the command line override those of the file, which are
+ * applied first. */
 TEST(command_line_overrides_the_file)
 {
     char *line[] = {"live",     "--grid", "32",         "in", "--conf",
@@ -347,8 +348,8 @@ TEST(command_line_overrides_the_file)
     config_free(&config);
 }
 
-/* Checks that the old values remain valid if a file that is read again, as on
- * SIGHUP, has an error. */
+/* Checks a file that is read again, as on SIGHUP: if it has an error, the old
+ * values must remain valid. */
 TEST(failed_reload_keeps_the_old_values)
 {
     struct config first = make_empty_config(), second;

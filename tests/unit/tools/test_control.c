@@ -180,8 +180,8 @@ TEST(playback_advances_frames)
     struct playback p;
 
     playback_init(&p);
-    /* without a rate, each picture shows the next frame, however long drawing
-     * it takes */
+    /* Without a frame rate, each picture shows the next frame, whatever time
+     * drawing takes. */
     for (int i = 0; i < 5; i++)
         assert_int_equal(playback_next_frame(&p, 7), i);
     assert_int_equal(execute_line_and_play_next_frame(&p, "pause", 1), 4);
@@ -276,7 +276,7 @@ TEST(pipe_lines_are_applied_when_complete)
     assert_null(controls_next_line(&input, 4));
     expect_next_command(5, CONTROL_PLAY);
     expect_next_command(5, CONTROL_STOP);
-    for (int i = 0; i < 700; i++) /* a line that is too long */
+    for (int i = 0; i < 700; i++) /* The line becomes too long. */
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\nstep\n", 6), 6);
     expect_next_command(6, CONTROL_STEP);
@@ -286,8 +286,8 @@ TEST(pipe_lines_are_applied_when_complete)
     unlink(scratch_file);
 }
 
-/* Reads keys from the terminal PATH in a new session. Then the process ends, or
- * waits to be killed if IS_KILLED is set. */
+/* Reads keys from the terminal PATH in a new session. The process then ends by
+ * itself or, if IS_KILLED is set, waits until it is killed. */
 static void read_terminal_keys(const char *path, int is_killed)
 {
     struct keyboard keys;

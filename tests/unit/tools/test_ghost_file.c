@@ -10,8 +10,8 @@
 #include "model/ghost_file.h"
 #include "support/test.h"
 
-/* Makes a setup with four table entries: three ghosts, and as entry 3 a second
- * pupil part of ghost 1. */
+/* Makes a setup with four table entries. The first three are ghosts; entry 3 is
+ * a second pupil part of ghost 1. */
 static struct glint_setup *make_setup_of_three_ghosts(void)
 {
     static const int pair[4][2] = {{3, 1}, {12, 2}, {12, 5}, {12, 2}};

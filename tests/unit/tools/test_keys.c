@@ -35,7 +35,8 @@ TEST(interpolates_values_between_keys)
     assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 15, 7) == 2);
     assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 20, 7) == 3);
     assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 1000000, 7) == 3);
-    /* an empty field is not a key: interpolates from frame 10 to 30 */
+    /* An empty field is no key, so the value at frame 20 is interpolated from
+     * frames 10 and 30. */
     assert_true(key_frames_interpolate_at(&k, KEYS_EXPOSURE, 20, 7) == 3);
     assert_true(key_frames_interpolate_at(&k, KEYS_X, 15, 7) == 50);
     assert_true(key_frames_interpolate_at(&k, KEYS_Y, 20, 7) == 25);
@@ -43,8 +44,8 @@ TEST(interpolates_values_between_keys)
     assert_false(key_frames_have_column(&k, KEYS_GAIN));
 }
 
-/* Checks that the two key frames around the requested frame are used, out of
- * many. */
+/* Checks a file of many key frames: the two key frames around the requested
+ * frame must be used. */
 TEST(uses_the_right_two_of_many_keys)
 {
     static char text[40000] = "frame,gain\n";

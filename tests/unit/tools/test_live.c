@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests glint live from its command line to its exit code with a fake camera:
- * resources, allocations per frame, signals and unplugged cameras.
+ * Runs glint live with a fake camera, from its command line to its exit code.
+ * Tests that it leaks no resource, allocates nothing per frame, and handles
+ * signals and unplugged cameras.
  */
 #include <stdint.h>
 
@@ -24,11 +25,11 @@ static char said_path[] = "/tmp/glint-test-said-XXXXXX";
 static char shot_dir[] = "/tmp/glint-test-shot-XXXXXX";
 
 static int n_waits, n_unwaited;
-/* called at each wait of the program, with the number of the wait */
+/* function that each wait of the program calls with the number of the wait */
 static void (*script)(int wait);
 
-/* Replaces the wait of the program: each wait delivers a frame, which the
- * script may remove. */
+/* This function replaces the program's wait for the camera. Each call delivers
+ * a frame, which the script may remove. */
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
                  const sigset_t *mask);
 int __wrap_ppoll(struct pollfd *p, nfds_t n, const struct timespec *timeout,
@@ -70,8 +71,8 @@ static void write_live_config(const char *text)
 }
 
 /* Runs `glint live -d FAKE -o null -q LINE` with standard error in a file.
- * Returns its exit code. Unless LINE sets the option stop, the stop is a
- * circle, as computing the starburst of rounded blades at each start and reload
+ * Returns the exit code. The stop is a circle unless LINE contains the option
+ * stop: computing the starburst of rounded blades at each start and reload
  * would take 100 times as long as the rest of the test. */
 static int run_live_command(const char *line)
 {
@@ -112,7 +113,7 @@ static int count_stderr_messages(const char *text)
     return n;
 }
 
-static void expect_camera_closed_without_leaks(void)
+static void expect_closed_without_leaks(void)
 {
     fail_after_many_dequeues();
     assert_int_equal(camera.fd, -1);
@@ -142,7 +143,7 @@ TEST(frames_allocate_no_memory)
 {
     script = count_allocations;
     assert_ok(run_live_command("--count 150 --stop polygon:6,round:0.2"));
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_int_equal(n_waits, 150);
     assert_true(asked[2] >= 5);
     /* drawing frames must allocate no memory */
@@ -156,9 +157,9 @@ static void count_allocations_at_stream_start(void)
     asked_at_stream[n_streams++] = fake_camera_count_allocations();
 }
 
-/* Runs LINE; FOLLOW is called at each wait. Checks that streaming was started
- * N_STARTS times, each time after set-up was complete: nothing is allocated
- * between the start and frame WAIT + 1 of the following waits. */
+/* Runs LINE and calls FOLLOW at each wait. Checks that streaming was started
+ * N_STARTS times, and that all memory was allocated before each start: between
+ * start number i and the wait number wait[i], nothing may be allocated. */
 static void check_allocations_before_streaming(const char *line,
                                                void (*follow)(int wait),
                                                const int *wait, int n_starts)
@@ -168,7 +169,7 @@ static void check_allocations_before_streaming(const char *line,
     n_streams = 0;
     script = follow;
     assert_ok(run_live_command(line));
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_int_equal(n_streams, n_starts);
     for (int i = 0; i < n_starts; i++)
         if (asked[wait[i]] != asked_at_stream[i])
@@ -212,7 +213,7 @@ TEST(skips_frames_before_counting)
     script = NULL;
     assert_ok(run_live_command("--count 5 --skip 20"));
     assert_int_equal(n_waits, 25);
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
 }
 
 static void raise_sigterm_at_wait_30(int wait)
@@ -227,7 +228,7 @@ static int last_shot = 149;
 
 static void raise_reload_signals(int wait)
 {
-    /* both snapshots show frames with the same code */
+    /* At both of these waits, the camera delivers frames with the same code. */
     if (wait == 3 || wait == last_shot)
         raise(SIGUSR2);
     if (wait % 10 == 5)
@@ -269,7 +270,7 @@ TEST(reloads_neither_leak_nor_change_the_image)
         snprintf(line, sizeof line, "--count %d --config %s%s", last_shot + 1,
                  config_path, exact ? " --rays exact --grid 8" : "");
         assert_ok(run_live_command(line));
-        expect_camera_closed_without_leaks();
+        expect_closed_without_leaks();
         assert_int_equal(count_stderr_messages("glint live: reloaded"),
                          exact ? 3 : 15);
         assert_int_equal(blocks[last_shot - 1], blocks[exact ? 18 : 28]);
@@ -300,7 +301,7 @@ TEST(invalid_reload_keeps_the_old_settings)
     script = write_invalid_config;
     snprintf(line, sizeof line, "--count 100 --config %s", config_path);
     assert_ok(run_live_command(line));
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_int_equal(
         count_stderr_messages(
             "not reloaded: the previous configuration stays in use"),
@@ -347,7 +348,7 @@ TEST(flare_layer_without_light_is_black)
                  "%s/%%02d.ppm",
                  i % 2 ? "full" : "limited", shot_dir);
         assert_ok(run_live_command(line));
-        expect_camera_closed_without_leaks();
+        expect_closed_without_leaks();
         rgb = read_snapshot_file(1) + strlen("P6\n64 48\n255\n");
         for (int k = 0; k < 3 * 64 * 48; k++)
             if (rgb[k] != 0)
@@ -369,7 +370,7 @@ TEST(snapshot_waits_for_the_next_frame)
     fake_camera_reset();
     script = request_snapshot_without_frames;
     assert_ok(run_live_command(line));
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_int_equal(count_stderr_messages(said), 1);
     assert_int_equal(unlink(path), 0);
 }
@@ -380,7 +381,7 @@ TEST(unplugged_camera_ends_the_run)
 {
     script = unplug_camera_during_wait;
     assert_int_equal(run_live_command("--count 100"), EXIT_DEVICE);
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_int_equal(count_stderr_messages("the camera was removed\n"), 1);
     assert_true(n_waits <= 21);
 }
@@ -391,7 +392,7 @@ TEST(reconnects_to_a_camera_that_returns)
         fake_camera_reset();
         script = unplug_camera_during_wait;
         assert_ok(run_live_command("--count 100 --reconnect"));
-        expect_camera_closed_without_leaks();
+        expect_closed_without_leaks();
         assert_int_equal(count_stderr_messages("waiting for the camera"), 1);
         assert_int_equal(count_stderr_messages("(Fake): YUYV 64x48 at 30 fps"),
                          2);
@@ -402,7 +403,7 @@ TEST(adapts_to_changed_camera_sizes)
 {
     script = change_camera_size;
     assert_ok(run_live_command("--count 150"));
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_true(count_stderr_messages("YUYV 128x48") >= 7);
     assert_int_equal(blocks[149], blocks[29]);
 }
@@ -424,7 +425,7 @@ TEST(every_failing_call_is_handled)
         fake_camera_fail_call(n, ENOMEM, false);
         code = run_live_command("--count 6");
         n_calls = fake_camera_fail_call(0, 0, false);
-        expect_camera_closed_without_leaks();
+        expect_closed_without_leaks();
         if (code != EXIT_OK) {
             n_failed++;
             assert_true(count_stderr_messages("glint live: ") >= 1);
@@ -438,7 +439,7 @@ TEST(sigterm_stops_the_run)
 {
     script = raise_sigterm_at_wait_30;
     assert_ok(run_live_command(""));
-    expect_camera_closed_without_leaks();
+    expect_closed_without_leaks();
     assert_int_equal(n_waits, 30);
 }
 

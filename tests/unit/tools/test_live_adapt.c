@@ -73,8 +73,8 @@ TEST(enough_time_keeps_step_0)
     assert_true(seen.last_change_s < 0); /* the step never changed */
 }
 
-/* Checks that half a second of missed frames changes the quality step, and by
- * more than one step if a frame takes more than two periods. */
+/* Checks that half a second of missed frames lowers the quality by one step, or
+ * by several steps if a frame takes more than two frame periods. */
 TEST(misses_reduce_the_quality)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};
@@ -84,7 +84,9 @@ TEST(misses_reduce_the_quality)
     assert_true(seen.first_down_s > 0.2 && seen.first_down_s < 0.5);
     assert_true(seen.last_change_s < 1.5);
     simulate_machine_for_seconds(
-        cost, 600); /* the step does not change, as there is no spare time */
+        /* The step must not change, as there is no spare time for a finer
+         * step. */
+        cost, 600);
     assert_int_equal(adapt.step, 3);
     assert_int_equal(seen.n_down, 0);
     assert_int_equal(seen.n_missed, 0);

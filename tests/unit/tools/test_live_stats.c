@@ -84,8 +84,8 @@ TEST(extreme_latencies)
     assert_true(live_stats_latency_ms(&stats.second, 100) == 3e9);
 }
 
-/* Checks that when one bin is full the counts of all bins are halved, which
- * preserves percentiles and rare latencies. */
+/* Checks that when the counter of one bin is full, the counts of all bins are
+ * halved. Percentiles and rare latencies must be preserved. */
 TEST(full_bin_halves_all_bins)
 {
     live_stats_start(&stats, 0);

@@ -32,8 +32,8 @@ static struct occlusion make_half_black_mask(int column)
     return o;
 }
 
-/* Returns the fraction of the light of a lamp of power 8 and RADIUS pixels at
- * (X, Y) that the mask O does not occlude. */
+/* Returns the fraction of a lamp's light that the mask O does not occlude. The
+ * lamp has power 8 and a radius of RADIUS pixels, and is at (X, Y). */
 static double measure_unoccluded_fraction(struct occlusion *o, double x,
                                           double y, double radius)
 {
@@ -59,8 +59,8 @@ TEST(mask_occludes_a_fraction_of_a_lamp)
     assert_true(measure_unoccluded_fraction(&o, 60, 100, 20) == 0);
     assert_true(fabs(measure_unoccluded_fraction(&o, 128, 100, 20) - 0.5) <
                 0.03);
-    /* area of the segment of a disc beyond half its radius, as a fraction of
-     * the disc */
+    /* area of the segment of a disc that is more than half a radius from the
+     * centre, as a fraction of the disc */
     assert_true(fabs(measure_unoccluded_fraction(&o, 118, 100, 20) - 0.1955) <
                 0.04);
     assert_true(fabs(measure_unoccluded_fraction(&o, 128, 100, 0) - 0.5) <

@@ -144,7 +144,8 @@ TEST(rejects_wrong_lines)
                      GLINT_E_IO);
 }
 
-/* Checks that lines from a pipe are returned as they arrive, once complete. */
+/* Checks that poses from a pipe are returned as soon as their lines are
+ * complete. */
 TEST(pipe_returns_complete_lines)
 {
     static const char parts[4][64] = {"0,ba",
@@ -173,13 +174,13 @@ TEST(pipe_returns_complete_lines)
     expect_next_pose(5, 1, 32);
     assert_int_equal(poses.n_bad, 2);
     assert_non_null(strstr(poses.bad.text, ":2: "));
-    /* writes a line that is too long, then a valid line */
+    /* The first line is too long, the second one is valid. */
     for (int i = 0; i < 700; i++)
         assert_int_equal(write(to, "7", 1), 1);
     assert_int_equal(write(to, "\n*,ball,9,0,0\n", 14), 14);
     expect_next_pose(6, 0, 144);
     assert_int_equal(poses.n_bad, 3);
-    /* a pipe after its writer closed it, and with a new writer */
+    /* The writer closes the pipe; then a new writer opens it. */
     close(to);
     assert_null(poses_next_pose(&poses, 7));
     to = open(scratch_file, O_WRONLY);

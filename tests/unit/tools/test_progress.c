@@ -73,13 +73,13 @@ TEST(line_every_ten_seconds)
     assert_string_equal(print_progress_at(&p, 10, 0.25),
                         "bake: 25 % in 10 s, about 30 s left\n");
     assert_string_equal(print_progress_at(&p, 19.9, 0.4), "");
-    /* if the estimated fraction decreases, the displayed progress does not */
+    /* The reported fraction decreases, but the displayed progress does not. */
     assert_string_equal(print_progress_at(&p, 20, 0.2),
                         "bake: 40 % in 20 s, about 80 s left\n");
 }
 
-/* Checks that the progress of a second part of the work continues where the
- * first part ended. */
+/* Checks work that consists of two parts: the progress of the second part
+ * continues where the first part ended. */
 TEST(second_part_continues_the_first)
 {
     struct tool_progress p = start_fake_progress(false, false);
@@ -110,8 +110,8 @@ TEST(long_work_prints_an_estimate_once)
                         "with a larger --tolerance\n");
 }
 
-/* Checks that a clock that starts at the first report does not include the time
- * before it, and that the estimate is printed for short work on request. */
+/* Checks a clock that starts at the first report: it does not include the time
+ * before. On request, the estimate must be printed for short work, too. */
 TEST(clock_of_first_report)
 {
     struct tool_progress p = start_fake_progress(false, false);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests how the quality of a scene adapts while it is drawn, to reach a frame
- * rate in glint live, and to stay within a budget. Frame times come from
- * tables, and the clock is fake.
+ * Tests how the quality of a scene adapts to a frame rate in glint live, and to
+ * a budget of time per frame. Frame times come from tables, and the clock is
+ * fake.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,8 +15,8 @@
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Checks that each level states the --quality that has its quality
- * parameters. */
+/* Checks that each level reports the value of --quality from which it was made,
+ * and that each such value gives its level. */
 TEST(levels_have_their_quality)
 {
     static const double quality[SCENE_BUDGET_LEVELS] = {1, .5, .375, .125, 0};
@@ -37,7 +37,7 @@ TEST(levels_have_their_quality)
     }
 }
 
-/* Checks that the steps of glint live go through the levels, down to the
+/* Checks that glint live, step by step, uses all levels from the first to the
  * last. */
 TEST(live_steps_follow_the_levels)
 {
@@ -64,8 +64,8 @@ static void simulate_scene_frame(struct over_scene *over, uint8_t *pixels)
     assert_ok(over_scene_draw(over, &image, 0));
 }
 
-/* Checks that a scene drawn at a coarser level and then at a finer level gives
- * the image of a new scene at the latter. */
+/* Draws a scene at a coarse level and then at a finer one. Checks that the
+ * second image equals that of a new scene at the finer level. */
 TEST(changed_level_equals_a_new_scene)
 {
     static const struct tool tool = {.name = "test", .quiet = true};
@@ -104,8 +104,8 @@ static struct scene_budget make_scene_budget(void)
     return budget;
 }
 
-/* Draws N frames, each of which takes SLOWER times as long as in the table,
- * with a limit of LIMIT_MS. Returns the number of frames above the limit. */
+/* Draws N frames with a time limit of LIMIT_MS; each frame takes SLOWER times
+ * as long as in the table. Returns the number of frames above the limit. */
 static int count_late_frames(struct scene_budget *b, int n, double slower,
                              double limit_ms)
 {
@@ -139,7 +139,7 @@ TEST(finest_fitting_level_is_reached)
     count_late_frames(&b, 200, 1, 30);
     assert_int_equal(b.level, 2);
     count_late_frames(&b, 200, .5, 30);
-    /* has the same parameters as level 0 */
+    /* The finest level is 1, as it has the same parameters as level 0. */
     assert_int_equal(b.level, 1);
 }
 
@@ -153,7 +153,6 @@ TEST(slow_level_is_rarely_tried)
     assert_true(count_late_frames(&b, 1000, 1, 22) <= 14);
 }
 
-/* Checks that a single slow frame does not change the level. */
 TEST(single_slow_frame_changes_nothing)
 {
     struct scene_budget b = make_scene_budget();
@@ -192,14 +191,14 @@ static void check_budget_shared_with_flare(double least_ms, double most_ms,
 
 TEST(budget_is_shared_with_the_flare)
 {
-    check_budget_shared_with_flare(1, 2,
-                                   0); /* the flare needs almost no time */
-    check_budget_shared_with_flare(10, 200,
-                                   2); /* the flare could use all the time */
-    check_budget_shared_with_flare(30, 200,
-                                   2); /* the flare leaves half of the time */
-    check_budget_shared_with_flare(50, 200,
-                                   4); /* the flare leaves almost no time */
+    /* The flare needs almost no time. */
+    check_budget_shared_with_flare(1, 2, 0);
+    /* The flare could use all the time. */
+    check_budget_shared_with_flare(10, 200, 2);
+    /* The flare needs at least half of the time. */
+    check_budget_shared_with_flare(30, 200, 2);
+    /* The flare needs at least 50 of 60 ms. */
+    check_budget_shared_with_flare(50, 200, 4);
     assert_true(scene_budget_limit_flare(60, 59, 0) == 6);
 }
 
@@ -213,8 +212,8 @@ double __wrap_tool_clock_s(void)
     return now_s;
 }
 
-/* Checks that images of a scene with a budget equal those of the quality that
- * the budget has selected. */
+/* Checks that images of a scene with a budget equal images drawn with the
+ * quality that the budget has selected. */
 TEST(images_equal_those_of_the_quality)
 {
     static const struct tool tool = {.name = "test", .quiet = true};

@@ -37,10 +37,10 @@ TEST(pareto_front_matches_hand_computation)
     assert_int_equal(sweep_find_front(cost, quality, 0, front), 0);
 }
 
-/* Checks the height of a setting, dB, above the line through the quality
- * levels, for settings that lie on the line between two levels; above it; at an
- * equal level's quality but a higher cost; below the cost of all levels; and
- * between levels of which one draws at half resolution. */
+/* Checks how many dB a setting is above the line through the quality levels.
+ * The settings lie on the line between two levels, above it, at the quality of
+ * a level but a higher cost, below the cost of all levels, and between a level
+ * at half resolution and one at full resolution. */
 TEST(measures_db_above_the_quality_levels)
 {
     struct sweep_setting level = {.kind = SWEEP_QUALITY}, halves = level;
@@ -66,9 +66,9 @@ TEST(measures_db_above_the_quality_levels)
     assert_true(fabs(sweep_compute_gain_above_front(mean, n, 8) + 2) < 1e-9);
 }
 
-/* Checks that no setting dominates a setting on the front, and that each
- * setting off the front is dominated by one on it. Values are taken from a few
- * numbers, so that many are equal. */
+/* Checks the Pareto front of many settings. No setting may dominate a setting
+ * on the front, and each setting off the front must be dominated by one on it.
+ * Values are taken from a few numbers, so that many are equal. */
 TEST(pareto_front_of_many_settings)
 {
     enum { N = 60 };
@@ -100,7 +100,7 @@ TEST(pareto_front_of_many_settings)
     }
 }
 
-/* Checks the checksums of the smallest possible PNG file against those of
+/* Checks the checksums of the smallest possible PNG file against checksums by
  * zlib. */
 TEST(smallest_png_matches_zlib)
 {
@@ -205,7 +205,8 @@ TEST(better_levels_are_never_coarser)
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
         if (is_at_half_resolution(&settings) ==
-            /* except where the resolution changes from half to full */
+            /* Where the resolution changes from half to full, levels cannot be
+             * compared. */
             is_at_half_resolution(&last)) {
             assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the random parameters of synthetic data sets: the line of an item
- * restores all its numbers, numbers are in their ranges, and none depends on
- * another.
+ * Tests the random parameters of synthetic data sets. The line of an item must
+ * restore all its numbers, and numbers must be in their ranges and independent
+ * of one another.
  */
 #include <math.h>
 #include <stdint.h>
@@ -84,7 +84,7 @@ TEST(random_numbers_stay_in_range)
                 high[k] = fmax(high[k], read_json_field(&item, k));
             }
     }
-    /* 2000 are expected; five standard deviations are 158 */
+    /* The expected number is 2000; five standard deviations are 158. */
     assert_in_range(zeros, 1850, 2150);
     for (int k = 0; k < SYNTH_FIELDS; k++) {
         const double span = synth_field[k].high - synth_field[k].low;

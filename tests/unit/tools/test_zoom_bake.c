@@ -56,8 +56,8 @@ static void bake_zoom_positions(const struct glint_bake_options *options,
     free(baked.data);
 }
 
-/* Returns the model key of the zoom position ALONG (0 .. 1) whose neighbour is
- * at BESIDE; BESIDE < 0: no neighbour. */
+/* Returns the model key of the zoom position ALONG, 0 .. 1. Its neighbouring
+ * position is BESIDE; BESIDE < 0: it has none. */
 static uint64_t
 compute_key_of_position(const struct glint_bake_options *options, double along,
                         double beside)
@@ -72,8 +72,9 @@ compute_key_of_position(const struct glint_bake_options *options, double along,
     return glint_bake_key(&at, &with);
 }
 
-/* Checks that both ends are baked with the finest step between positions as
- * neighbour: 1/16, as an interval may be halved four times. */
+/* A position is baked together with its neighbour. Checks that the ends of the
+ * zoom have a neighbour at the finest step between positions: 1/16, as an
+ * interval may be halved four times. */
 TEST(ends_are_baked_with_a_finest_step)
 {
     struct glint_bake_options options;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the error of a zoom lens of two elements that was baked at both ends:
- * the lights are at the reported angles, and the error is small at the ends
- * and larger half-way.
+ * Tests the measured error of a zoom lens of two elements that was baked at
+ * both ends. Lights must be at the reported angles. The error must be small at
+ * the ends and larger half-way.
  */
 #include <math.h>
 #include <stdint.h>
@@ -69,9 +69,9 @@ TEST_CLOSE
     free(file);
 }
 
-/* Measures the errors of ghosts whose first error is below 0, by lights up to
- * MAX_DEG that are shifted by SHIFT of their spacing. ALONG: zoom position;
- * LENS: lens table at that position. */
+/* Measures the errors of those ghosts whose first error is below 0, at the zoom
+ * position ALONG with the lens table LENS. Lights are at angles up to MAX_DEG,
+ * shifted by the fraction SHIFT of their spacing. */
 static void measure_errors_up_to_angle(double max_deg,
                                        const struct glint_prescription *lens,
                                        double along, double shift,
@@ -95,8 +95,8 @@ static void measure_ghost_errors(const struct glint_prescription *lens,
 
 enum { EACH = 4 }; /* one in EACH angles is always measured */
 
-/* Marks the errors of ghost 0 as to be measured (-1), and those of the other
- * ghost as done (2). */
+/* Marks the errors of ghost 0 as not yet measured (-1), and the errors of the
+ * other ghost as measured (2). */
 static void mark_errors_to_measure(struct zoom_error error[GHOSTS])
 {
     for (int g = 0; g < GHOSTS; g++)
@@ -142,7 +142,7 @@ TEST(lights_of_adjacent_intervals_meet)
 }
 
 /* Checks that additional angles are measured around the angle at which a ghost
- * vanishes. In this test, the model's ghost vanishes there, too. */
+ * vanishes. In this test, the ghost vanishes at the same angle in the model. */
 TEST(angles_where_ghosts_vanish_are_measured)
 {
     struct zoom_error halves[GHOSTS], there[GHOSTS];
@@ -165,9 +165,9 @@ TEST(angles_where_ghosts_vanish_are_measured)
     assert_int_equal(ends, 1);
 }
 
-/* Checks that lights go up to 1.5 times the half diagonal of the image. This
- * test's model was baked for smaller angles, so that at the last angles whole
- * ghosts count as errors. */
+/* Checks that lights are measured up to 1.5 times the half diagonal of the
+ * image. The model of this test was baked for smaller angles. So at the last
+ * angles, the error of a ghost is the complete ghost. */
 TEST(lights_reach_beyond_the_corner)
 {
     const double corner_mm = 0.5 * hypot(24, 16);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests dirt on the front element: its light is the haze times the fraction of
- * a pixel's rays that pass through dirt, summed over the stop; images are
- * bit-identical for any tiles and workers; a clean front adds no light.
+ * Tests dirt on the front element. Its light must be the haze times the
+ * fraction of a pixel's rays that pass through dirt, summed over the stop.
+ * Images must be bit-identical for any tiles and workers, and a clean front
+ * must add no light.
  */
 #include <math.h>
 #include <stdint.h>
@@ -75,9 +76,10 @@ TEST(table_has_the_dust_fractions)
     glint_front_free(dirt);
 }
 
-/* Checks that a mask over the left half of the front (seen from the sensor, x
- * right) covers the right half of the image, whose light passes the left half
- * of the front, and that up in the mask is up on the front. */
+/* Checks how the lens mirrors a mask over the left half of the front (seen from
+ * the sensor, x right). It must cover the right half of the image, whose light
+ * passes the left half of the front. The upper side of the mask must be the
+ * upper side of the front. */
 TEST(mask_is_mirrored_by_the_lens)
 {
     static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
@@ -213,9 +215,9 @@ TEST(linear_light_is_interpolated_between_nodes)
     close_haze_scene(&s);
 }
 
-/* Checks images in codes: tiles, workers and order do not change any bit, for
- * dim light and for light above white; more light makes no pixel darker; and
- * every machine draws the same image. */
+/* Checks images in codes. Tiles, workers and order must not change any bit, for
+ * dim light and for light above white. More light must make no pixel darker,
+ * and every machine must draw the same image. */
 TEST(codes_are_bit_identical)
 {
     const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests veiling glare: amount and distribution of its light, the veiling glare
- * index by ISO 9358, bit-identical images for any workers, tiles and order of
- * jobs, and continuity while a lamp moves.
+ * Tests veiling glare: the amount and distribution of its light, and the
+ * veiling glare index by ISO 9358. Images must be bit-identical for any
+ * workers, tiles and order of jobs, and change continuously while a lamp
+ * moves.
  */
 #include <math.h>
 #include <stdint.h>
@@ -145,8 +146,8 @@ TEST(veil_has_its_fraction_of_the_light)
             clear_veil_light(&c);
             add_lamp_to_veil(&c, x * c.width, y * c.height, 500);
             glint_veil_spread_light(c.veil, &s, 1);
-            /* the interpolation weights are not exact at the middle of three
-             * columns */
+            /* At the middle of three columns, the interpolation weights are not
+             * exact. */
             assert_true(fabs(draw_veil_linear(&c, 0) / 15 - 1) < 1e-3);
             assert_true(fabs(draw_veil_linear(&c, 1) / 7.5 - 1) < 1e-3);
             assert_true(draw_veil_linear(&c, 2) == 0);
@@ -172,8 +173,8 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     draw_veil_linear(&c, 0);
     for (int y = 30; y < 90; y++)
         for (int x = 40; x < 120; x++) {
-            /* a quadratic spline adds a quarter of a squared cell, twice; cells
-             * are 4 pixels wide */
+            /* Two interpolations by quadratic splines each add the variance of
+             * 1/4 cell^2. Cells are 4 pixels wide. */
             const double v = sigma * sigma + 0.5 * 16;
             const double r2 = pow(x + 0.5 - 81.3, 2) + pow(y + 0.5 - 60.2, 2);
             const double want =
@@ -187,10 +188,10 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     close_veil_canvas(&c);
 }
 
-/* Checks, in each format, that the veil of uniform white is uniform, and that
- * the veil in a black spot has the light V of the white around it, the veiling
- * glare index of ISO 9358. The spread has the fraction V / (1 - V) of the
- * light. */
+/* Checks, in each format, that the veil of uniform white is uniform. The veil
+ * in a black spot must have the fraction V of the light of the white around it;
+ * V is the veiling glare index of ISO 9358. For this, the spread function has
+ * the fraction V / (1 - V) of the light. */
 TEST(black_spot_has_the_veiling_glare_index)
 {
     static uint8_t codes[4 * MAX_WIDTH * MAX_HEIGHT];
@@ -384,8 +385,9 @@ TEST(veil_is_bit_identical)
 
 /* ----------------------------------------------------------------- extremes */
 
-/* Checks lamps of any power at the borders and outside the image: more power
- * makes no pixel darker, and lamps beyond the limit are skipped. */
+/* Checks lamps of any power at the borders of the image and outside it. More
+ * power must make no pixel darker, and lamps that are too far outside must be
+ * skipped. */
 TEST(extreme_lamps_give_valid_veils)
 {
     static const double place[][2] = {{0, 0},     {160, 90}, {80.5, 45},

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests a ghost baked together with the same ghost at a nearby zoom position:
- * its ranges of angles and pupil boxes contain the light that is visible at
- * either position, and its model contains the barrels that clip at either
- * position.
+ * Tests a ghost that is baked together with the same ghost at a nearby zoom
+ * position. Its ranges of angles and pupil boxes must contain the light that is
+ * visible at either position. Its model must contain the barrels that clip at
+ * either position.
  */
 #include <math.h>
 #include <stdint.h>
@@ -23,8 +23,8 @@ enum {
     UNCUT = 2 /* index of a ghost that no barrel clips */
 };
 
-/* The second group moves by 12 mm with its barrels; the first column is the end
- * position. */
+/* A zoom lens whose second group moves by 12 mm together with its barrels. The
+ * first column is the position at the end of the zoom. */
 static const char table[] = "name t\n"
                             "f-number 8\n"
                             "film 24 16\n"
@@ -78,9 +78,8 @@ static bool is_in_a_range(double (*range)[2], int n, double lo, double hi)
     return false;
 }
 
-/* Checks that every range of angles of either position lies inside a common
- * range, and that common ranges begin and end where a range of either position
- * does. */
+/* Checks that common ranges of angles cover every range of both positions, and
+ * that each common range begins and ends where a range of one position does. */
 TEST(ranges_cover_those_of_both_positions)
 {
     int wider = 0;
@@ -173,8 +172,9 @@ static double compute_ray_margin(const struct glint_zone_rays *rays, int i)
     return fmax(rays->at[RAY_EXCESS][i], rays->at[RAY_FIELD][i]);
 }
 
-/* Checks that rays land where they do at a single position, and that their
- * distance outside the rims is the smaller one of both positions. */
+/* Checks rays that are traced for both positions: they land where they do at a
+ * single position. Their distance outside the rims is the smaller one of both
+ * positions. */
 TEST(rays_land_as_at_a_single_position)
 {
     static struct glint_visible_profile profile;
@@ -305,9 +305,9 @@ TEST(barrel_of_the_other_position_is_chosen)
     assert_int_equal(n[1], 1);
 }
 
-/* Checks a ghost that is visible only at the other position: a model baked with
- * that position has polynomials for it, and its barrels block all light at its
- * own position. */
+/* Checks a ghost that is visible only at the other zoom position. A model baked
+ * together with that position must have polynomials for the ghost. Its barrels
+ * must block all light at its own position. */
 TEST(ghost_visible_at_the_other_position_is_baked)
 {
     const bool ghosts[GHOSTS] = {[CUT] = true};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks lights beyond 60 degrees: for which lenses the special rules for them
- * apply, and barrels that the light of a fisheye grazes.
+ * Checks the special rules for lights beyond 60 degrees: for which lenses they
+ * apply, and how they treat barrels that the light of a fisheye grazes.
  */
 #include <math.h>
 #include <stdint.h>
@@ -115,8 +115,9 @@ static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .brightness = &brightness};
 static struct glint_zone_buffers buffers;
 
-/* Fits the zone of the grazed barrel. STOPPED: one in STOPPED rays is marked as
- * blocked for a reason that the fit cannot represent; 0: none. */
+/* Fits the zone of the grazed barrel, by the rules for lights beyond 60 degrees
+ * if FAR is set. One in STOPPED rays is marked as blocked for a reason that the
+ * fit cannot represent; STOPPED 0: no ray is. */
 static void fit_zone_of_grazed_barrel(bool far, int stopped,
                                       struct glint_fitted_system *system,
                                       struct glint_zone_errors *errors)
@@ -175,10 +176,10 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
     return sqrt(sum / n);
 }
 
-/* Checks that the grazed barrel is fitted with an error below a hundredth of
- * 0.003 of its rim, the range that contains the whole ghost, and that it is
- * fitted less precisely by the rules for lights nearer to the axis, for which
- * such barrels matter little. */
+/* The complete ghost lies within 0.003 of the barrel's rim. Checks that the
+ * rules for lights beyond 60 degrees fit the grazed barrel with an error below
+ * a hundredth of that range. The rules for lights nearer to the axis must fit
+ * it less precisely, as such barrels matter little there. */
 TEST(grazed_barrel_is_fitted_within_its_margin)
 {
     struct glint_fitted_system system;
@@ -191,9 +192,9 @@ TEST(grazed_barrel_is_fitted_within_its_margin)
     }
 }
 
-/* Checks lights far off the axis: rays that pass although barrels should block
- * them count as errors of the outline. A tenth of the visible rays is five
- * times the tolerance. */
+/* Checks the rules for lights beyond 60 degrees: rays that pass although
+ * barrels should block them count as errors of the outline. Here these are a
+ * tenth of the visible rays, which is five times the tolerance. */
 TEST(leaking_rays_count_as_outline_errors)
 {
     struct glint_fitted_system system;
