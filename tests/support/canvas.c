@@ -15,8 +15,8 @@ struct glint_image canvas_allocate_image(enum glint_pixel_format format,
 {
     void *mem = calloc(1, glint_image_bytes(format, width, height));
 
-    /* Programs without cmocka use this function, too, so cmocka cannot report
-     * the failure. */
+    /* A failed allocation aborts the program: programs without cmocka use this
+     * function, too, so cmocka cannot report it. */
     if (!mem)
         abort();
     return glint_image_over(mem, format, width, height);

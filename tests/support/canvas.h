@@ -27,9 +27,9 @@ int canvas_read_grey_pixel(const struct glint_image *image, int x, int y);
 void canvas_fill_grey_box(const struct glint_image *image, int x0, int y0,
                           int x1, int y1, int code);
 
-/* canvas_decode_value() returns the linear light (1 = white) of V, a code
- * divided by 255; canvas_encode_light() is its inverse. Both accept negative
- * values: f(-x) = -f(x). */
+/* canvas_decode_value() returns the linear light (1 = white) of the encoded
+ * value V = code / 255. canvas_encode_light() is its inverse. Both accept
+ * negative values: f(-x) = -f(x). */
 double canvas_decode_value(double v, enum glint_tone tone);
 double canvas_encode_light(double light,
                            enum glint_tone tone); /* clamped to 1 */
@@ -43,7 +43,8 @@ double canvas_decode_srgb(int code);
  * by 16 x 16 samples. */
 double canvas_disc_coverage(int x, int y, double cx, double cy, double radius);
 
-/* Draws an antialiased disc of LIGHT (1 = white) onto a grey image. */
+/* Draws an antialiased disc of RADIUS pixels and linear light LIGHT (1 =
+ * white), centred at (CX, CY), onto a grey image. */
 void canvas_draw_disc(const struct glint_image *image, double cx, double cy,
                       double radius, double light);
 

@@ -26,13 +26,13 @@ int finder_find_at_most_n_lamps(const struct glint_lamp_finder_config *cfg,
 int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
                       const struct glint_image *image);
 
-/* Returns the threshold between the sRGB codes CODE - 1 and CODE: their mean
- * light, stops relative to white, Q8. */
+/* Returns the threshold between the sRGB codes CODE - 1 and CODE, stops
+ * relative to white, Q8. The threshold is the mean of the light of both
+ * codes. */
 int32_t finder_threshold_stops_q8(int code);
 
-/* Returns a configuration without filters: every region counts, whatever its
- * size, and none are merged. LOW and HIGH are the threshold codes, HIGH at
- * most 250. */
+/* Returns a finder configuration that accepts regions of every size and merges
+ * none. LOW and HIGH are the threshold codes, HIGH at most 250. */
 struct glint_lamp_finder_config
 finder_config_without_filters(const struct glint_image *image, int low,
                               int high);

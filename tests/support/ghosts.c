@@ -32,7 +32,7 @@ struct glint_flare_config make_octagonal_stop_config(void)
 
 struct glint_vertex compute_ghost_vertex(const struct ghost *g, int i, int j)
 {
-    /* sensor coordinates -1.25 .. 1.25 stop radii, Q16, in integers only */
+    /* position in the stop, -1.25 .. 1.25 stop radii, Q16, by integers only */
     const int64_t sx = (int64_t)163840 * i / g->n - 81920;
     const int64_t sy = (int64_t)163840 * j / g->n - 81920;
     const int64_t bent = (sx * sx / 65536 + sx * sy / 131072) * g->bend / 1000;
@@ -151,7 +151,8 @@ struct ghost make_random_ghost(void)
         draw_random_number(WIDTH - 60) - 20,
         draw_random_number(HEIGHT),
         size,
-        draw_random_number(1500) - 750, /* bends beyond +-320 fold the ghost */
+        /* ghosts with bends beyond +-320 are folded */
+        draw_random_number(1500) - 750,
         draw_random_number(2) ? 1 : -1,
         draw_random_number(2000) - 1000,
         draw_random_number(4),

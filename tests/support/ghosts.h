@@ -49,7 +49,7 @@ struct glint_flare_stats draw_ghost_list(struct glint_flare_config c,
                                          int32_t *out);
 struct glint_flare_stats draw_scene(struct glint_flare_config c, int32_t *out);
 
-/* Draws all ghosts into PIXELS and checks that they equal WANT. */
+/* Draws all ghosts into `pixels` and checks that `pixels` equals `want`. */
 extern int32_t pixels[3 * WIDTH * HEIGHT], want[3 * WIDTH * HEIGHT];
 void assert_pixels_equal_want(struct glint_flare_config c);
 

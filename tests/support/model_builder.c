@@ -93,7 +93,7 @@ void model_write_outputs(struct model_image *m, struct glint_model_system *s,
         o[k].coef_at = model_append_items(m, coef, 4 * (size_t)p[k].n_terms);
         o[k].bound = 1 << 29;
         o[k].rounding_q8 = 384;
-        /* RMS error 0.75; with HALVED 0.375 */
+        /* an RMS error of 0.75, or of 0.375 if HALVED is 1 */
         o[k].rms = MODEL_ERROR(1536, 9 - halved);
         o[k].p50 = MODEL_ERROR(1024, 8);
         o[k].p99 = MODEL_ERROR(1024, 10 + halved);

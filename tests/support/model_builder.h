@@ -19,11 +19,12 @@
 enum {
     MODEL_ROOM = 1 << 20,
     MODEL_TERMS = 4,
-    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS /* s^0, s^1 and w */
+    /* bits for the terms s^0, s^1 and w of a pupil box */
+    MODEL_BOX_TERMS = 1 | 2 | 1 << GLINT_BOX_POWERS
 };
 
 struct model_image {
-    unsigned char *data; /* freed by the caller */
+    unsigned char *data; /* bytes of the model file; the caller frees them */
     uint32_t bytes;
 };
 
@@ -69,8 +70,9 @@ void model_write_outputs(struct model_image *m, struct glint_model_system *s,
                          const struct model_polynomial *p, uint32_t n,
                          int halved);
 
-/* Returns a polynomial system of the auto basis. Its box is centred at 1 + s
- * / 2 mm; its half sides are 4 - s and 3 mm. */
+/* Returns a polynomial system whose pupil box is centred at (1 + s / 2) mm and
+ * has the half sides 4 - s and 3 mm. The variable s is the sine of the light's
+ * angle, scaled to -1 .. 1 within the range of the system. */
 struct glint_model_system
 model_make_auto_system(struct model_image *m, int32_t sine_lo_q30,
                        int32_t sine_hi_q30, int32_t wave_lo_q24,

@@ -51,8 +51,8 @@ int night_open_tracker(struct night *n);
 
 void night_close_tracker(struct night *night);
 
-/* Draws the N lamps of LAMP, with noise of sigma codes around them, on a dark
- * background with noise of one code. */
+/* Draws the N lamps of LAMP on a dark background. The noise has a standard
+ * deviation of n->sigma codes around lamps and of one code elsewhere. */
 void night_draw_lamps(struct night *night, const struct night_lamp *lamp,
                       int n);
 

@@ -64,5 +64,5 @@ int scratch_count_entries(const char *dir)
     while (readdir(d))
         n++;
     closedir(d);
-    return n - 2; /* without . and .. */
+    return n - 2; /* The entries . and .. are not counted. */
 }

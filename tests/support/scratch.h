@@ -26,8 +26,8 @@ extern char scratch_dir[];
 void scratch_create_dir(void);
 void scratch_remove_dir(void);
 
-/* Returns the path of file NAME in the folder. The result is valid until the
- * next but one call. */
+/* Returns the path of file NAME in the folder. Two results are valid at a time:
+ * the third call overwrites the first. */
 const char *scratch_make_path(const char *name);
 
 /* Writes DATA[BYTES] to file NAME in the folder; fails the test on an error. */

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * A scheduler that runs jobs one at a time in random order, each as a random
- * worker. It reveals results that depend on order or worker.
+ * worker. With it, tests detect results that depend on the order of jobs or on
+ * the worker.
  */
 #ifndef GLINT_TESTS_SHUFFLE_H
 #define GLINT_TESTS_SHUFFLE_H

@@ -53,7 +53,7 @@ bool stage_set_up_lens(struct stage *stage, int n_blades)
            print_error_and_fail(error.text);
 }
 
-/* Sets of_model, the lens data with which frames are drawn, from the baked
+/* Sets stage->of_model, the lens data for drawing frames, from the baked
  * model. */
 static bool set_lens_of_model(struct stage *stage)
 {

@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * A lens for tests: its table, its model, and images by both.
+ * A lens for tests: its table, its baked model, and images drawn by both.
  *
- *     stage_load_lens(&s, "heliar-tronnier");          or stage_parse_lens, or
- * s.lens stage_set_up_lens(&s, 8);                       stop and colours
- *     stage_bake_or_load_model(&s, 1, 60);                     or none: rays
- * are exact stage_set_view(&s, 240, 160, 0); stage_draw_linear(&s, &lamp, 1,
- * linear);         run time, floats stage_draw_exact(&s, &lamp, 1, 192, exact);
- * the reference stage_free(&s);
+ *     stage_load_lens(&s, "heliar-tronnier");
+ *     stage_set_up_lens(&s, 8);
+ *     stage_bake_or_load_model(&s, 1, 60);
+ *     stage_set_view(&s, 240, 160, 0);
+ *     stage_draw_linear(&s, &lamp, 1, linear);
+ *     stage_draw_exact(&s, &lamp, 1, 192, exact);
+ *     stage_free(&s);
  *
- * On failure functions print the reason to stderr and return false.
+ * Without a model, all rays are traced exactly. On failure functions print the
+ * reason to stderr and return false.
  */
 #ifndef GLINT_TESTS_STAGE_H
 #define GLINT_TESTS_STAGE_H
@@ -24,7 +26,7 @@ struct stage {
     struct glint_prescription lens;
     struct glint_setup setup, of_model;
     struct glint_workers *workers; /* NULL: serial */
-    /* baked model; closed: rays are traced exactly */
+    /* baked model; if no model file is open, rays are traced exactly */
     struct model_file file;
     struct glint_bake_report report; /* filled by stage_bake_model() */
     struct glint_view view;

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * A library for LD_PRELOAD that makes allocation number $FAIL_AT of a program
- * fail; if $FAIL_ON is set, also all later ones. If $FAIL_COUNT names a file,
- * the number of allocations is written to it at exit. With $FAIL_SIGNAL, a
- * number, the allocation succeeds, and the signal is raised before it. For
- * glibc, whose own allocations are counted as well.
+ * fail; if $FAIL_ON is set, all later allocations fail, too. If $FAIL_SIGNAL is
+ * set, the allocation succeeds, and the library raises this signal number
+ * before it. At exit, the library writes the number of allocations to the file
+ * $FAIL_COUNT, if that is set. The library needs glibc; allocations inside
+ * glibc are counted as well.
  */
 #define _GNU_SOURCE
 #include <errno.h>

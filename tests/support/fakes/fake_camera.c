@@ -252,9 +252,9 @@ static int answer_set_format(struct v4l2_format *f)
     return answer_get_format(f);
 }
 
-/* Returns the mode with index INDEX among the modes that WITHIN accepts for
- * KEY. Of modes that LIKE calls equal, only the first counts. NULL: there are
- * fewer modes. */
+/* Returns mode number INDEX, from 0, of the modes for which WITHIN(mode, KEY)
+ * is true. Modes that LIKE() reports as equal count once. Returns NULL if there
+ * are fewer modes. */
 static const struct fake_mode *
 find_mode(uint32_t index,
           bool (*like)(const struct fake_mode *a, const struct fake_mode *b),
@@ -851,7 +851,7 @@ void __wrap_free(void *mem);
 void __wrap_free(void *mem)
 {
     n_blocks -= mem != NULL;
-    if (mem) /* overwrites the block to reveal reads of freed memory */
+    if (mem) /* Overwriting the freed block reveals code that still reads it. */
         memset(mem, 0xdd, malloc_usable_size(mem));
     __real_free(mem);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * fake_camera.h - a fake V4L2 camera and a fake clock, for tests that are
- * linked with fake_camera.o and FAKE_CAMERA of the Makefile.
+ * fake_camera.h - a fake V4L2 camera and a fake clock for tests. The Makefile
+ * links these tests with fake_camera.o and the linker flags FAKE_CAMERA.
  *
  * The fake driver is as strict as the kernel: a buffer may be queued only once,
  * no format may be set while there are buffers, and no buffers may be freed
@@ -29,17 +29,18 @@ struct fake_mode {
 
 struct fake_frame {
     uint32_t sequence;
-    int code; /* value of every byte of the frame, 0 .. 255 */
-    /* image data, bytesused[0] bytes, in place of CODE; NULL: none */
+    int code; /* value of all bytes of the frame, 0 .. 255, if `data` is NULL */
+    /* image data, bytesused[0] bytes; NULL: all bytes are `code` */
     const void *data;
     uint32_t flags;
-    /* bytes used in each block; 0: the whole frame, unless is_odd */
+    /* bytes used in each block; 0 means the whole frame, or no bytes if is_odd
+     * is set */
     uint32_t bytesused[3];
     uint32_t data_offset[3];
     int64_t time_us;
     /* the driver does not report which clock its time stamps use */
     bool unknown_clock;
-    bool is_odd; /* in bytesused, 0 means 0 bytes */
+    bool is_odd; /* true: 0 in bytesused means no bytes, not the whole frame */
     /* errno that the request DQBUF sets for this frame; 0: no error */
     int error;
 };
@@ -91,7 +92,7 @@ struct fake_camera {
     int n_queued;
     struct fake_frame frame[FAKE_FRAMES];
     int n_frames;
-    int read_errno; /* errno of read(); 0: no error */
+    int read_errno; /* errno that read() sets; 0: read() succeeds */
     /* called at the start of each DQBUF request, unless NULL */
     void (*on_dequeue)(void);
     /* called at the start of each STREAMON request, unless NULL */
@@ -134,7 +135,7 @@ int fake_camera_count_allocations(void);
 void fake_camera_advance_clock(int64_t us);
 int64_t fake_camera_time_us(void);
 
-/* true: glint behaves as if built without libjpeg */
+/* true: glint behaves like a build without libjpeg */
 extern bool fake_lacks_jpeg;
 
 #endif

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * fake_fb.h - a fake framebuffer and console: two files, and an ioctl() that
- * answers requests for them. Tests link it with
+ * fake_fb.h - a fake framebuffer and a fake console, each of them a file, and
+ * an ioctl() that answers the requests of glint. Tests link it with
  * --wrap=open64,ioctl,mmap64,munmap,malloc.
  */
 #ifndef GLINT_SUPPORT_FAKE_FB_H
@@ -22,15 +22,17 @@ struct fake_fb {
     bool gone, can_pan;
     int open_errno, vsync_errno, n_vsync, n_pan;
     int tty_errno, tty_mode, tty_switching;
-    /* var.yoffset when text mode was restored, rows */
+    /* value of var.yoffset, rows, at the moment when glint restored text
+     * mode */
     uint32_t yoffset_at_text;
 };
-/* set by the test; shared with forked processes */
+/* state of the fake devices, in memory shared with child processes; tests
+ * change it to simulate devices and faults */
 extern struct fake_fb *fake_fb;
 
 /* number of calls so far that could be made to fail */
 extern int fake_fb_calls;
-/* which of these calls fails, counted from 1; 0: none */
+/* number of the call that fails, counted from 1; 0: no call fails */
 extern int fake_fb_fail_at;
 extern int fake_fb_maps;
 

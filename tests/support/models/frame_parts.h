@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Inputs of a frame of model_make_three_ghosts() for tests: two wavelengths,
- * one red and one green, and a square stop of apothem 0.4, which clips the
- * ghost.
+ * Input for tests that draw a frame of the model of model_make_three_ghosts():
+ * a red and a green wavelength, and a square stop of apothem 0.4, which clips
+ * the ghost.
  */
 #ifndef GLINT_TESTS_FRAME_PARTS_H
 #define GLINT_TESTS_FRAME_PARTS_H

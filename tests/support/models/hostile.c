@@ -28,13 +28,14 @@ const char *const hostile_name[HOSTILE_FAMILIES] = {
 
 /* ------------------------------------------------------------- polynomials */
 
-/* The polynomial sum(u[k] u^k) + sum(v[k] v^k) + w times the variable w. */
+/* A polynomial in the variables U, V and W: the sum of all u[k] U^k, all v[k]
+ * V^k, and w W. */
 struct polynomial {
     double u[POWERS], v[POWERS], w;
 };
 
-/* Adds SIZE times the Chebyshev polynomial of degree N, whose values are -1 ..
- * 1, to the coefficients POWER. */
+/* Adds SIZE times the Chebyshev polynomial of degree N to the polynomial with
+ * the coefficients POWER. A Chebyshev polynomial has values of -1 .. 1. */
 static void add_chebyshev_polynomial(double *power, int n, double size)
 {
     double last[POWERS] = {1}, here[POWERS] = {0, 1};
@@ -100,7 +101,8 @@ static uint32_t append_polynomials_as_outputs(struct model_image *m,
     struct glint_model_output o[GLINT_OUT_KINDS];
 
     for (int k = 0; k < n; k++) {
-        /* The outputs x and y share the larger exponent of the two. */
+        /* Outputs x and y must have the same exponent, so both get the larger
+         * of their two exponents. */
         const int pair = k < GLINT_OUT_ENERGY ? k ^ 1 : k;
         const int a = find_unit_exponent(&p[k]),
                   b = find_unit_exponent(&p[pair]);
@@ -200,10 +202,10 @@ static void append_ghost_per_pair(struct model_image *m,
     model_append_ghosts(m, ghost, PAIRS, of, PAIRS);
 }
 
-/* Writes ghosts with invalid rays. NUMBER modulo 3 selects the variant: 0: all
- * rays have negative energy; 1: stripes of rays have negative energy; 2: some
- * rays land far off-screen. From NUMBER 5 on, there are as many ghosts as a
- * lens can have. */
+/* Writes ghosts with invalid rays, in one of three variants: all rays have
+ * negative energy (NUMBER modulo 3 is 0), stripes of rays do (1), or some rays
+ * land far off-screen (2). From NUMBER 5 on, there are as many ghosts as a lens
+ * can have. */
 static void append_ghosts_with_invalid_rays(struct model_image *m, int number,
                                             uint32_t *seed)
 {
@@ -261,9 +263,9 @@ static void append_ghost_with_many_systems(struct model_image *m, int number,
     model_append_ghosts(m, ghost, 2, of, N);
 }
 
-/* Writes an output with the max number of coefficients to M and returns it. Its
- * terms have different powers of u and s, and the power V of v. At fractional s
- * the run time rounds each term; all round up. The magnitudes of the
+/* Writes an output polynomial with the max number of terms to M and returns it.
+ * Each term has a different power of u and s, and the power V of v. The run
+ * time rounds each term, and here it rounds all terms up. The magnitudes of the
  * coefficients sum to 2^30 - 1, the max that the validity check accepts. */
 static struct glint_model_output
 append_largest_output(struct model_image *m, int kind, int exponent, int v)
@@ -287,9 +289,9 @@ append_largest_output(struct model_image *m, int kind, int exponent, int v)
     return o;
 }
 
-/* Writes a ghost whose outputs have the max number of coefficients; NUMBER
- * selects which of its outputs. The exponents of its barrels make 2^30 equal to
- * 1 after a shift by 31. */
+/* Writes a ghost whose outputs have the max number of terms. NUMBER sets the
+ * exponents of the outputs. For even NUMBER, barrels get the exponent -47, with
+ * which a shift by 31 bits rounds 2^30 to 1. */
 static void append_ghost_with_largest_outputs(struct model_image *m, int number)
 {
     static const struct glint_model_ghost ghost[] = {{0, 1, 0, 1}};
@@ -388,10 +390,11 @@ static void randomise_pupil_box(const struct model_image *m,
                           : s->box_exponent;
 }
 
-/* Changes the stop positions of S. NUMBER modulo 3 selects how: 0: all rays
- * pass the middle of the stop; 1: only the first coefficient remains, which
- * grows with NUMBER, so that all rays may miss the stop; 2: positions get the
- * exponent 2 NUMBER - 20, so that hardly any ray passes the stop. */
+/* Replaces the stop positions of S in one of three ways, selected by NUMBER
+ * modulo 3. With 0, all rays pass the middle of the stop. With 1, only the
+ * first coefficient remains; it grows with NUMBER, so that all rays may miss
+ * the stop. With 2, positions get the exponent 2 NUMBER - 20, so that hardly
+ * any ray passes the stop. */
 static void randomise_stop_positions(const struct model_image *m,
                                      struct glint_model_system *s, int number)
 {
@@ -449,7 +452,8 @@ static void set_invalid_name(struct glint_model_header *h, int number)
                                                    "\xe2\x80\xae",
                                                    "del\x7f"};
 
-    if (number == 5)                          /* in place of "unused" */
+    /* number 5 is a name without a terminating 0 */
+    if (number == 5)
         memset(h->name, 'x', sizeof h->name); /* not terminated */
     else
         snprintf(h->name, sizeof h->name, "%s", name[number]);

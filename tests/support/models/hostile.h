@@ -20,11 +20,12 @@ enum hostile_family {
     /* 2016 ghosts that fold across the frame up to nine times in x and y,
      * clipped by barrels */
     HOSTILE_FOLDS,
-    /* rays that are all invalid, or in stripes; or more grid cells than an int
-     * can count */
+    /* models whose rays are invalid, either all rays or stripes of them; or
+     * models with more grid cells than an int can count */
     HOSTILE_LOST,
     HOSTILE_SYSTEMS, /* a ghost with thousands of polynomial systems */
-    /* coefficients with the largest valid sums and with any exponents */
+    /* coefficients with the largest valid sums of magnitudes, and any
+     * exponents */
     HOSTILE_NUMBERS,
     HOSTILE_POINTS,  /* pupil boxes of size 0 */
     HOSTILE_HUGE,    /* pupil boxes of the largest size, with any exponents */
@@ -57,12 +58,12 @@ struct hostile_scene {
 
 /* Outcome of drawing a hostile scene. */
 enum hostile_outcome {
-    HOSTILE_REFUSED, /* model rejected by the validity check or by setup */
+    HOSTILE_REFUSED, /* the validity check or the setup rejected the model */
     HOSTILE_EMPTY,   /* frame without light */
     HOSTILE_DRAWN,
-    /* drawn with coarser grids to stay within the work limit */
+    /* the scene was drawn with coarser grids, which the work limit required */
     HOSTILE_COARSER,
-    /* drawn without some ghosts to stay within the memory limit */
+    /* the scene was drawn without some ghosts, for lack of memory */
     HOSTILE_LESS,
     HOSTILE_OUTCOMES
 };

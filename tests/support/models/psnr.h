@@ -5,8 +5,8 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Returns the PSNR of A against B, N values each, dB; the peak is the max of
- * B. Returns 999 if they are equal. */
+/* Returns the PSNR, dB, between the N values of A and of B, relative to the max
+ * of B. Returns 999 if A and B are equal. */
 static inline double peak_psnr(const double *a, const double *b, size_t n)
 {
     double square = 0, peak = 0;

@@ -300,7 +300,8 @@ void scene_seal_checksum(struct scene_file *s)
     append_table(s, &h->ward_at, s->ward, h->n_wards * sizeof *s->ward);
     append_table(s, &h->stone_at, s->stone, h->n_stones * sizeof *s->stone);
     append_table(s, &h->skin_at, s->skin, h->n_skins * sizeof *s->skin);
-    /* no environment: its offset is the end of the file */
+    /* The scene has no environment, so the environment begins at the end of the
+     * file. */
     h->environment_at = (uint32_t)s->bytes;
     memcpy(s->data, h, sizeof *h);
     glint_blob_set_size_and_checksum(s->data, s->bytes);

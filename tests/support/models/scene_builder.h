@@ -34,12 +34,12 @@ struct scene_file {
     uint32_t data[SCENE_BYTES / 4];
 };
 
-/* Makes an empty scene. The camera is at the origin, looks along z, and has a
- * field of view of 90 degrees; the scene is drawn onto an image. One unit is
- * 2^16 steps. */
+/* Makes an empty scene, to be drawn onto an image. The camera is at the origin,
+ * looks along z, and has a field of view of 90 degrees. A scene unit is 2^16
+ * steps; a step is the resolution of baked coordinates. */
 void scene_begin_header(struct scene_file *s);
 
-/* Adds a white material whose light is its colour times the incident light. */
+/* Adds a white material that reflects all incident light diffusely. */
 uint32_t scene_add_material(struct scene_file *s, const char *name);
 uint32_t scene_add_sphere(struct scene_file *s, const char *name,
                           uint32_t material, int32_t x, int32_t y, int32_t z,
@@ -49,7 +49,7 @@ uint32_t scene_add_sphere(struct scene_file *s, const char *name,
 uint32_t scene_add_plane(struct scene_file *s, const char *name,
                          uint32_t material, int32_t y);
 
-/* Add a light of RGB 1; that of a lamp refers to the distance DISTANCE,
+/* Add a light of RGB 1. A lamp has this light at the distance DISTANCE,
  * steps. */
 uint32_t scene_add_sun(struct scene_file *s, const int32_t toward_q30[3]);
 uint32_t scene_add_lamp(struct scene_file *s, const int32_t at[3],

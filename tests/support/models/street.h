@@ -82,8 +82,8 @@ static const struct street_light {
 
 enum { STREET = sizeof street / sizeof *street };
 
-/* Sets LAMPS to N lights in the view of STAGE: first those of the table above,
- * then the same mirrored horizontally, then vertically. */
+/* Sets LAMPS to N lights in the view of STAGE: first the lights of the table
+ * above, then the same lights mirrored horizontally, then vertically. */
 static inline void street_lamps(const struct stage *stage,
                                 struct glint_lamp *lamps, int n)
 {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * A brushed metal ball under an environment map, 32 pixels wide, viewed along
- * z, brushed about the y axis. It is drawn by exact sums over all texels of
- * the map, and by the lookups of the run time.
+ * A ball of brushed metal under an environment map, in an image 32 pixels wide.
+ * The camera looks along z; the metal is brushed about the y axis. The ball is
+ * drawn twice: by exact sums over all texels of the map, and by the lookups of
+ * the run time.
  */
 #ifndef GLINT_TESTS_WARD_BALL_H
 #define GLINT_TESTS_WARD_BALL_H

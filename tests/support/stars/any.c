@@ -22,15 +22,15 @@ static int32_t clamp_line_weight_q30(int64_t x)
     return (int32_t)(x > most ? most : x < -most ? -most : x);
 }
 
-/* Sets the direction of LINE, and the direction of its border to the next line,
- * which is half a step of N lines further. Returns whether the border is at 180
- * degrees or more. */
+/* Sets LINE, one of N lines of a starburst, to the direction with the cosine C
+ * and the sine S. The border between LINE and the next line is 90 / N degrees
+ * further. Returns whether this border is at 180 degrees or more. */
 static int set_line_direction(struct glint_star_line *line, int32_t c_q30,
                               int32_t s_q30, int n)
 {
     const int64_t sine = s_q30 > 1 << 18 ? s_q30 : 1 << 18;
-    /* As complex numbers, 1 + the direction of a step has the direction of half
-     * a step. */
+    /* Lines are 180 / N degrees apart. The border is at half of this step: as
+     * complex numbers, 1 + the step's direction points there. */
     const int64_t hc = ((int64_t)1 << 30) + step_q30[n - 1][0];
     const int64_t hs = step_q30[n - 1][1];
     const int64_t c = n > 1 ? (hc * c_q30 - hs * s_q30) >> 31 : -s_q30 / 2;

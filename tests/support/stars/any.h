@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Random tables of a starburst, made with integers only so that they are the
- * same on every machine: They are valid, but no real stop has them.
+ * Random starburst tables for tests. They are valid, but no real stop has
+ * them. They are made with integers only, so that they are the same on every
+ * machine.
  */
 #ifndef GLINT_TESTS_STARS_ANY_H
 #define GLINT_TESTS_STARS_ANY_H

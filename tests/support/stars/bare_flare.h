@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A flare renderer without ghosts: tests draw starbursts and veils in its
- * tiles.
+ * A flare renderer that draws no ghosts. Tests use its tiles to draw starbursts
+ * and veils.
  */
 #ifndef GLINT_TESTS_BARE_FLARE_H
 #define GLINT_TESTS_BARE_FLARE_H

@@ -26,8 +26,8 @@ void star_canvas_open(struct star_canvas *canvas, int width, int height,
                       int tile_log2, int n_workers, uint32_t order);
 void star_canvas_close(struct star_canvas *canvas);
 
-/* Draws the stars of N lights, down to light FAINTEST, onto a black image of
- * FORMAT in MEM. Returns the reported number of lit pixels. */
+/* Draws the starbursts of N lights onto a black image of FORMAT in MEM, leaving
+ * out light below FAINTEST. Returns the reported number of lit pixels. */
 int64_t star_canvas_draw_light(struct star_canvas *canvas,
                                const struct glint_star_tables *tables,
                                const struct glint_star_light *lights, int n,

@@ -10,11 +10,12 @@
 #include "support/test.h"
 #include "support/tracks/tracks.h"
 
-/* The recorded motion that a scene text uses: the track of a moving body, or
- * resting foods (landmarks of the recording). */
+/* The recorded motion that scene texts of tests use. It contains the track
+ * of a moving body, or only resting foods. Foods are the landmarks of a
+ * recording. */
 static struct {
     struct track_options track;
-    /* [n_foods]: positions of the resting foods; NULL: the track is used */
+    /* positions of the n_foods resting foods; NULL: `track` is used */
     double (*food)[3];
     int n_foods;
     double angle_deg;

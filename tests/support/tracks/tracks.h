@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Simulates a body that moves among stationary foods (landmarks), by the four
- * motions of requirement D3, and what the body observes: the positions of the
- * foods in its own axes. Frame by frame, random by a seed, in double
- * precision.
+ * Simulates a body that moves among stationary foods (landmarks), by one of the
+ * four motions of requirement D3. Each frame contains what the body observes:
+ * the positions of the foods in the body's own axes. Motions are random by a
+ * seed, and computed in double precision.
  *
  *     track_begin_motion(&track, &options);
  *     while (...) track_next_frame(&track, &frame);
@@ -20,12 +20,13 @@
 enum { TRACK_FOODS = 32, TRACK_MOTIONS = 4 };
 
 struct track_options {
-    /* 0: straight with turns; 1: a spiral along x; 2: like 0, with random
-     * rotations about x and y; 3: random steps and turns */
+    /* type of motion: straight with turns (0), a spiral along x (1), straight
+     * with turns and random rotations about x and y (2), random steps and turns
+     * (3) */
     int motion;
     int n_frames, n_foods;
-    /* number of frames from the end of one food to the start of the next; 0:
-     * foods never end */
+    /* number of frames from the end of one food (landmark) to the start of the
+     * next; 0: foods never end */
     int reset_every;
     /* significant digits to which observed positions are rounded; 0: not
      * rounded */
