@@ -64,7 +64,8 @@ static void make_random_beam(struct glint_light *b)
 
     b->apart_q30 = 0; /* a single light */
     set_sine_and_cosine(random_number(7000), &b->sine_q30,
-                        &b->cosine_q30); /* 24 degrees or less off the axis */
+                        /* The light is at most 24 degrees off the axis. */
+                        &b->cosine_q30);
     set_sine_and_cosine(random_number(1 << 15), &sine, &cosine);
     b->sin_q30 = random_number(2) ? sine : -sine;
     b->cos_q30 = random_number(2) ? cosine : -cosine;
@@ -267,7 +268,8 @@ int main(int argc, char **argv)
         return 1;
     for (int i = 0; i < n; i++) {
         lit += hash_random_frame(&h);
-        /* the first different line identifies the frame */
+        /* With the hash of every frame, the first different line identifies the
+         * frame. */
         if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }

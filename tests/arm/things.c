@@ -182,7 +182,8 @@ int main(int argc, char **argv)
         open_scene(argv[i]);
     for (int i = 0; i < n; i++) {
         changed += draw_and_hash_image(&h);
-        /* the first different line identifies the image */
+        /* With the hash of every image, the first different line identifies the
+         * image. */
         if (getenv("GLINT_EACH"))
             printf("%d %08lx\n", i, (unsigned long)(h >> 32));
     }

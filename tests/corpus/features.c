@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * features PICTURE.ppm... - prints, as CSV for tests/corpus/fit, what the
- * finder measures of each region that may be a lamp: the picture, its size,
- * level and cost of the level, box, centroid (pixels), number of pixels, the
- * measures of enum glint_evidence, and the score that the library gives.
+ * finder measures of each region that may be a lamp. Columns: the picture and
+ * its size; the threshold level at which the region was found, and the cost
+ * that is subtracted from the score at this level; box, centroid (pixels) and
+ * number of pixels of the region; the measures of enum glint_evidence; and the
+ * score that the library gives.
  */
 #include "lamps/lamp_finder.h"
 #include "ppm.h"

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * Imports random bytes as a lens file. The first byte selects the format, from
- * 'a' on, and, if odd, --strict; the size selects the zoom position. A rejected
- * file must have an error message; an accepted one must give a lens table that
- * parses, or is rejected with a position. A second import must give the same
- * result.
+ * Imports random bytes as a lens file of another program. The first byte
+ * selects the format, 'a' being the first one, and --strict if the byte is odd.
+ * The size selects the zoom position. A rejected file must have an error
+ * message. An accepted file must give a lens table that parses, or that is
+ * rejected with a position. A second import must give the same result.
  *
  *     make fuzz FUZZ=import SECONDS=60
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads random bytes as an OBJ file. An accepted mesh must have triangles with
- * finite numbers and existing materials.
+ * Reads random bytes as an OBJ file. An accepted mesh must have triangles, all
+ * numbers must be finite, and all materials must exist.
  *
  *     make fuzz FUZZ=mesh SECONDS=60
  */

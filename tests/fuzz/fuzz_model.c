@@ -16,8 +16,8 @@
 
 enum {
     ONE = 1 << 30,
-    /* max overshoot of an interpolated value between two knots, units of
-     * 2^-30 */
+    /* max amount by which an interpolated value may exceed the values at both
+     * knots, units of 2^-30 */
     SLACK = 64
 };
 

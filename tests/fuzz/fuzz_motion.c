@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Opens random bytes as a baked motion, with valid magic, version, size and
- * checksum, in memory and by blocks. If it is accepted in memory, all frames
- * must be readable; by blocks each is read or rejected, and frames read by
- * blocks must equal those in memory.
+ * checksum, both in memory and for reading by blocks. If the file is accepted
+ * in memory, all its frames must be readable. A frame read by blocks must equal
+ * the frame in memory, or its blocks must be rejected.
  *
  *     make fuzz FUZZ=motion SECONDS=60
  */

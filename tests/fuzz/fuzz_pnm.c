@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads random bytes as PPM, PGM or PFM. An accepted image must be in memory to
- * its last sample, its file must be larger than its samples, and writing it
- * must succeed.
+ * Reads random bytes as PPM, PGM or PFM. Of an accepted image, every sample
+ * must be readable, the file must be larger than its samples, and writing the
+ * image must succeed.
  *
  *     make fuzz FUZZ=pnm SECONDS=60
  */

@@ -29,8 +29,8 @@ static enum glint_status read_mesh_from_input(void *ctx, const char *name,
     (void)error;
     if (strchr(name, '!'))
         return GLINT_E_IO;
-    /* an allocation of exactly the text's size, so that ASan detects
-     * overreads */
+    /* The copy has exactly the size of the text, so that ASan detects
+     * overreads. */
     *data = malloc(rest->size ? rest->size : 1);
     require(*data != NULL);
     memcpy(*data, rest->data, rest->size);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reads random bytes as a Y4M stream. The first byte sets how many bytes arrive
- * per read, 1 to 200. An accepted header must print as one that parses to the
- * same header; every frame must be in memory to its last sample, and writing it
+ * Reads random bytes as a Y4M stream. The first byte sets how many bytes each
+ * read returns, 1 to 200. An accepted header, printed and parsed again, must be
+ * unchanged. Every sample of each frame must be readable, and writing the frame
  * must succeed.
  *
  *     make fuzz FUZZ=y4m SECONDS=60

@@ -31,8 +31,8 @@ static int replay_file(const char *path)
     if (!S_ISREG(st.st_mode))
         return 0;
     file = fopen(path, "rb");
-    /* an allocation of exactly the input's size, so that ASan detects
-     * overreads */
+    /* The copy has exactly the size of the input, so that ASan detects
+     * overreads. */
     data = malloc(st.st_size > 0 ? (size_t)st.st_size : 1);
     if (!file || !data || st.st_size > MAX_BYTES) {
         free(data);

@@ -148,7 +148,8 @@ int main(int argc, char **argv)
     n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
     for (int i = 4; i < argc; i++)
         parse_setting_argument(argv[i]);
-    /* Set the user's locale, as hosts with a user interface do. */
+    /* Hosts with a user interface set the user's locale, so this host does,
+     * too. */
     setlocale(LC_ALL, "");
     load_plugin(argv[1]);
     bytes = n_frames * frame_bytes;

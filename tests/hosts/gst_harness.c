@@ -157,7 +157,7 @@ static void test_quality_of_service(void)
 
     print_test_result("frames in time come", out != NULL);
     gst_buffer_unref(out);
-    /* Reports that the sink received the frame of time stamp 40 ms 200 ms
+    /* The sink reports that the frame with the time stamp 40 ms arrived 200 ms
      * late. */
     gst_harness_push_upstream_event(h, gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW,
                                                          2, 200 * GST_MSECOND,

@@ -46,7 +46,7 @@ static int compute_plane_sizes(enum video_format format, uint32_t width,
         return 1;
     case VIDEO_FORMAT_Y800:
         return 1;
-    default: /* formats of four bytes per pixel */
+    default: /* The remaining formats have four bytes per pixel. */
         bytes[0] = 4 * width;
         return 1;
     }

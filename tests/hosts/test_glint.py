@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Python package against the command: the same bytes. Run by tests/hosts/python, from the root."""
+"""Checks that the Python package gives the same bytes as the command. Run by tests/hosts/python, from the root."""
 import inspect
 import json
 import os

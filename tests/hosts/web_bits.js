@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // web_bits.js GLINT WASM FOLDER FIRST COUNT - draws pictures FIRST .. FIRST + COUNT - 1 of
-// a fixed sequence by the WebAssembly module and by the program GLINT: the same bytes.
-// Models come from the program's cache, $XDG_CACHE_HOME; every tenth is baked by the
-// module, too: the same bytes.
+// a fixed sequence by the WebAssembly module and by the program GLINT, and checks that the
+// bytes are equal. Models come from the program's cache, $XDG_CACHE_HOME. The module also
+// bakes every tenth model; its bytes must be equal, too.
 import {execFileSync} from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";

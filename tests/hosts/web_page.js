@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// web_page.js FOLDER - the page in Debian's Chromium: a photograph is dropped, a lamp dragged, a
-// lens and a style chosen, and each saved picture equals that of the printed command. FOLDER
-// has node_modules/playwright-core (npm install playwright-core). Needs make web, make oiio
-// and chromium; takes minutes, so that make check does not run it.
+// web_page.js FOLDER - tests the web page in Debian's Chromium: drops a photograph, drags a lamp,
+// chooses a lens and a style. Each saved picture must equal that of the command that the page
+// prints. FOLDER contains node_modules/playwright-core (npm install playwright-core). Needs
+// make web, make oiio and chromium. The test takes minutes, so make check does not run it.
 import {execFileSync, spawn} from "node:child_process";
 import fs from "node:fs";
 import {createRequire} from "node:module";

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * ctl DEVICE - lists the controls of a video device.
- * ctl DEVICE NAME|0xID [VALUE] - prints a control, or sets it: tests inject
- *     faults into vivid by it while another program streams.
+ * ctl DEVICE NAME|0xID [VALUE] - prints a control, or sets it to VALUE. Tests
+ *     use it to inject faults into vivid while another program streams.
  * ctl DEVICE format FOURCC WxH - tries to change the capture format.
  * ctl DEVICE input N - selects an input.
  */

@@ -106,7 +106,7 @@ int main(int argc, char **argv)
     if (glint_y4m_reader_open(&in, argv[3], &error) != GLINT_OK)
         exit_with_error(error.text);
     while (glint_y4m_reader_next(&in, &next, &error) == GLINT_OK && next)
-        frame = next; /* NEXT points to the same memory for each frame */
+        frame = next; /* The reader uses the same memory for each frame. */
     if (!frame || *error.text)
         exit_with_error(*error.text ? error.text : "no frame");
     if (yuyv && (frame->format != GLINT_I422 || frame->width != w ||

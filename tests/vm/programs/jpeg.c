@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * jpeg encode VIDEO.y4m OUT.jpg
- *     Writes the first frame, C422 of limited range, as a camera would send it:
- * 4:2:2, full range. The image has no colours. jpeg decode OUT.y4m IN.jpg...
- * Decodes frames of one size and format like those that glint receives from a
- * camera.
+ *     Writes the first frame of the video, C422 of limited range, as a camera
+ *     would send it: JPEG of 4:2:2 and full range. The image has no colours.
+ * jpeg decode OUT.y4m IN.jpg...
+ *     Decodes JPEG frames of one size and format as glint decodes the frames
+ *     of a camera, and writes them as a video.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * layout.h - packed pixel layouts by their names in device trees: each lists
- * its fields from the highest bit down, as in r5g6b5 or x8r8g8b8. A name ends
- * in "-shifted" for a panel that does not repeat high bits in low ones, so
- * that its white is not quite white, as on the emulated VGA card with 5 bits
- * per channel.
+ * layout.h - packed pixel layouts by their names in device trees. A name lists
+ * the fields of a pixel from the highest bit down, as in r5g6b5 or x8r8g8b8. A
+ * name that ends in "-shifted" describes a panel that fills the low bits of a
+ * channel with 0 instead of repeating its high bits. White is then not quite
+ * white, as on the emulated VGA card with 5 bits per channel.
  */
 #ifndef GLINT_VM_LAYOUT_H
 #define GLINT_VM_LAYOUT_H
