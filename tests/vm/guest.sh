@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=sh
 #
-# guest.sh - what scripts in the guest may call; sourced for them.
+# guest.sh - functions for scripts that run in the guest; the guest sources this
+# file before the script.
 
 # One line to the host, its answer on standard output. The port takes one
 # process at a time.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 # shellcheck shell=bash
 #
-# lib.sh - what the tests tests/vm/test-*.sh are made of. Sourced with the
-# architecture as first word; see README.md here.
+# lib.sh - functions and variables for the tests tests/vm/test-*.sh, which source
+# this file with the architecture as its first argument. See README.md here.
 #
 #   $arch $out $glint $tools   architecture; folder of artefacts; static glint;
 #                              folder of the guest's tools, all in each guest

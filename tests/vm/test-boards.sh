@@ -1,11 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-boards.sh - glint-live as on a board: the program with nothing but what
-# boards need, a camera of 1280x720, and the panels that boot loaders set up, in
-# the sizes that are sold for boards. It shows pictures with the lamp's ghosts
-# and takes 12 MiB at most, the camera's buffers among them. The green bar may
-# be taken for a second lamp: v4l2loopback states that colours are of BT.601.
+# test-boards.sh - runs glint-live as on a board: the program built with only
+# the modules that boards need, a camera of 1280x720, and the panels that boot
+# loaders set up, in sizes that are sold for boards. It must show pictures with
+# the lamp's ghosts, and use at most 12 MiB, including the camera's buffers. The
+# green bar may be detected as a second lamp, as v4l2loopback reports that
+# colours are BT.601.
 # arch: aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-camera.sh - frames that are fed arrive bit for bit, through vivid's HDMI
-# loop and through v4l2loopback.
+# test-camera.sh - frames written to a virtual camera must arrive bit for bit,
+# through vivid's HDMI loop and through v4l2loopback.
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-faults.sh - what cameras and panels do to glint live: it recovers, or
-# ends with exit code 4 and one line; the console is text again, nothing leaks
-# (ASan on x86_64, files on all), and the panel never turns black. How soon it
-# ends is a matter of a fake clock (test_v4l2_faults).
+# test-faults.sh - faults of cameras and panels in glint live: it must recover,
+# or end with exit code 4 and one line. Then the console must be in text mode
+# again, nothing may leak (ASan on x86_64, open files on all), and the panel
+# must never turn black. How soon it ends is tested with a fake clock
+# (test_v4l2_faults).
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

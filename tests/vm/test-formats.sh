@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-formats.sh - the camera's colour bars, in every format that glint reads
-# and every way of getting at them, have the right colours on the panel.
+# test-formats.sh - the camera's colour bars must have the right colours on the
+# panel, in every format that glint reads and with every I/O method.
 # arch: x86_64 aarch64
 . "$(dirname "$0")/lib.sh"
 

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-glint.sh - the static glint on a real kernel: the bytes it renders here
-# are those of the build machine's; with ASan and strace where they can run.
+# test-glint.sh - the static glint on a real kernel must render the same bytes
+# as on the build machine. Also runs it with ASan and strace where they are
+# available.
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-gstreamer.sh - gst-launch-1.0 v4l2src ! glintflare ! fbdevsink: a camera's
-# frames have the bytes that glint overlay draws on them, and reach the panel.
+# test-gstreamer.sh - gst-launch-1.0 v4l2src ! glintflare ! fbdevsink: a
+# camera's frames must have the bytes that glint overlay draws on them, and
+# appear on the panel.
 # arch: x86_64
 . "$(dirname "$0")/lib.sh"
 

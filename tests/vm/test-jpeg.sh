@@ -1,9 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-jpeg.sh - what cameras send as MJPEG -> v4l2loopback -> glint live: good
-# frames are shown, byte for byte as they should; truncated, empty and garbage
-# ones are counted and left out; of nothing else comes exit code 4 and a line.
+# test-jpeg.sh - MJPEG frames of cameras -> v4l2loopback -> glint live. Intact
+# frames must be shown with the right bytes. Truncated, empty and garbage frames
+# must be counted and skipped. If there are no others, glint must end with exit
+# code 4 and one line.
 # arch: x86_64 aarch64
 . "$(dirname "$0")/lib.sh"
 

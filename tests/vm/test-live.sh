@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-live.sh - a scene with lamps -> camera -> glint live -> panel: what is on
-# the panel is, byte for byte, what glint overlay makes of the same frame.
+# test-live.sh - a scene with lamps -> camera -> glint live -> panel: the panel
+# must show, byte for byte, what glint overlay makes of the same frame.
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

@@ -1,12 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-motion.sh - a recorded motion on a panel of 480x320 at 30 fps, on a clock
-# that counts instructions, 1 GIPS: the body, its foods, shells, lines, box and
-# time line, over black and over a colour. Of 150 frames none is late, and one at
-# which it stops is on the panel byte for byte as glint live writes it to a file
-# here. With a floor that takes shadows, at the least quality, the rate is not
-# held: frames are late, and counted.
+# test-motion.sh - a recorded motion on a panel of 480x320 at 30 fps, with a
+# clock that counts instructions, 1 GIPS. The body, its foods, shells, lines,
+# box and time line are drawn over black and over a colour. Of 150 frames none
+# may be late. A frame at which it stops must be on the panel byte for byte as
+# glint live writes it to a file on the host. With a floor that receives
+# shadows, even the lowest quality is too slow: frames are late, and must be
+# counted.
 # arch: aarch64
 . "$(dirname "$0")/lib.sh"
 

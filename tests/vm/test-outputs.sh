@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 #
 # test-outputs.sh - a scene with lamps -> vivid's HDMI loop -> glint live -> all
-# that is not a panel: y4m, pipes, v4l2loopback, snapshots. What arrives is, byte
-# for byte, what glint overlay makes of the same frame. Then what signals do.
+# outputs except panels: y4m, pipes, v4l2loopback, snapshots. The output must
+# be, byte for byte, what glint overlay makes of the same frame. Then tests the
+# effect of signals.
 # arch: x86_64 aarch64
 . "$(dirname "$0")/lib.sh"
 

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-panel.sh - every kind of /dev/fb0: bars drawn by the driver's bit fields
-# must be on the panel byte for byte.
+# test-panel.sh - every type of /dev/fb0: colour bars drawn by the driver's bit
+# fields must be on the panel byte for byte.
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

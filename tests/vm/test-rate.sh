@@ -1,14 +1,15 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-rate.sh - frames of a moving lamp, on a clock that counts instructions.
-# Of 640x360 at 30 fps and 1 GIPS, one point and three wavelengths a lamp, none
-# of 300 is lost and none is late by two frames. At default, with more of both,
-# the quality goes down until the rate holds, and that is reported; so it does with
-# 1280x720 at 25 fps, and with 250 MIPS, where nothing queues. Without stars, of
-# which one takes more than the ghosts here and which no quality lowers. Emulated: every
-# instruction takes the same time, and whoever feeds the camera works on the
-# same processor.
+# test-rate.sh - the frame rate of glint live with a moving lamp, on a clock
+# that counts instructions. With 640x360 at 30 fps, 1 GIPS, and one point and
+# three wavelengths per lamp, none of 300 frames may be lost or late by two
+# frames. With the default numbers of points and wavelengths, the quality must
+# fall until the rate is reached, and the fall must be reported. The same must
+# hold with 1280x720 at 25 fps, and with 250 MIPS, where no frames are queued.
+# Stars are off: one star costs more than the ghosts here, and no quality level
+# lowers this cost. In the emulator every instruction takes the same time, and
+# the program that feeds the camera runs on the same processor.
 # arch: aarch64
 . "$(dirname "$0")/lib.sh"
 

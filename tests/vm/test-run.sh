@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-run.sh - the runner itself: exit codes, files, time, a dead guest.
+# test-run.sh - tests tests/vm/run itself: exit codes, files, time limits, and a
+# guest that dies.
 # arch: x86_64 aarch64 armv7
 . "$(dirname "$0")/lib.sh"
 

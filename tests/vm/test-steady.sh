@@ -1,9 +1,10 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-steady.sh - after start-up, glint live takes no memory per frame: no
-# brk, mmap or munmap in its system calls; memory and open files stay the same
-# over FRAMES frames (1500, which take 15 to 40 s); at exit, nothing is left (ASan).
+# test-steady.sh - after start-up, glint live must allocate no memory per frame:
+# its system calls contain no brk, mmap or munmap. Memory and open files must
+# stay the same over FRAMES frames (1500, which take 15 to 40 s). At exit,
+# nothing may leak (ASan).
 # arch: x86_64
 . "$(dirname "$0")/lib.sh"
 

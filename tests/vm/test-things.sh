@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# test-things.sh - a night with lamps -> camera -> glint live --scene -> panel: a
-# ball that a pipe of poses moves before a lamp, and its shadow, are on the
-# panel, byte for byte, as glint overlay draws them.
+# test-things.sh - a night with lamps -> camera -> glint live --scene -> panel.
+# A pipe of poses moves a ball in front of a lamp. The ball and its shadow must
+# be on the panel, byte for byte, as glint overlay draws them.
 # arch: aarch64
 . "$(dirname "$0")/lib.sh"
 
