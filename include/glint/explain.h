@@ -71,6 +71,9 @@ struct glint_explain_part {
      * (share). */
     double flux, share;
     double brightest; /* light of the brightest pixel, mean of R, G and B */
+    /* Bounding box of the pixels that receive light; x0 > x1: there are none.
+     */
+    int x0, y0, x1, y1;
     /* Estimated number of instructions (work), and its fraction of the
      * instructions of the frame (cost). */
     double work, cost;
@@ -87,19 +90,19 @@ struct glint_explain {
     /* Inputs of the frame. */
     const struct glint_view *view;
     const struct glint_setup *setup;
-    const struct glint_lens *lens;
+    const struct glint_lens *lens;    /* the model; NULL: rays are exact */
     const struct glint_tint *tints;   /* tints of ghosts; NULL: no ghost is
                                          tinted */
     const struct glint_light *lights; /* [n_lights] */
-    const struct glint_wave_sets
-        *sets; /* sets of waves; NULL: all ghosts use the same waves */
+    const int *set_size; /* number of waves of each set; NULL: all ghosts use
+                            the same waves */
     /* Brightness, in codes near black, below which ghosts of several lights
      * were drawn with the same rays. 0: no ghosts were drawn in this way. */
     double dim_codes;
     int n_ghosts; /* number of pairs of reflecting surfaces */
     int n_lights;
     /* Length of WAVE: the number of wavelengths or, if each ghost chooses a set
-     * of wavelengths, the number of sets. */
+     * of wavelengths, the number of sets; 0 if rays are exact. */
     int n_waves;
     /* For each ghost of the lens or additional pupil region of a ghost: index
      * of the pair of surfaces that causes the ghost. */
@@ -115,10 +118,11 @@ struct glint_explain {
     int32_t *linear_q20;
 };
 
-/* Explains the picture that ENGINE drew last; it must have a model, and the
- * picture at least one lamp. GAIN is the gain passed to glint_engine_render(),
- * or 0 if another function drew the picture. glint_explain_close() must be
- * called even after a failure. May return GLINT_E_MEMORY. */
+/* Explains the picture that ENGINE drew last; the picture must have at least
+ * one lamp. Members that describe costs are 0 if rays are exact. GAIN is the
+ * gain passed to glint_engine_render(), or 0 if another function drew the
+ * picture. glint_explain_close() must be called even after a failure. May
+ * return GLINT_E_MEMORY. */
 enum glint_status glint_explain_open(struct glint_explain *explain,
                                      struct glint_engine *engine, double gain);
 
@@ -132,15 +136,16 @@ enum glint_status glint_explain_at(struct glint_explain *explain,
 void glint_explain_close(struct glint_explain *explain);
 
 /* Draws into linear_q20: only the ghost with index GHOST, or all ghosts if
- * GHOST is -1. */
-void glint_explain_draw(struct glint_explain *explain, int ghost);
+ * GHOST is -1. May return GLINT_E_MEMORY if rays are exact. */
+enum glint_status glint_explain_draw(struct glint_explain *explain, int ghost);
 
 /* Return the number of all bundles of PART, and the number of bundles that were
  * drawn, including those that change no pixel. */
 int glint_explain_bundles(const struct glint_explain_part *part);
 int glint_explain_drawn(const struct glint_explain_part *part);
 
-/* Returns the number of primitives (edges) of the flare in tile TILE. */
+/* Returns the number of primitives (edges) of the flare in tile TILE; 0 if rays
+ * are exact. */
 int glint_explain_listed(const struct glint_explain *explain, int tile);
 
 /* Returns whether LAMP is farther off the axis than the model's range. */

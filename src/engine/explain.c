@@ -50,8 +50,8 @@ int glint_explain_bundles(const struct glint_explain_part *p)
 
 /* ---------------------------------------------------------------- accounts */
 
-static void add_bundle_statistics(struct glint_explain_part *p,
-                                  const struct glint_account *a)
+static void add_account(struct glint_explain_part *p,
+                        const struct glint_account *a)
 {
     p->probed += a->probed;
     if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The plan chose another set of
@@ -83,7 +83,22 @@ static int find_part_of_wave(const struct glint_explain *e, int wave)
     return part;
 }
 
-static void collect_bundle_statistics(struct glint_explain *e)
+/* Adds the account of a bundle to all parts of the explanation CTX that it
+ * belongs to. */
+static void count_bundle(void *ctx, int ghost, int light,
+                         const struct glint_account *a)
+{
+    struct glint_explain *const e = ctx;
+
+    add_account(&e->all, a);
+    /* NOLINTNEXTLINE: set_ghost_numbers() has set ghost_of */
+    add_account(&e->ghost[e->ghost_of[ghost]], a);
+    add_account(&e->light[light], a);
+    if (a->outcome == GLINT_OUTCOME_DRAWN || a->outcome == GLINT_OUTCOME_EMPTY)
+        e->barrels[a->barrels]++;
+}
+
+static void count_model_bundles(struct glint_explain *e)
 {
     const int n_ghosts = (int)e->frame->lens->header->n_ghosts;
     const int n_waves = e->frame->plan.rays.n_waves;
@@ -95,21 +110,15 @@ static void collect_bundle_statistics(struct glint_explain *e)
 
                 glint_flare_account(e->frame->memory.flare, ghost, light, wave,
                                     &a);
-                add_bundle_statistics(&e->all, &a);
-                /* NOLINTNEXTLINE: set_ghost_numbers() has set ghost_of */
-                add_bundle_statistics(&e->ghost[e->ghost_of[ghost]], &a);
-                add_bundle_statistics(&e->light[light], &a);
-                add_bundle_statistics(&e->wave[find_part_of_wave(e, wave)], &a);
-                if (a.outcome == GLINT_OUTCOME_DRAWN ||
-                    a.outcome == GLINT_OUTCOME_EMPTY)
-                    e->barrels[a.barrels]++;
+                count_bundle(e, ghost, light, &a);
+                add_account(&e->wave[find_part_of_wave(e, wave)], &a);
             }
 }
 
 /* ------------------------------------------------------------------- light */
 
-static void draw_flare_part(struct glint_explain *e, int ghost, int light,
-                            int wave)
+static enum glint_status draw_flare_part(struct glint_explain *e, int ghost,
+                                         int light, int wave)
 {
     const struct glint_view *view = &e->frame->view;
     struct glint_image image = glint_image_over(e->linear_q20, GLINT_LINEAR_Q20,
@@ -118,58 +127,104 @@ static void draw_flare_part(struct glint_explain *e, int ghost, int light,
     memset(e->linear_q20, 0,
            3 * (size_t)view->width * (size_t)view->height *
                sizeof *e->linear_q20);
+    if (!e->lens)
+        return e->frame->trace->draw_part(e->frame, ghost, light, &image);
     glint_flare_keep(e->frame->memory.flare, ghost, light, wave);
     glint_flare_draw(e->frame->memory.flare, &image);
+    return GLINT_OK;
 }
 
-void glint_explain_draw(struct glint_explain *explain, int ghost)
+enum glint_status glint_explain_draw(struct glint_explain *explain, int ghost)
 {
-    draw_flare_part(explain, ghost, -1, -1);
+    return draw_flare_part(explain, ghost, -1, -1);
 }
 
 /* Measures PART of the flare, which must have been drawn last: its flux, its
- * max light, and its numbers of lit pixels and lit tiles. */
+ * max light, its numbers of lit pixels and lit tiles, and its bounding box. */
 static void measure_part_light(struct glint_explain *e,
                                struct glint_explain_part *part)
 {
     const struct glint_view *view = &e->frame->view;
-    const size_t n = (size_t)view->width * (size_t)view->height;
+    const int32_t *px = e->linear_q20;
     int64_t sum = 0, most = 0;
 
-    for (size_t i = 0; i < n; i++) {
-        const int32_t *px = e->linear_q20 + 3 * i;
-        const int64_t here = (int64_t)px[0] + px[1] + px[2];
+    part->x0 = view->width;
+    part->y0 = view->height;
+    part->x1 = part->y1 = -1;
+    for (int y = 0; y < view->height; y++)
+        for (int x = 0; x < view->width; x++, px += 3) {
+            const int64_t here = (int64_t)px[0] + px[1] + px[2];
 
-        part->lit += (px[0] | px[1] | px[2]) != 0;
-        sum += here;
-        most = here > most ? here : most;
-    }
-    part->tiles = glint_flare_tiles(e->frame->memory.flare);
+            if ((px[0] | px[1] | px[2]) == 0)
+                continue;
+            part->lit++;
+            part->x0 = min_int(part->x0, x);
+            part->y0 = min_int(part->y0, y);
+            part->x1 = max_int(part->x1, x);
+            part->y1 = max_int(part->y1, y);
+            sum += here;
+            most = here > most ? here : most;
+        }
+    part->tiles = e->lens ? glint_flare_tiles(e->frame->memory.flare) : 0;
     part->flux = (double)sum / 3 * 0x1p-20 * e->unit;
     part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
 }
 
-static void draw_and_measure_parts(struct glint_explain *e)
+/* Draws and measures PART of the frame, unless nothing of it is drawn. */
+static enum glint_status draw_and_measure_part(struct glint_explain *e,
+                                               struct glint_explain_part *part,
+                                               int ghost, int light, int wave)
 {
-    for (int i = 0; i < e->n_ghosts; i++)
-        if (e->ghost[i].edges) {
-            draw_flare_part(e, i, -1, -1);
-            measure_part_light(e, &e->ghost[i]);
+    enum glint_status status;
+
+    if (glint_explain_drawn(part) == 0)
+        return GLINT_OK;
+    status = draw_flare_part(e, ghost, light, wave);
+    if (status == GLINT_OK)
+        measure_part_light(e, part);
+    return status;
+}
+
+/* Draws and measures each ghost, and measures their sum, which costs less than
+ * to draw all again if rays are exact. */
+static enum glint_status measure_ghosts_and_sum(struct glint_explain *e)
+{
+    const size_t n =
+        3 * (size_t)e->frame->view.width * (size_t)e->frame->view.height;
+    int32_t *const part = e->linear_q20, *const sum = calloc(n, sizeof *sum);
+    enum glint_status status = sum ? GLINT_OK : GLINT_E_MEMORY;
+
+    for (int i = 0; i < e->n_ghosts && status == GLINT_OK; i++) {
+        status = draw_and_measure_part(e, &e->ghost[i], i, -1, -1);
+        for (size_t k = 0; k < n && e->ghost[i].lit > 0; k++) {
+            const int64_t light = (int64_t)sum[k] + part[k];
+
+            sum[k] = (int32_t)(light < INT32_MAX ? light : INT32_MAX);
         }
-    for (int i = 0; i < e->n_lights; i++)
-        if (e->light[i].edges) {
-            draw_flare_part(e, -1, i, -1);
-            measure_part_light(e, &e->light[i]);
-        }
-    for (int i = 0; i < e->n_waves; i++)
-        if (e->wave[i].edges) {
-            draw_flare_part(e, -1, -1, i);
-            measure_part_light(e, &e->wave[i]);
-        }
-    if (e->n_lights) {
-        draw_flare_part(e, -1, -1, -1);
-        measure_part_light(e, &e->all);
     }
+    if (status == GLINT_OK && !e->lens) {
+        e->linear_q20 = sum;
+        measure_part_light(e, &e->all);
+        e->linear_q20 = part;
+    }
+    free(sum);
+    return status;
+}
+
+static enum glint_status draw_and_measure_all_parts(struct glint_explain *e)
+{
+    enum glint_status status = measure_ghosts_and_sum(e);
+    const int n_lights = !e->lens && e->n_lights == 1 ? 0 : e->n_lights;
+
+    if (n_lights < e->n_lights)
+        e->light[0] = e->all;
+    for (int i = 0; i < n_lights && status == GLINT_OK; i++)
+        status = draw_and_measure_part(e, &e->light[i], -1, i, -1);
+    for (int i = 0; i < e->n_waves && status == GLINT_OK; i++)
+        status = draw_and_measure_part(e, &e->wave[i], -1, -1, i);
+    if (!e->lens || status != GLINT_OK)
+        return status;
+    return draw_and_measure_part(e, &e->all, -1, -1, -1);
 }
 
 static void set_part_fractions_of_total(const struct glint_explain *e,
@@ -203,41 +258,12 @@ static int count_picture_tiles(const struct glint_frame *f)
            ((f->view.height + side - 1) / side);
 }
 
-enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
-                                               struct glint_frame *frame,
-                                               double unit)
+/* Sets the costs of the frame and of its parts, which a model has drawn. */
+static void set_costs(struct glint_explain *e)
 {
-    const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
+    struct glint_frame *const frame = e->frame;
     const struct glint_cost_plan plan = glint_frame_make_cost_plan(frame);
 
-    *e = (struct glint_explain){
-        .frame = frame,
-        .view = &frame->view,
-        .setup = frame->setup,
-        .lens = frame->lens,
-        .tints = frame->tints,
-        .lights = frame->lights.light,
-        .sets = frame->plan.rays.sets,
-        .dim_codes =
-            frame->plan.rays.dimmest.mantissa ? frame->dials.dim_codes : 0,
-        .n_lights = frame->lights.n,
-        .n_waves = frame->plan.rays.sets ? frame->plan.rays.sets->n_sets
-                                         : frame->plan.rays.n_waves,
-        .unit = unit,
-        .tile_log2 = frame->cfg.tile_log2,
-        .n_tiles = count_picture_tiles(frame)};
-    e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
-    e->ghost = calloc(n_all, sizeof *e->ghost);
-    e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
-    e->wave = calloc((size_t)e->n_waves, sizeof *e->wave);
-    e->linear_q20 =
-        calloc(3 * (size_t)frame->view.width * (size_t)frame->view.height,
-               sizeof *e->linear_q20);
-    if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
-        return GLINT_E_MEMORY;
-    set_ghost_numbers(e);
-    collect_bundle_statistics(e);
-    draw_and_measure_parts(e);
     e->stage[GLINT_COST_PARTS] = compute_item_cost(
         GLINT_COST_PARTS,
         glint_cost_of(&plan, &plan.dials).count[GLINT_COST_PARTS]);
@@ -250,8 +276,54 @@ enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
     e->all.work = compute_part_cost(&e->all, e->stage);
     for (int k = GLINT_COST_PARTS; k < GLINT_COST_KINDS; k++)
         e->all.work += e->stage[k];
-    e->all.share = e->all.flux > 0;
     e->all.cost = 1;
+}
+
+enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
+                                               struct glint_frame *frame,
+                                               double unit)
+{
+    const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
+    const struct glint_wave_sets *const sets = frame->plan.rays.sets;
+    enum glint_status status;
+
+    *e = (struct glint_explain){.frame = frame,
+                                .view = &frame->view,
+                                .setup = frame->setup,
+                                .lens = frame->lens,
+                                .tints = frame->tints,
+                                .lights = frame->lights.light,
+                                .dim_codes = frame->plan.rays.dimmest.mantissa
+                                                 ? frame->dials.dim_codes
+                                                 : 0,
+                                .set_size = sets ? sets->size : NULL,
+                                .n_lights = frame->lights.n,
+                                .n_waves = !frame->lens ? 0
+                                           : sets       ? sets->n_sets
+                                                  : frame->plan.rays.n_waves,
+                                .unit = unit,
+                                .tile_log2 = frame->cfg.tile_log2,
+                                .n_tiles = count_picture_tiles(frame)};
+    e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
+    e->ghost = calloc(n_all, sizeof *e->ghost);
+    e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
+    e->wave = calloc((size_t)e->n_waves + 1, sizeof *e->wave);
+    e->linear_q20 =
+        calloc(3 * (size_t)frame->view.width * (size_t)frame->view.height,
+               sizeof *e->linear_q20);
+    if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
+        return GLINT_E_MEMORY;
+    set_ghost_numbers(e);
+    if (e->lens)
+        count_model_bundles(e);
+    else
+        frame->trace->account(frame, count_bundle, e);
+    status = draw_and_measure_all_parts(e);
+    if (status != GLINT_OK)
+        return status;
+    if (e->lens)
+        set_costs(e);
+    e->all.share = e->all.flux > 0;
     set_part_fractions_of_total(e, e->ghost, e->n_ghosts);
     set_part_fractions_of_total(e, e->light, e->n_lights);
     set_part_fractions_of_total(e, e->wave, e->n_waves);
@@ -321,7 +393,9 @@ void glint_explain_close(struct glint_explain *e)
 
 int glint_explain_listed(const struct glint_explain *explain, int tile)
 {
-    return glint_flare_listed(explain->frame->memory.flare, tile);
+    return explain->lens
+               ? glint_flare_listed(explain->frame->memory.flare, tile)
+               : 0;
 }
 
 int glint_explain_is_beyond(const struct glint_explain *explain,

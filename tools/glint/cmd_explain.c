@@ -24,24 +24,21 @@ static const char help[] =
     "OUT]\n"
     "              [options]\n"
     "\n"
-    "Lists the lights, wavelengths and ghosts of one frame. For each ghost it\n"
-    "prints the barrels and polynomial terms, the cost (vertices, edges, "
-    "pixel\n"
-    "rows, lit pixels, tiles, fraction of the frame's cost), the fraction of "
-    "the\n"
-    "light on the picture and the brightest pixel (white = 1). It also lists "
-    "what\n"
-    "was left out and why, and bright regions that were not taken for lamps. "
-    "The\n"
-    "frame is that of glint overlay with picture IN, or that of glint render "
-    "with\n"
-    "--size. With --scene it first lists the state of each object (drawn, "
-    "hidden,\n"
-    "behind the camera, off-screen, occluded, below a pixel) and light; "
-    "--lens\n"
-    "none lists these only. Costs are estimated numbers of instructions; the "
-    "cost\n"
-    "of pixels that several ghosts light belongs to none of them.\n"
+    "Lists the lights and ghosts of one frame: for each ghost the pair of\n"
+    "surfaces that reflect it, its size and centre in pixels, its fraction of\n"
+    "the flare's light and its brightest pixel (white = 1). It also lists the\n"
+    "ghosts that were not drawn and why, and bright regions that were not "
+    "taken\n"
+    "for lamps. The frame is that of glint overlay with picture IN, or that "
+    "of\n"
+    "glint render with --size, whose brightness is in units of the lamps' "
+    "power.\n"
+    "A lens without a cached model is drawn by exact rays. A model adds the\n"
+    "fraction of the drawing cost (estimated instructions, all of them with\n"
+    "--json). With --scene it first lists the state of each object (drawn,\n"
+    "hidden, behind the camera, off-screen, occluded, below a pixel) and "
+    "light;\n"
+    "--lens none lists these only.\n"
     "\n"
     "  -o, --output OUT    write a picture: tiles with flare shaded, ghosts\n"
     "                      outlined and numbered, a legend; with --scene the\n"
@@ -101,10 +98,14 @@ static bool parse_option(struct explain_command *c, int option,
     return false;
 }
 
+/* Returns whether the frame is that of glint render, in linear light. */
+static bool is_linear(const struct explain_command *c)
+{
+    return c->width && !c->drawing.line.settings.options.scene;
+}
+
 static int check_options(struct tool *tool, const struct explain_command *c)
 {
-    const struct settings *s = &c->drawing.line.settings;
-
     if (c->input && c->width)
         return tool_usage(tool, "needs one input picture, or --size WxH");
     if (!c->drawing.line.settings.options.scene &&
@@ -115,10 +116,6 @@ static int check_options(struct tool *tool, const struct explain_command *c)
         c->drawing.line.n_hand == 0 && c->drawing.line.at.n == 0 &&
         !c->drawing.line.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
-    if (s->options.rays != GLINT_RAYS_MODEL)
-        return tool_usage(
-            tool,
-            "explains flares drawn from a model only; leave out --rays exact");
     return -1;
 }
 
@@ -152,7 +149,12 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     if (code >= 0)
         return code;
     c->input = argv[optind]; /* NULL if there is no argument */
-    return check_options(tool, c);
+    code = check_options(tool, c);
+    if (code < 0 && is_linear(c) &&
+        strcmp(c->drawing.line.settings.options.wavelengths, "auto") == 0)
+        code = drawing_line_set_text(tool, &c->drawing.line, "wavelengths",
+                                     "650,532,450"); /* default of render */
+    return code;
 }
 
 /* ------------------------------------------------------------------- frame */
@@ -183,6 +185,7 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
 {
     struct drawing *drawing = &c->drawing;
     const size_t n = (size_t)c->width * (size_t)c->height;
+    const double start = tool_clock_s();
     struct glint_float_image light = {.width = c->width, .height = c->height};
     enum glint_status status = drawing_detect_lamps_only(drawing, &c->image, 0);
     struct glint_lamp *plain;
@@ -195,11 +198,13 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
     for (int i = 0; i < drawing->run.n_lamps && plain; i++)
         plain[i] = drawing->run.lamp[i].lamp;
     light.rgb = calloc(3 * n, sizeof *light.rgb);
+    drawing_start_flare(drawing);
     if (light.rgb && plain)
         status = glint_engine_render(
             drawing->run.engine, plain, drawing->run.n_lamps,
             settings_compute_brightness_scale(&drawing->line.settings),
             GLINT_ENGINE_ALL, light.rgb, &drawing->run.report);
+    drawing_end_flare(&drawing->run, start);
     free(plain);
     if (status == GLINT_OK) {
         codes = glint_measure_encode(
@@ -361,7 +366,7 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
 
 static int explain_frame(struct tool *tool, struct explain_command *c)
 {
-    const bool linear = c->width && !c->drawing.line.settings.options.scene;
+    const bool linear = is_linear(c);
     enum glint_status status;
     int code;
 
@@ -370,6 +375,8 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
         (c->ghosts && tool_check_output(tool, c->ghosts) != EXIT_OK))
         return EXIT_OUTPUT;
     code = check_outputs_differ_from_inputs(tool, c);
+    c->drawing.line.settings.unbaked =
+        settings_choose_method_without_model(&c->drawing.line.settings);
     if (code == EXIT_OK)
         code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)

@@ -66,6 +66,7 @@ struct point {
      * the unit of at */
     double reach;
     int patch;
+    int light;       /* index of the light, of a sum: of the brighter one */
     int first, last; /* the point belongs to the levels first .. last */
 };
 
@@ -124,6 +125,11 @@ struct traced {
     int n_points, n_patches, n_fields, n_bundles, n_workers;
     double found; /* progress of the frame when the fields had been measured, 0
                      .. 1 */
+    /* The part of the frame that is drawn: indices of a ghost and of a light;
+     * -1: all. */
+    struct {
+        int ghost, light;
+    } part;
     struct glint_flare_rays rays;
 };
 
@@ -481,9 +487,10 @@ static void merge_two_points(const struct traced *t, const struct point *a,
     const double degree = GLINT_PI / 180;
     double d[3], e[3];
 
-    *both = *a;
-    compute_weighted_direction(&a->lamp, d);
-    compute_weighted_direction(&b->lamp, e);
+    *both = compute_weighted_direction(&a->lamp, d) <
+                    compute_weighted_direction(&b->lamp, e)
+                ? *b
+                : *a;
     for (int k = 0; k < 3; k++)
         d[k] += e[k];
     both->lamp.theta_deg = atan2(hypot(d[0], d[1]), d[2]) / degree;
@@ -732,7 +739,8 @@ group_lamps_in_patches(struct traced *t, const struct glint_lamp *lamps, int n,
     if (room && patch && t->point && t->patch) {
         t->n_points = n;
         for (int i = 0; i < n; i++)
-            t->point[i] = (struct point){.lamp = lamps[i], .last = LEVELS};
+            t->point[i] =
+                (struct point){.lamp = lamps[i], .light = i, .last = LEVELS};
         left = assign_points_to_patches(
             t, patch, make_lamp_patches(t, given, n_given, room, patch));
         t->n_patches =
@@ -1108,9 +1116,19 @@ static enum glint_status plan_ray_frame(struct glint_frame *f,
     return status == GLINT_OK ? allocate_ray_memory(f) : status;
 }
 
+/* Returns whether B belongs to the part of the frame that is drawn. */
+static bool is_bundle_in_part(const struct glint_frame *f,
+                              const struct ray_bundle *b)
+{
+    const struct traced *const t = get_traced_state(f);
+
+    return (t->part.ghost < 0 || t->part.ghost == t->field[b->field].ghost) &&
+           (t->part.light < 0 || t->part.light == t->point[b->point].light);
+}
+
 /* Callback of struct glint_flare_rays: prepares the interpolation of bundle I
- * for compute_vertex_row(). Returns 0 if the bundle lies outside rows Y0 ..
- * Y1. */
+ * for compute_vertex_row(). Returns 0 if the bundle is not drawn or lies outside
+ * rows Y0 .. Y1. */
 static int open_ray_bundle(void *ctx, int worker, int i, int y0, int y1)
 {
     const struct glint_frame *f = ctx;
@@ -1120,6 +1138,8 @@ static int open_ray_bundle(void *ctx, int worker, int i, int y0, int y1)
     const struct point *p = &t->point[b->point];
     const void *mem = t->mem[b->field];
 
+    if (!is_bundle_in_part(f, b))
+        return 0;
     if (b->low <= b->high && (b->high < (float)y0 || b->low > (float)y1))
         return 0;
     if (!mem && w->in_mem != b->field) {
@@ -1299,9 +1319,18 @@ static void add_flare_stats(struct glint_flare_stats *all,
     all->held_cells = max_int(all->held_cells, s->held_cells);
 }
 
-/* Bins and draws all rows of IMAGE in bands as high as the capacities allow. */
+static void draw_flare_only(struct glint_frame *f,
+                            const struct glint_image *image)
+{
+    glint_flare_draw(f->memory.flare, image);
+}
+
+/* Bins all rows of IMAGE, in bands as high as the capacities allow, and draws
+ * them by DRAW. */
 static enum glint_status draw_all_rows(struct glint_frame *f, double scale,
                                        const struct glint_image *image,
+                                       void draw(struct glint_frame *,
+                                                 const struct glint_image *),
                                        struct glint_flare_stats *stats)
 {
     const int height = f->view.height, side = 1 << f->cfg.tile_log2;
@@ -1316,13 +1345,13 @@ static enum glint_status draw_all_rows(struct glint_frame *f, double scale,
         if (!has_edge_capacity(f, &s) || s.dropped_bundles) {
             const bool more = enlarge_edge_capacity(f, &s, n <= side);
 
-            if (more)
-                status = begin_flare(f, scale);
+            /* also clears the number of dropped bundles */
+            status = begin_flare(f, scale);
             if (!more || !has_edge_capacity(f, &s))
                 rows = choose_fewer_rows(f, n, &s);
             continue;
         }
-        glint_frame_draw_passes(f, image);
+        draw(f, image);
         add_flare_stats(stats, &s);
         y0 += n;
         if (f->progress)
@@ -1355,6 +1384,7 @@ draw_ray_frame(struct glint_frame *frame, const struct glint_lamp *lamps,
     expected.need_primitives = (int)fmin(EDGES * t->n_bundles, INT_MAX);
     expected.need_refs = expected.need_primitives;
     *stats = (struct glint_flare_stats){0};
+    t->part.ghost = t->part.light = -1;
     frame->cfg.max_bundles = max_int(t->n_bundles, 1);
     frame->cfg.max_vertices = 0;
     frame->cfg.max_primitives = max_int(frame->cfg.max_primitives, 1 << 13);
@@ -1362,9 +1392,86 @@ draw_ray_frame(struct glint_frame *frame, const struct glint_lamp *lamps,
     enlarge_edge_capacity(frame, &expected, false);
     status = begin_flare(frame, scale);
     if (status == GLINT_OK)
-        status = draw_all_rows(frame, scale, image, stats);
+        status =
+            draw_all_rows(frame, scale, image, glint_frame_draw_passes, stats);
     times[4] = read_frame_clock(frame);
     return status;
+}
+
+static enum glint_status draw_ray_frame_part(struct glint_frame *frame,
+                                             int ghost, int light,
+                                             const struct glint_image *image)
+{
+    struct traced *const t = get_traced_state(frame);
+    struct glint_flare_stats stats = {0};
+
+    t->part.ghost = ghost;
+    t->part.light = light;
+    return draw_all_rows(frame, frame->plan.scale, image, draw_flare_only,
+                         &stats);
+}
+
+/* Returns why FIELD, a measured field, is not drawn for point P: as FIELD I of
+ * the frame, or -1 if it is none of these. Returns GLINT_OUTCOME_DRAWN if it is
+ * drawn. */
+static enum glint_outcome find_ray_outcome(const struct glint_frame *f,
+                                           const struct ray_field *field, int i,
+                                           int p)
+{
+    const struct traced *const t = get_traced_state(f);
+    const struct point *const point = &t->point[p];
+
+    if (!is_ghost_drawn(f, field->ghost))
+        return GLINT_OUTCOME_OTHER;
+    if (!(point->lamp.power > 0))
+        return GLINT_OUTCOME_DARK;
+    if (i < 0)
+        return GLINT_OUTCOME_BLOCKED;
+    if (t->set_of[i] < 0)
+        return GLINT_OUTCOME_FAINT;
+    if (!is_field_in_picture(f, &t->field[i], get_field_azimuth(t, point)))
+        return GLINT_OUTCOME_OUTSIDE;
+    return is_field_drawn_from_point(t, i, p) ? GLINT_OUTCOME_DRAWN
+                                              : GLINT_OUTCOME_SHARED;
+}
+
+static void report_ray_accounts(const struct glint_frame *frame,
+                                glint_frame_account_fn *report, void *ctx)
+{
+    const struct traced *const t = get_traced_state(frame);
+    const int n_ghosts = frame->setup->n_ghosts;
+    int i = 0; /* fields of the frame are listed in the order of all fields */
+
+    if (!t || !t->set_of) /* nothing was drawn */
+        return;
+    for (int k = 0; k < t->n_patches * n_ghosts; k++) {
+        const struct ray_field *const field = &t->measured[k];
+        const bool is_listed = i < t->n_fields &&
+                               t->field[i].patch == field->patch &&
+                               t->field[i].ghost == field->ghost;
+
+        for (int p = 0; p < t->n_points; p++) {
+            const struct glint_account account = {
+                .outcome =
+                    find_ray_outcome(frame, field, is_listed ? i : -1, p)};
+
+            if (&t->patch[t->point[p].patch] == field->patch &&
+                t->point[p].first == 0 &&
+                account.outcome != GLINT_OUTCOME_DRAWN)
+                report(ctx, field->ghost, t->point[p].light, &account);
+        }
+        i += is_listed;
+    }
+    for (int b = 0; b < t->n_bundles; b++) {
+        const struct ray_bundle *const bundle = &t->bundle[b];
+        const struct ray_field *const field = &t->field[bundle->field];
+        const struct glint_account account = {.outcome = GLINT_OUTCOME_DRAWN,
+                                              .cells = field->n_cells,
+                                              .vertices = (field->n_cells + 1) *
+                                                          (field->n_cells + 1)};
+
+        report(ctx, field->ghost, t->point[bundle->point].light, &account);
+    }
 }
 
 static int count_ray_bundles(const struct glint_frame *frame)
@@ -1395,5 +1502,6 @@ static void move_ray_state(struct glint_frame *frame, struct glint_frame *from)
 }
 
 const struct glint_frame_rays glint_frame_traces = {
-    draw_ray_frame,   choose_light_scale, count_ray_bundles,
-    get_bundle_ghost, free_ray_state,     move_ray_state};
+    draw_ray_frame,      choose_light_scale, count_ray_bundles,
+    get_bundle_ghost,    free_ray_state,     move_ray_state,
+    report_ray_accounts, draw_ray_frame_part};

@@ -337,8 +337,11 @@ merge_exact_lamps(struct glint_frame *f, const struct glint_lamp *lamps, int *n)
     f->lights.n_given = *n;
     if (convert_lamps_to_lights(f, lamps, *n, 1) != GLINT_OK)
         return NULL;
-    if (f->lights.n == *n && f->lights.n_more == 0)
+    if (f->lights.n == *n && f->lights.n_more == 0) {
+        for (int i = 0; i < *n; i++) /* merging has changed their order */
+            f->lights.light[i] = glint_light_from_lamp(&lamps[i], 1);
         return lamps;
+    }
     *n = f->lights.n;
     merged = realloc(f->lights.merged, ((size_t)*n + 1) * sizeof *merged);
     if (!merged)
@@ -357,6 +360,7 @@ draw_flare_by_exact_rays(struct glint_frame *f, const struct glint_lamp *lamps,
 {
     const struct glint_lamp *merged = merge_exact_lamps(f, lamps, &n_lamps);
 
+    f->plan.scale = scale;
     apply_quality_to_flare_config(f);
     return merged
                ? f->trace->draw(f, merged, n_lamps, scale, image, stats, times)

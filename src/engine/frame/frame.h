@@ -38,6 +38,12 @@
 #define GLINT_FRAME_PER_LIGHT  16
 
 struct glint_frame;
+struct glint_account;
+
+/* Receives what was done with the rays of GHOST for LIGHT; both are indices in
+ * the frame. */
+typedef void glint_frame_account_fn(void *ctx, int ghost, int light,
+                                    const struct glint_account *account);
 
 /* Factors by which the light of a flare is scaled before it is drawn in fixed
  * point, as log2. */
@@ -75,6 +81,13 @@ struct glint_frame_rays {
     /* Moves the cached rays of FROM to FRAME, a frame with the same lens. So
      * pictures of the same lamps, in any size, take less time. */
     void (*adopt)(struct glint_frame *frame, struct glint_frame *from);
+    /* Reports all ghosts and lights of the last frame. */
+    void (*account)(const struct glint_frame *frame,
+                    glint_frame_account_fn *report, void *ctx);
+    /* Adds to IMAGE the part of the last frame that belongs to GHOST and LIGHT;
+     * each may be -1 for all. */
+    enum glint_status (*draw_part)(struct glint_frame *frame, int ghost,
+                                   int light, const struct glint_image *image);
 };
 
 /* Settings with which the next picture is planned. */

@@ -137,22 +137,27 @@ static void draw_ghost_thumbnail(const struct glint_image *to,
     }
 }
 
-static void draw_numbered_ghost(const struct ghost_list *l,
-                                const struct sheet *sheet, int k, int ghost,
-                                const struct glint_image *small, float *light)
+static enum glint_status draw_numbered_ghost(const struct ghost_list *l,
+                                             const struct sheet *sheet, int k,
+                                             int ghost,
+                                             const struct glint_image *small,
+                                             float *light)
 {
     const size_t n = 3 * (size_t)small->width * (size_t)small->height;
     const struct glint_image to = sheet_get_image(sheet, k);
     const struct glint_ghost *g = &l->explain->setup->ghost[ghost];
+    const enum glint_status status = glint_explain_draw(l->explain, ghost);
     char text[64];
 
-    glint_explain_draw(l->explain, ghost);
+    if (status != GLINT_OK)
+        return status;
     reduce_ghost_image(l->explain, small->width, small->height, light);
     draw_ghost_thumbnail(&to, small, light,
                          find_display_exposure(light, n, light + n));
     snprintf(text, sizeof text, "%d  %d-%d  %.1f%%", ghost, g->i, g->j,
              100 * l->explain->ghost[ghost].share);
     sheet_draw_caption(sheet, k, text);
+    return GLINT_OK;
 }
 
 static enum glint_status draw_contact_sheet(const struct ghost_list *l,
@@ -174,7 +179,8 @@ static enum glint_status draw_contact_sheet(const struct ghost_list *l,
     for (int i = 0; i < l->explain->n_ghosts && status == GLINT_OK && k < all;
          i++)
         if (glint_explain_drawn(&l->explain->ghost[l->ghosts[i]]) > 0)
-            draw_numbered_ghost(l, sheet, k++, l->ghosts[i], small, light);
+            status =
+                draw_numbered_ghost(l, sheet, k++, l->ghosts[i], small, light);
     free(light);
     return status;
 }

@@ -20,6 +20,7 @@ static const uint8_t palette[PALETTE][3] = {
 
 struct label {
     int x0, y0, x1, y1;
+    int k, number; /* index of the ghost's colour, and number of the ghost */
 };
 
 struct marking {
@@ -135,15 +136,18 @@ static bool find_label_position(const struct marking *m, int start, int w,
 
                 if (rim ? !is_rim_pixel(m, x, y) : !is_pixel_lit(m, x, y))
                     continue;
-                *l = (struct label){x - w / 2, y - h / 2, x - w / 2 + w,
-                                    y - h / 2 + h};
+                *l = (struct label){.x0 = x - w / 2,
+                                    .y0 = y - h / 2,
+                                    .x1 = x - w / 2 + w,
+                                    .y1 = y - h / 2 + h};
                 if (is_label_space_free(m, l))
                     return true;
             }
     return false;
 }
 
-static void draw_ghost_label(struct marking *m, int k, int number)
+/* Reserves the position of the label of ghost NUMBER, which was drawn last. */
+static void place_ghost_label(struct marking *m, int k, int number)
 {
     struct paint p = {.image = m->image, .line = m->scale};
     const int start = k * 5 % 16 * m->height / 16; /* first row; varied */
@@ -155,11 +159,21 @@ static void draw_ghost_label(struct marking *m, int k, int number)
         !find_label_position(m, start, paint_text_width(&p, text) + 4 * p.line,
                              9 * p.line, &l))
         return;
+    l.k = k;
+    l.number = number;
     m->label[m->n_labels++] = l;
+}
+
+static void draw_ghost_label(const struct marking *m, const struct label *l)
+{
+    struct paint p = {.image = m->image, .line = m->scale};
+    char text[16];
+
+    snprintf(text, sizeof text, "%d", l->number);
     paint_set_colour(&p, 0, 0, 0);
-    paint_fill_rectangle(&p, l.x0, l.y0, l.x1, l.y1);
-    set_ghost_palette(&p, k);
-    paint_text(&p, l.x0 + 2 * p.line, l.y0 + 2 * p.line, text);
+    paint_fill_rectangle(&p, l->x0, l->y0, l->x1, l->y1);
+    set_ghost_palette(&p, l->k);
+    paint_text(&p, l->x0 + 2 * p.line, l->y0 + 2 * p.line, text);
 }
 
 static void draw_ghost_outline(const struct marking *m, int k)
@@ -184,7 +198,7 @@ static int count_marked_ghosts(const struct glint_explain *e,
     int n = 0;
 
     for (int i = 0; i < e->n_ghosts; i++)
-        n += glint_explain_drawn(&e->ghost[i]) > 0;
+        n += e->ghost[i].lit > 0;
     return n < t->top ? n : t->top;
 }
 
@@ -212,19 +226,19 @@ static void draw_legend_title(const struct marking *m,
 
     paint_set_colour(&p, 64, 76, 120);
     paint_fill_rectangle(&p, 4 * p.line, y, 9 * p.line, y + 5 * p.line);
-    snprintf(text, sizeof text, "%d of %d tiles  %d of %d ghosts  %s",
-             m->explain->all.tiles, m->explain->n_tiles,
+    snprintf(text, sizeof text, "%d of %d ghosts  %s",
              count_marked_ghosts(m->explain, t), m->explain->n_ghosts, t->lens);
     paint_set_colour(&p, 208, 208, 208);
     paint_text(&p, 12 * p.line, y, text);
 }
 
-/* Draws entry K of the legend: the number of GHOST, and its fractions of the
- * light and of the cost. */
+/* Draws entry K of the legend: the number of GHOST, the surfaces that reflect
+ * it, and its fraction of the light. */
 static void draw_legend_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};
     const struct glint_explain_part *part = &m->explain->ghost[ghost];
+    const struct glint_ghost *g = &m->explain->setup->ghost[ghost];
     const int x = k % count_legend_columns(m) * COLUMN * p.line + 4 * p.line;
     const int y =
         m->height + (3 + 8 * (1 + k / count_legend_columns(m))) * p.line;
@@ -234,8 +248,8 @@ static void draw_legend_entry(const struct marking *m, int k, int ghost)
     paint_fill_rectangle(&p, x, y, x + 5 * p.line, y + 5 * p.line);
     snprintf(text, sizeof text, "%d", ghost);
     paint_text(&p, x + 8 * p.line, y, text);
-    snprintf(text, sizeof text, "light %.1f%%  work %.1f%%", 100 * part->share,
-             100 * part->cost);
+    snprintf(text, sizeof text, "surfaces %d-%d  %.1f%%", g->i, g->j,
+             100 * part->share);
     paint_text(&p, x + 24 * p.line, y, text);
 }
 
@@ -281,18 +295,16 @@ enum glint_status explain_draw_marks(struct glint_explain *e,
     shade_lit_tiles(&m);
     draw_legend_title(&m, t);
     for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
-        if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
+        if (e->ghost[ghosts[i]].lit == 0)
             continue;
-        glint_explain_draw(e, ghosts[i]);
+        status = glint_explain_draw(e, ghosts[i]);
+        if (status != GLINT_OK)
+            break;
         draw_ghost_outline(&m, n);
+        place_ghost_label(&m, n, ghosts[i]);
         draw_legend_entry(&m, n++, ghosts[i]);
     }
-    n = 0;
-    for (int i = 0; i < e->n_ghosts && n < t->top; i++) {
-        if (glint_explain_drawn(&e->ghost[ghosts[i]]) == 0)
-            continue;
-        glint_explain_draw(e, ghosts[i]);
-        draw_ghost_label(&m, n++, ghosts[i]);
-    }
-    return GLINT_OK;
+    for (int i = 0; i < m.n_labels; i++)
+        draw_ghost_label(&m, &m.label[i]);
+    return status;
 }

@@ -27,10 +27,11 @@ static const struct {
     [GLINT_OUTCOME_DARK] = {"dark", "the light has none of this wavelength"},
     [GLINT_OUTCOME_OUTSIDE] = {"outside", "outside the picture"},
     [GLINT_OUTCOME_FAINT] = {"faint", "too faint to change a pixel code"},
-    [GLINT_OUTCOME_NO_ROOM] = {"no_room", "the arena is full"},
+    [GLINT_OUTCOME_NO_ROOM] = {"no_room",
+                               "the memory limit is reached (--memory)"},
     [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
     [GLINT_OUTCOME_SHARED] = {"shared",
-                              "dim: shares the rays of a brighter light"},
+                              "dim: drawn as one with that of a near light"},
 };
 
 const char *explain_outcome_reason(enum glint_outcome outcome)
@@ -43,13 +44,13 @@ static double compute_direction_angle_deg(double y, double x)
     return atan2(y, x) * 180 / GLINT_PI;
 }
 
-/* Returns the number of ghosts of which at least one bundle is drawn. */
-static int count_drawn_ghosts(const struct glint_explain *e)
+/* Returns the number of ghosts that light a pixel. */
+static int count_visible_ghosts(const struct glint_explain *e)
 {
     int n = 0;
 
     for (int i = 0; i < e->n_ghosts; i++)
-        n += glint_explain_drawn(&e->ghost[i]) > 0;
+        n += e->ghost[i].lit > 0;
     return n;
 }
 
@@ -63,106 +64,73 @@ static void print_percent(double x)
         printf("%8.1f", 100 * x);
 }
 
-/* Prints the cost columns at the end of each table row. */
-static void print_cost_columns(const struct glint_explain_part *p)
+/* Prints the columns that all tables have, and a line feed. Only models have
+ * costs. */
+static void print_light_columns(const struct glint_explain *e,
+                                const struct glint_explain_part *p)
 {
-    printf(" %9lld %8lld %9lld %8d %5d", p->vertices, p->edges, p->rows, p->lit,
-           p->tiles);
     print_percent(p->share);
-    printf(" %9.3g", p->brightest);
-    print_percent(p->cost);
+    printf(" %10.3g", p->brightest);
+    if (e->lens)
+        print_percent(p->cost);
     printf("\n");
 }
 
-static void print_table_heading(const char *what)
+static void print_table_heading(const struct glint_explain *e, const char *what)
 {
-    printf("\n%-30s %9s %8s %9s %8s %5s %7s %9s %7s\n", what, "vertices",
-           "edges", "rows", "lit px", "tiles", "light%", "brightest", "work%");
-}
-
-/* Prints a cost that is zero in most frames, unless it is zero. */
-static void print_cost_unless_zero(const struct glint_explain *e,
-                                   enum glint_cost_kind kind)
-{
-    if (e->stage[kind] > 0)
-        printf(",\n      %s %.1f (%.1f M)", glint_cost_weight[kind].name,
-               100 * e->stage[kind] / e->all.work, 1e-6 * e->stage[kind]);
-}
-
-/* Prints the number of dim bundles that share the rays of a brighter light. */
-static void print_merged_dim_bundles(const struct glint_explain *e)
-{
-    const double dim = e->dim_codes;
-
-    if (dim > 0)
-        printf("dim: ghosts below %.3g codes; %d bundles share the rays of a "
-               "brighter light\n",
-               dim, e->all.of[GLINT_OUTCOME_SHARED]);
+    printf("\n%s  light%%  brightest%s\n", what, e->lens ? "   cost%" : "");
 }
 
 static void print_explanation_title(const struct glint_explain *e,
                                     const struct explain_title *t)
 {
-    const struct glint_explain_part *all = &e->all;
-
-    printf("%s, %dx%d, in %s\n", t->lens, e->view->width, e->view->height,
-           t->linear ? "linear light" : "8-bit codes");
-    /* Lamps of visible extent are drawn as several points. */
-    printf(e->n_lights > t->n_lamps ? "%d points of %d light%s drawn"
-                                    : "%d of %d light%s drawn",
-           e->n_lights, t->n_lamps, t->n_lamps == 1 ? "" : "s");
-    printf("; %d of %d ghosts change a pixel, on %d of %d tiles\n",
-           count_drawn_ghosts(e), e->n_ghosts, all->tiles, e->n_tiles);
-    printf("%d of %d bundles drawn, each the rays of one ghost, point and "
-           "wavelength\nbundles by barrels that cut them:",
-           glint_explain_drawn(all), glint_explain_bundles(all));
-    for (int k = 0, some = 0; k < GLINT_EXPLAIN_BARRELS; k++)
-        if (e->barrels[k])
-            printf("%s %d by %d", some++ ? "," : "", e->barrels[k], k);
-    printf("\n"
-           "polynomial terms per ray: %.1f on average\n",
-           all->vertices ? (double)all->all_terms / (double)all->vertices : 0);
-    printf("cost: about %.1f million instructions, in percent\n"
-           "     ",
-           1e-6 * all->work);
-    for (int i = 0; i < GLINT_COST_KINDS && all->work > 0; i++)
-        if (i < GLINT_COST_PARTS || i == GLINT_COST_LIT || i == GLINT_COST_STAR)
-            printf("%s %s %.1f", i ? "," : "", glint_cost_weight[i].name,
-                   100 * e->stage[i] / all->work);
-    print_cost_unless_zero(e, GLINT_COST_PARTS);
-    print_cost_unless_zero(e, GLINT_COST_VEIL);
-    printf("\n");
-    print_merged_dim_bundles(e);
+    printf("%s, %dx%d, by %s, %s\n", t->lens, e->view->width, e->view->height,
+           e->lens ? "a model" : "exact rays",
+           t->linear ? "light in units of the lamps' power"
+                     : "white has brightness 1");
+    if (e->n_lights > t->n_lamps)
+        printf("%d light%s drawn as %d points", t->n_lamps,
+               t->n_lamps == 1 ? "" : "s", e->n_lights);
+    else
+        printf("%d of %d light%s drawn", e->n_lights, t->n_lamps,
+               t->n_lamps == 1 ? "" : "s");
+    printf("; %d of %d ghosts light a pixel, together %.1f%% of the picture\n",
+           count_visible_ghosts(e), e->n_ghosts,
+           100.0 * e->all.lit / e->view->width / e->view->height);
 }
 
 static void print_light_rows(const struct glint_explain *e,
                              const struct explain_title *t)
 {
-    print_table_heading("light    angle azimuth bundles");
+    print_table_heading(e, "light  centre, pixels    angle  azimuth");
     for (int i = 0; i < e->n_lights && i < t->top; i++) {
         const struct glint_light *b = &e->lights[i];
+        const struct glint_lamp lamp = {
+            .theta_deg =
+                compute_direction_angle_deg(b->sine_q30, b->cosine_q30),
+            .phi_deg = compute_direction_angle_deg(b->sin_q30, b->cos_q30)};
+        char centre[64];
+        double x, y;
 
-        printf("%5d %8.3f %7.1f %7d", i + 1,
-               compute_direction_angle_deg(b->sine_q30, b->cosine_q30),
-               compute_direction_angle_deg(b->sin_q30, b->cos_q30),
-               glint_explain_drawn(&e->light[i]));
-        print_cost_columns(&e->light[i]);
+        glint_view_to_pixel(e->view, e->setup->optics.focal_mm, &lamp, &x, &y);
+        snprintf(centre, sizeof centre, "%.0f,%.0f", x, y);
+        printf("%5d %15s %8.3f %8.1f", i + 1, centre, lamp.theta_deg,
+               lamp.phi_deg);
+        print_light_columns(e, &e->light[i]);
     }
     if (e->n_lights > t->top)
         printf("      and %d more (--top)\n", e->n_lights - t->top);
 }
 
+/* Prints a row per wavelength if all ghosts are drawn with the same ones. */
 static void print_wavelength_rows(const struct glint_explain *e)
 {
-    print_table_heading("wavelength             bundles");
+    if (e->set_size || e->n_waves == 0)
+        return;
+    print_table_heading(e, "wavelength");
     for (int i = 0; i < e->n_waves; i++) {
-        if (e->sets)
-            printf("%-3d per ghost   %14d", e->sets->size[i],
-                   glint_explain_drawn(&e->wave[i]));
-        else
-            printf("%7.1f nm %19d", e->setup->wavelength_nm[i],
-                   glint_explain_drawn(&e->wave[i]));
-        print_cost_columns(&e->wave[i]);
+        printf("%7.1f nm", e->setup->wavelength_nm[i]);
+        print_light_columns(e, &e->wave[i]);
     }
 }
 
@@ -171,20 +139,21 @@ static void print_ghost_rows(const struct glint_explain *e,
 {
     int n = 0;
 
-    print_table_heading("ghost   pair bundles terms cut");
+    print_table_heading(e, "ghost surfaces  size, pixels       centre");
     for (int i = 0; i < e->n_ghosts; i++) {
         const struct glint_explain_part *p = &e->ghost[ghosts[i]];
         const struct glint_ghost *g = &e->setup->ghost[ghosts[i]];
-        char pair[32], bundles[32];
+        char pair[32], size[32], centre[32];
 
-        if (glint_explain_drawn(p) == 0 || n++ >= t->top)
+        if (p->lit == 0 || n++ >= t->top)
             continue;
         snprintf(pair, sizeof pair, "%d-%d", g->i, g->j);
-        snprintf(bundles, sizeof bundles, "%d/%d", glint_explain_drawn(p),
-                 glint_explain_bundles(p));
-        printf("%5d %6s %7s %5d %3d", ghosts[i], pair, bundles, p->terms,
-               p->barrels);
-        print_cost_columns(p);
+        snprintf(size, sizeof size, "%dx%d", p->x1 - p->x0 + 1,
+                 p->y1 - p->y0 + 1);
+        snprintf(centre, sizeof centre, "%d,%d", (p->x0 + p->x1 + 1) / 2,
+                 (p->y0 + p->y1 + 1) / 2);
+        printf("%5d %8s %13s %12s", ghosts[i], pair, size, centre);
+        print_light_columns(e, p);
     }
     if (n > t->top)
         printf("      and %d more (--top)\n", n - t->top);
@@ -213,7 +182,9 @@ static void print_ghost_numbers(const struct glint_explain *e,
 
 static void print_ghosts_left_out(const struct glint_explain *e)
 {
-    printf("\n%-41s %7s %7s\n", "left out", "bundles", "ghosts");
+    printf("\n%-41s %7s\n",
+           e->n_lights > 1 ? "not drawn, for one light or more" : "not drawn",
+           "ghosts");
     for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES;
          outcome++) {
         int n = 0;
@@ -222,9 +193,8 @@ static void print_ghosts_left_out(const struct glint_explain *e)
             n += e->ghost[i].of[outcome] > 0;
         if (e->all.of[outcome] == 0)
             continue;
-        printf("%-41s %7d %7d ", outcomes[outcome].reason, e->all.of[outcome],
-               n);
-        print_ghost_numbers(e, (enum glint_outcome)outcome, WIDE - 58);
+        printf("%-41s %7d ", outcomes[outcome].reason, n);
+        print_ghost_numbers(e, (enum glint_outcome)outcome, WIDE - 50);
     }
 }
 
@@ -232,7 +202,6 @@ static void print_invalid_lights(const struct glint_explain *e,
                                  const struct explain_title *t)
 {
     const struct glint_engine_report *r = t->report;
-    const double most = model_convert_sine_to_deg(e->lens->header->sine_hi_q30);
     int n = 0, dark = 0;
 
     for (int i = 0; i < t->n_lamps; i++) {
@@ -240,7 +209,8 @@ static void print_invalid_lights(const struct glint_explain *e,
             if (n++ < t->top)
                 printf("light at %.3f degrees: outside the model, whose max "
                        "angle is %.1f (bake --max-angle)\n",
-                       t->lamp[i].lamp.theta_deg, most);
+                       t->lamp[i].lamp.theta_deg,
+                       model_convert_sine_to_deg(e->lens->header->sine_hi_q30));
         } else
             dark += !(t->lamp[i].lamp.power > 0);
     }
@@ -249,13 +219,12 @@ static void print_invalid_lights(const struct glint_explain *e,
     if (dark)
         printf("%d light%s no power\n", dark, dark == 1 ? " has" : "s have");
     n = t->n_lamps - r->beyond_lights - dark;
-    if (t->n_lamps && r->apart_lights < n)
+    if (e->n_lights && r->apart_lights < n)
         printf("%d lights were merged to %d because they coincide (--apart)\n",
                n, r->apart_lights);
     if (r->stats.held_cells)
-        printf("%d cells were clamped to the max light that a cell may "
-               "give a pixel\n",
-               r->stats.held_cells);
+        printf("the brightness of some pixels was limited to about 2048 times "
+               "white\n");
     if (r->drawn_lights < r->apart_lights)
         printf("%d lights were merged into %d (--max-lights)\n",
                r->apart_lights, r->drawn_lights);
@@ -328,14 +297,15 @@ static void write_bundles_json(struct json_writer *json,
     for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES; outcome++)
         if (p->of[outcome])
             json_write(json, "%s: %d", outcomes[outcome].word, p->of[outcome]);
-    json_write(json,
-               "}, cells: %d, terms: %d, barrels: %d, vertices: %lld, "
-               "edges: %lld, rows: %lld, refs: %lld, lit_pixels: %d, "
-               "tiles: %d, flux: %.6g, light_share: %.6g, brightest: %.6g, "
-               "work_share: %.6g",
-               p->cells, p->terms, p->barrels, p->vertices, p->edges, p->rows,
-               p->refs, p->lit, p->tiles, p->flux, p->share, p->brightest,
-               p->cost);
+    json_write(
+        json,
+        "}, cells: %d, terms: %d, barrels: %d, vertices: %lld, "
+        "edges: %lld, rows: %lld, refs: %lld, lit_pixels: %d, "
+        "tiles: %d, box: [%d, %d, %d, %d], flux: %.6g, light_share: %.6g, "
+        "brightest: %.6g, work_share: %.6g",
+        p->cells, p->terms, p->barrels, p->vertices, p->edges, p->rows, p->refs,
+        p->lit, p->tiles, p->x0, p->y0, p->x1, p->y1, p->flux, p->share,
+        p->brightest, p->cost);
 }
 
 static void write_lights_json(struct json_writer *json,
@@ -356,8 +326,10 @@ static void write_lights_json(struct json_writer *json,
     for (int i = 0; i < t->n_lamps; i++)
         if (glint_explain_is_beyond(e, &t->lamp[i].lamp))
             json_write(json, "%.6g", t->lamp[i].lamp.theta_deg);
-    json_write(json, "], model_max_deg: %.6g",
-               model_convert_sine_to_deg(e->lens->header->sine_hi_q30));
+    json_write(json, "]");
+    if (e->lens)
+        json_write(json, ", model_max_deg: %.6g",
+                   model_convert_sine_to_deg(e->lens->header->sine_hi_q30));
 }
 
 static void write_title_json(struct json_writer *json,
@@ -365,11 +337,11 @@ static void write_title_json(struct json_writer *json,
                              const struct explain_title *t)
 {
     json_write(json,
-               "{lens: %s, width: %d, height: %d, picture: %s, "
+               "{lens: %s, rays: %s, width: %d, height: %d, picture: %s, "
                "lights_given: %d, lights_apart: %d, all_tiles: %d, "
                "held_cells: %d, held_samples: %d, frame: {",
-               t->lens, e->view->width, e->view->height,
-               t->linear ? "linear" : "codes", t->n_lamps,
+               t->lens, e->lens ? "model" : "exact", e->view->width,
+               e->view->height, t->linear ? "linear" : "codes", t->n_lamps,
                t->report->apart_lights, e->n_tiles, t->report->stats.held_cells,
                t->report->held_samples);
     write_bundles_json(json, &e->all);
@@ -396,8 +368,8 @@ void explain_write_json(const struct glint_explain *e,
     write_rejected_json(&json, t);
     json_write(&json, "wavelengths: [");
     for (int i = 0; i < e->n_waves; i++) {
-        if (e->sets)
-            json_write(&json, "{of: %d", e->sets->size[i]);
+        if (e->set_size)
+            json_write(&json, "{of: %d", e->set_size[i]);
         else
             json_write(&json, "{nm: %g", e->setup->wavelength_nm[i]);
         write_bundles_json(&json, &e->wave[i]);

@@ -675,6 +675,22 @@ static void print_exact_ray_notice(const struct drawing *d)
             d->files.lens.is_unbaked ? ", as it has no baked model" : "");
 }
 
+void drawing_start_flare(struct drawing *drawing)
+{
+    struct drawing_run *const run = &drawing->run;
+
+    if (!run->is_progressing)
+        return;
+    /* If brightness had to be measured, this was done when the engine was
+     * created. From here on every ray is traced once, so that the progress is
+     * steady. */
+    print_exact_ray_notice(drawing);
+    tool_progress_start(&run->progress, drawing->files.scene.tool,
+                        "exact rays");
+    run->progress.least_s = 3;
+    run->progress.waits = true;
+}
+
 enum glint_status drawing_set_exposure(struct drawing *drawing,
                                        const struct glint_image *image)
 {
@@ -685,15 +701,7 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
-    /* The brightness was measured, if at all, when the engine was created. From
-     * now on each ray is traced once, so the progress bar moves steadily. */
-    if (run->is_progressing) {
-        print_exact_ray_notice(drawing);
-        tool_progress_start(&run->progress, drawing->files.scene.tool,
-                            "exact rays");
-        run->progress.least_s = 3;
-        run->progress.waits = true;
-    }
+    drawing_start_flare(drawing);
     status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
                                  run->white);
     if (status != GLINT_OK && run->is_progressing)
@@ -701,9 +709,7 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     return status;
 }
 
-/* Records the time of the flare. START is the time, seconds, at which its
- * drawing began. */
-static void record_flare_time(struct drawing_run *run, double start)
+void drawing_end_flare(struct drawing_run *run, double start)
 {
     if (run->is_progressing)
         tool_progress_end(&run->progress);
@@ -720,7 +726,7 @@ enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
         is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
         &run->report);
 
-    record_flare_time(run, start);
+    drawing_end_flare(run, start);
     return status;
 }
 
@@ -739,7 +745,7 @@ static enum glint_status draw_exposed_flare(struct drawing *d,
         paint_set_image_black(image);
     status = glint_engine_draw(run->engine, run->lamp, run->n_lamps, image,
                                &run->report);
-    record_flare_time(run, start);
+    drawing_end_flare(run, start);
     return status;
 }
 

@@ -95,6 +95,14 @@ enum glint_status drawing_detect_and_draw_scene(struct drawing *drawing,
 void drawing_measure_clipped_lamps(struct drawing *drawing,
                                    const struct glint_samples *samples);
 
+/* Starts the progress of exact rays, and prints what they draw. Does nothing
+ * with a model. */
+void drawing_start_flare(struct drawing *drawing);
+
+/* Ends the progress of the flare, and records its time. START is the time,
+ * seconds, at which its drawing began. */
+void drawing_end_flare(struct drawing_run *run, double start);
+
 /* Writes the lamps to the file of --save-lights and sets the exposure of the
  * flare for IMAGE. Returns GLINT_E_MEMORY on failure. */
 enum glint_status drawing_set_exposure(struct drawing *drawing,
