@@ -1127,8 +1127,8 @@ static bool is_bundle_in_part(const struct glint_frame *f,
 }
 
 /* Callback of struct glint_flare_rays: prepares the interpolation of bundle I
- * for compute_vertex_row(). Returns 0 if the bundle is not drawn or lies outside
- * rows Y0 .. Y1. */
+ * for compute_vertex_row(). Returns 0 if the bundle is not drawn or lies
+ * outside rows Y0 .. Y1. */
 static int open_ray_bundle(void *ctx, int worker, int i, int y0, int y1)
 {
     const struct glint_frame *f = ctx;

@@ -14,7 +14,10 @@
  * fraction of the smaller semi-diameter of the two */
 #define CLEAR_SHARE 0.9
 #define CONTACT_MM  1e-6 /* max overlap that is attributed to rounding, mm */
-#define MIN_STOP_MM 1e-6
+/* overlap from which elements are rejected, mm; a smaller one is a warning,
+ * because published semi-diameters are rounded */
+#define MIN_OVERLAP_MM 0.02
+#define MIN_STOP_MM    1e-6
 /* relative amount by which the required stop radius may exceed the opening
  * because of rounding */
 #define STOP_SLACK 1e-9
@@ -129,6 +132,25 @@ static bool check_surface_profile(const struct glint_surface *s,
                                 terms);
 }
 
+/* Sets the error text of TEXT to a warning that names element E and the next
+ * one. */
+static void set_overlap_warning(const struct glint_prescription *lens, int e,
+                                double overlap_mm, double height_mm,
+                                const struct glint_text *text,
+                                struct glint_text_place place)
+{
+    char name[2][16] = {"stop", "stop"};
+
+    for (int i = 0; i < 2; i++)
+        if (get_element_surface(lens, e + i) >= 0)
+            snprintf(name[i], sizeof name[i], "surface %d",
+                     get_element_surface(lens, e + i));
+    glint_text_set_error(text, place,
+                         "%s and %s overlap by %.4g mm at %.4g mm from the "
+                         "axis; drawn as they are",
+                         name[0], name[1], overlap_mm, height_mm);
+}
+
 /* Checks that elements do not overlap. The gap between two spheres is compared
  * at one height, because it changes monotonically from axis to rim. This height
  * is below the rim, because published semi-diameters are often estimates: two
@@ -144,12 +166,15 @@ static bool check_element_gaps(const struct glint_prescription *lens,
         double height;
         const double gap = compute_min_gap_mm(lens, e, &height);
 
-        if (!(gap >= -CONTACT_MM))
+        if (!(gap > -MIN_OVERLAP_MM))
             return glint_text_set_error(
                 text, places->thickness[e],
                 "element overlaps the next one by %.4g mm at "
                 "%.4g mm from the axis",
                 -gap, height);
+        if (gap < -CONTACT_MM)
+            set_overlap_warning(lens, e, -gap, height, text,
+                                places->thickness[e]);
     }
     if (get_element_gap_mm(lens, last) <=
         fmax(0.0, compute_element_sag_mm(lens, last,
@@ -242,8 +267,8 @@ glint_prescription_check_gaps_and_stop(const struct glint_prescription *lens,
     for (int e = 0; e < last; e++) {
         const double gap = compute_min_gap_mm(lens, e, &height);
 
-        if (gap >= -CONTACT_MM && (get_element_gap_mm(lens, e) >= 0.0 ||
-                                   (e == 0 && !lens->stop_after)))
+        if (gap > -MIN_OVERLAP_MM && (get_element_gap_mm(lens, e) >= 0.0 ||
+                                      (e == 0 && !lens->stop_after)))
             continue;
         snprintf(error->text, sizeof error->text,
                  "%s: element %d would overlap the next by %.4g mm", lens->name,

@@ -819,6 +819,7 @@ enum glint_status glint_prescription_parse(struct glint_prescription *lens,
     struct parser p;
 
     memset(&p, 0, sizeof(p));
+    error->text[0] = '\0';
     glint_coating_set_single_layer(&p.coating, 550);
     if (!glint_text_open(&p.text, text, bytes, file_name, error) ||
         !read_all_lines(&p) ||

@@ -390,6 +390,9 @@ static const struct {
     {8, "stop 5 8 circle 9", "x.lens:8:17: '9' is one value too many for stop"},
     {8, "stop 5 8 9", "x.lens:8:10: unexpected '9'; expected circle"},
     /* mistakes that are detected only in the complete lens */
+    {6, "surface 50 2.3406 12 N-BK7",
+     "x.lens:6:12: element overlaps the next one by 0.02006 mm at 10.8 mm from "
+     "the axis"},
     {6, "surface 50 2.3 12 N-BK7",
      "x.lens:6:12: element overlaps the next one by 0.06066 mm at 10.8 mm from "
      "the axis"},
@@ -438,6 +441,27 @@ TEST(rejects_wrong_lines)
                            compose_table_with_line(text, mistakes[i].number,
                                                    mistakes[i].line, "\n"),
                            mistakes[i].error);
+}
+
+/* Checks that an overlap of 0.009 mm is a warning that names the surfaces, and
+ * that a valid table has none. */
+TEST(warns_of_small_overlaps)
+{
+    static struct glint_prescription lens;
+    struct glint_error error = {"stale"};
+    char text[4096];
+
+    assert_ok(parse_copy_of_text(
+        &lens, text, compose_table_with_line(text, 0, NULL, "\n"), &error));
+    assert_string_equal(error.text, "");
+    assert_ok(parse_copy_of_text(
+        &lens, text,
+        compose_table_with_line(text, 6, "surface 50 2.3517 12 N-BK7", "\n"),
+        &error));
+    assert_string_equal(error.text,
+                        "x.lens:6:12: surface 0 and surface 1 overlap by "
+                        "0.008964 mm at 10.8 mm from the axis; drawn as they "
+                        "are");
 }
 
 TEST(rejects_invalid_bytes)

@@ -152,8 +152,11 @@ int tool_read_lens(const struct tool *tool, const char *argument,
     if (!file)
         return EXIT_LENS;
     status = parse_lens_table(file, lens, &error);
-    if (status == GLINT_OK)
+    if (status == GLINT_OK) {
+        if (error.text[0] && !tool->quiet)
+            fprintf(stderr, "glint %s: warning: %s\n", tool->name, error.text);
         return EXIT_OK;
+    }
     if (status == GLINT_E_LENS && !glint_has_extension(file, ".lens"))
         tool_error(tool, "%s; glint import reads lens files of other programs",
                    error.text);
