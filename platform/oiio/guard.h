@@ -215,6 +215,18 @@ inline void reject_video_reader(const OIIO::ImageInput *in)
         throw failure{GLINT_E_UNSUPPORTED, "is a video, not a picture"};
 }
 
+/* Returns ERROR, OpenImageIO's reason for not opening a file, or what is wrong
+ * in words of glint if the file is not an image. */
+inline std::string describe_open_error(const std::string &error)
+{
+    const bool is_image = !OIIO::Strutil::contains(error, "format reader") &&
+                          !OIIO::Strutil::contains(error, "magic number");
+
+    return is_image ? error
+                    : "not an image in a format that glint reads (PPM, PFM, "
+                      "PNG, JPEG, TIFF, OpenEXR, WebP and more)";
+}
+
 /* Opens the picture PATH with the reader options CONFIG. Throws failure. */
 inline std::unique_ptr<OIIO::ImageInput>
 open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
@@ -226,7 +238,7 @@ open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
     reject_video_reader(in.get());
     in = OIIO::ImageInput::open(path, config);
     if (!in)
-        throw failure{GLINT_E_FORMAT, OIIO::geterror()};
+        throw failure{GLINT_E_FORMAT, describe_open_error(OIIO::geterror())};
     reject_video_reader(in.get());
     return in;
 }

@@ -167,7 +167,7 @@ void settings_write_light_counts(const struct glint_engine_report *r,
         snprintf(text, 64, "%d lights, %d after merging", r->lights,
                  r->drawn_lights);
     else
-        snprintf(text, 64, "%d lights", r->lights);
+        snprintf(text, 64, "%d light%s", r->lights, r->lights == 1 ? "" : "s");
 }
 
 void settings_print_light_warnings(const struct tool *tool,

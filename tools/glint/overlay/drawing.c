@@ -292,7 +292,8 @@ static void warn_of_off_screen_lamps(const struct tool *tool,
         if (row->x < 0 || row->y < 0 || row->x > width || row->y > height)
             fprintf(stderr,
                     "glint %s: --light-at %g,%g lies outside the picture of "
-                    "%d x %d pixels\n",
+                    "%d x %d pixels; those of its ghosts that reach the "
+                    "picture are drawn\n",
                     tool->name, row->x, row->y, width, height);
     }
 }

@@ -158,11 +158,11 @@ void overlay_print_progress(const struct tool *tool, struct overlay *o)
         return;
     o->figures.reported = now;
     fprintf(stderr,
-            is_terminal ? "\rframe %d  %.1f fps  %d lights \033[K"
-                        : "glint overlay: frame %d, %.1f fps, %d "
-                          "lights\n",
+            is_terminal ? "\rframe %d  %.1f fps  %d light%s \033[K"
+                        : "glint overlay: frame %d, %.1f fps, %d light%s\n",
             o->drawing.run.n_frames, o->drawing.run.n_frames / spent,
-            o->drawing.run.report.lights);
+            o->drawing.run.report.lights,
+            o->drawing.run.report.lights == 1 ? "" : "s");
     fflush(stderr);
 }
 

@@ -163,6 +163,21 @@ static void print_brightness_options(const struct overlay_figures *f, FILE *to)
         print_value_range(&f->gain, ", gain", false, to);
 }
 
+static bool are_all_lamps_off_screen(const struct drawing *drawing)
+{
+    const struct glint_view *const view = &drawing->run.view;
+    bool all = true;
+
+    for (int i = 0; i < drawing->run.n_lamps; i++) {
+        double x, y;
+
+        glint_view_to_pixel(view, drawing->files.lens.setup.optics.focal_mm,
+                            &drawing->run.lamp[i].lamp, &x, &y);
+        all = all && (x < 0 || y < 0 || x > view->width || y > view->height);
+    }
+    return all;
+}
+
 /* Prints why the flare, whose light is LIGHT, is invisible, and which option
  * makes it visible. */
 static void print_faint_flare_remedy(const struct overlay *o,
@@ -192,6 +207,11 @@ static void print_faint_flare_remedy(const struct overlay *o,
                 "%s: no light reaches the picture through this lens and its "
                 "--stop-mask; white pixels of a mask transmit light\n",
                 o->output);
+    else if (light->peak <= 0 && are_all_lamps_off_screen(drawing))
+        fprintf(to,
+                "%s: no ghost reaches the picture, as the lamp lies outside "
+                "it; a place in or near the %dx%d pixels may show a flare\n",
+                o->output, drawing->run.view.width, drawing->run.view.height);
     else if (light->peak <= 0)
         fprintf(to,
                 "%s: no light reaches the picture through this lens; another "
