@@ -66,6 +66,7 @@ struct job {
     struct glint_view view;
     struct light light[NEAR + STEPS];
     int n;
+    int first; /* index of the first light that is being compared */
 };
 
 static enum glint_status
@@ -87,11 +88,11 @@ render_model_and_exact_pictures(const struct picture_pair *pair,
     return status;
 }
 
-/* Compares the two images of light I. */
+/* Compares the two images of light FIRST + I. */
 static void compare_pictures_of_light(void *ctx, int i, int worker)
 {
     struct job *const job = ctx;
-    struct light *const light = &job->light[i];
+    struct light *const light = &job->light[job->first + i];
     const int width = job->view.width, height = job->view.height;
     const size_t samples = 3 * (size_t)width * (size_t)height;
     struct glint_float_image image[2] = {{width, height, NULL},
@@ -114,6 +115,25 @@ static void compare_pictures_of_light(void *ctx, int i, int worker)
     picture_pair_close(&pair);
     free(image[0].rgb);
     free(image[1].rgb);
+}
+
+/* Compares the pictures of all lights, as many at a time as there are workers,
+ * and shows the progress. */
+static void compare_all_lights(const struct tool *tool, struct job *job)
+{
+    const int workers = glint_workers_count(tool->workers);
+    struct tool_progress progress;
+
+    tool_progress_start(&progress, tool, "check");
+    for (; job->first < job->n; job->first += workers) {
+        const int left = job->n - job->first;
+
+        glint_workers_run(tool->workers, left < workers ? left : workers,
+                          compare_pictures_of_light, job);
+        tool_progress_show(&progress,
+                           fmin(job->first + workers, job->n) / job->n);
+    }
+    tool_progress_end(&progress);
 }
 
 /* Fills the list of lights of JOB, at angles up to MOST degrees. */
@@ -183,8 +203,7 @@ enum glint_status picture_check_run(const struct tool *tool,
         status = glint_setup_init(setup, lens, 0, 0, wave_nm,
                                   sizeof wave_nm / sizeof *wave_nm, error);
     if (status == GLINT_OK) {
-        glint_workers_run(tool->workers, job.n, compare_pictures_of_light,
-                          &job);
+        compare_all_lights(tool, &job);
         status = find_light_with_lowest_psnr(&job, check, error);
     }
     free(setup);
