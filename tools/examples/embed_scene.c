@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws a baked scene over a picture.
- * Then draws the flare of the scene's lamps and of those lamps in the picture
- * that the scene does not cover. The result equals that of glint overlay
- * --scene --stop polygon:8. LENS is a baked model.
+ * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws a baked scene over a picture,
+ * then the flare of the lamps that it shows, like glint overlay --scene --stop
+ * polygon:8. LENS is a baked model.
  */
 #include "glint/engine.h"
 #include "glint/kernels.h"
