@@ -139,7 +139,7 @@ static void set_overlap_warning(const struct glint_prescription *lens, int e,
                                 const struct glint_text *text,
                                 struct glint_text_place place)
 {
-    char name[2][16] = {"stop", "stop"};
+    char name[2][24] = {"stop", "stop"};
 
     for (int i = 0; i < 2; i++)
         if (get_element_surface(lens, e + i) >= 0)

@@ -209,7 +209,7 @@ static void print_faint_flare_remedy(const struct overlay *o,
                 o->output);
     else if (light->peak <= 0 && are_all_lamps_off_screen(drawing))
         fprintf(to,
-                "%s: no ghost reaches the picture, as the lamp lies outside "
+                "%s: no ghost reaches the picture, as no lamp lies inside "
                 "it; a place in or near the %dx%d pixels may show a flare\n",
                 o->output, drawing->run.view.width, drawing->run.view.height);
     else if (light->peak <= 0)
