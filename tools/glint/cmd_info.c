@@ -29,7 +29,7 @@ static const char help[] =
     "environment (panorama or baked): texels, lights\n"
     "translucent medium (NAME.translucent or baked): model, bits, bytes per "
     "texel\n"
-    "motion (recording .json or baked): frames, foods, residuals\n"
+    "motion (recording .json or baked): frames, landmarks, residuals\n"
     "lens: focal length, back focal length, entrance pupil, stop radius at "
     "the\n"
     "    f-number, surfaces, and ghosts with their pairs of surfaces (counted "
@@ -88,7 +88,6 @@ static void print_lens_json(const struct info *info)
     json_write(&json, "]}\n");
 }
 
-/* Prints zoom position and focus of L. */
 static void print_zoom_and_focus(const struct glint_prescription *l,
                                  const struct glint_optics *o)
 {
@@ -286,11 +285,10 @@ static int print_medium_info(const struct tool *tool, const char *path)
 }
 
 /* Prints the contents of PATH if it is a model, scene, environment, medium or
- * motion. STOP: whether lens options were given, which these files do not
- * allow. Returns an exit code, or -1 if PATH is a lens. */
-static int print_file_that_is_not_lens(const struct tool *tool,
-                                       const char *path, bool stop,
-                                       const char *poses)
+ * motion. STOP: whether the command line has lens options; such files reject
+ * them. Returns an exit code, or -1 if PATH is none of these files. */
+static int print_non_lens_file_info(const struct tool *tool, const char *path,
+                                    bool stop, const char *poses)
 {
     const bool is_motion =
         motion_file_is_source(path) || motion_file_is_baked(path);
@@ -354,7 +352,7 @@ int cmd_info(int argc, char **argv)
 
     if (code >= 0)
         return code;
-    code = print_file_that_is_not_lens(
+    code = print_non_lens_file_info(
         &tool, argv[optind],
         asked.f_number != 0 || asked.zoom.is_zoomed || asked.zoom.is_focused ||
             asked.coating.kind != COATING_TABLE,

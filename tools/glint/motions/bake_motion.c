@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * glint bake of recorded motions: computes the path of a body among food items
- * from a recording of what its sensors detected.
+ * glint bake of recorded motions: computes the path of a body from a recording
+ * of the landmarks ("foods") that its sensors located.
  */
 #include "model/bake_line.h"
 #include "motions/motion_file.h"

@@ -113,9 +113,10 @@ int motion_file_open(const struct tool *tool, const char *path,
     if (r->bad_frames && !tool->quiet)
         fprintf(
             stderr,
-            "glint %s: %s: in %ld frames food items deviate from their "
-            "positions by more than a thousandth of the extent, %.4g; most in "
-            "frame %ld, by %.4g: they moved, or a reset was not recorded\n",
+            "glint %s: %s: in %ld frames landmarks deviate from their "
+            "positions "
+            "by more than a thousandth of the extent, %.4g; most in frame %ld, "
+            "by %.4g: landmarks moved, or the recording lacks a 'reset'\n",
             tool->name, path, r->bad_frames, r->span, r->residual_frame,
             r->residual);
     if (r->held_intensities && !tool->quiet)
@@ -133,7 +134,8 @@ void motion_file_close(struct motion_file *file)
 
 /* -------------------------------------------------------------------- poses */
 
-/* Writes the pose of frame K as a line to TEXT[BYTES]. Returns its length. */
+/* Writes the pose of frame K as a line to TEXT[BYTES]. Returns the line's
+ * length. */
 static int print_pose_line(struct motion_file *file, uint32_t k, char *text,
                            size_t bytes)
 {

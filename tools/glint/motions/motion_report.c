@@ -29,7 +29,7 @@ static struct counts count_motion_contents(const struct motion_file *file)
         .step = ldexp(1, -h->unit_log2)};
 }
 
-static double compute_rotation_angle_deg(const struct glint_motion_header *h)
+static double compute_sensor_view_angle_deg(const struct glint_motion_header *h)
 {
     return 360 / GLINT_PI * acos(ldexp(h->cos_half_q30, -30));
 }
@@ -48,7 +48,7 @@ static void print_motion_json(const struct motion_file *file,
                "high: [%.9g, %.9g, %.9g], residual: %.6g, residual_frame: %u",
                h->name, h->n_frames, h->n_foods, h->n_sensors,
                h->n_events - h->n_foods, n->step * h->size,
-               compute_rotation_angle_deg(h), n->step, n->step * h->low[0],
+               compute_sensor_view_angle_deg(h), n->step, n->step * h->low[0],
                n->step * h->low[1], n->step * h->low[2], n->step * h->high[0],
                n->step * h->high[1], n->step * h->high[2],
                n->step * h->residual, h->residual_frame);
@@ -75,11 +75,11 @@ static void print_motion_text(const struct motion_file *file,
 
     printf("%s, a motion of %u frames\n\n", h->name, h->n_frames);
     printf("body         size %.4g, %u sensors that see %.4g degrees\n",
-           n->step * h->size, h->n_sensors, compute_rotation_angle_deg(h));
-    printf("foods        %u, %u resets%s\n", h->n_foods,
+           n->step * h->size, h->n_sensors, compute_sensor_view_angle_deg(h));
+    printf("landmarks    %u, %u replaced%s\n", h->n_foods,
            h->n_events - h->n_foods,
            h->intensities ? ", with intensities" : "");
-    printf("box          %.4g %.4g %.4g to %.4g %.4g %.4g, steps of %.3g\n",
+    printf("extent       %.4g %.4g %.4g to %.4g %.4g %.4g, steps of %.3g\n",
            n->step * h->low[0], n->step * h->low[1], n->step * h->low[2],
            n->step * h->high[0], n->step * h->high[1], n->step * h->high[2],
            n->step);
@@ -91,9 +91,10 @@ static void print_motion_text(const struct motion_file *file,
     if (file->is_baked_now)
         printf("path         %.6g long\n", r->path);
     if (file->is_baked_now && r->has_senses)
-        printf("rv and tv    integrate to positions that are off by %.4g at "
-               "the end, %.4g at most\n",
-               r->senses_off, r->senses_most);
+        printf(
+            "odometry     the sum of 'rv' and 'tv' is off by %.4g at the end, "
+            "%.4g at most\n",
+            r->senses_off, r->senses_most);
     printf("bytes        %zu\n  header       %8zu\n  sensors      %8zu\n"
            "  events       %8zu\n  index        %8zu\n  poses        %8zu\n",
            file->bytes, n->header, n->sensors, n->events, n->index, n->poses);

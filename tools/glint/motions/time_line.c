@@ -5,8 +5,8 @@
 
 #include "formats/paint.h"
 
-/* Max number of events that are drawn one by one. If there are more, a tick
- * marks each block of poses with events. */
+/* Max number of events (new landmarks) that are drawn one by one. If there are
+ * more, a tick marks each block of poses with events. */
 enum { MOST_EVENTS = 4096 };
 
 struct bar {
@@ -27,7 +27,7 @@ static void draw_frame_tick(const struct bar *b, uint32_t frame)
     paint_fill_rectangle(&b->paint, x, b->y0 - high, x + b->paint.line, b->y0);
 }
 
-/* Marks the frames in which a food item was replaced by a new one. */
+/* Marks the frames in which a new landmark ("food") replaces another. */
 static void draw_food_changes(const struct bar *b, struct glint_motion *motion)
 {
     const struct glint_motion_header *const h = &motion->header;

@@ -9,7 +9,7 @@
 #include "glint/scene/motion.h"
 
 /* Draws a bar along the lower edge of IMAGE: the position of FRAME in MOTION,
- * ticks at the frames in which food items were replaced, and the frame
+ * ticks at the frames in which landmarks were replaced, and the frame
  * number. */
 void draw_time_line(const struct glint_image *image,
                     struct glint_motion *motion, int frame);
