@@ -104,7 +104,8 @@ const char *find_pixel_format(const char *chroma, int bits)
 }
 
 /* Returns the y4m pixel format that preserves all samples of PIXELS except
- * alpha, or the nearest one if y4m lacks its chroma subsampling. */
+ * alpha, or the nearest format if y4m lacks the chroma subsampling of
+ * PIXELS. */
 static const char *choose_y4m_pixel_format(const char *pixels)
 {
     const char *const chroma = get_pixel_format_chroma(pixels);
@@ -118,8 +119,8 @@ static const char *choose_y4m_pixel_format(const char *pixels)
 
 enum { MAX_CHILDREN = 4, NOT_FOUND = 127 };
 
-/* ids of running children, killed when glint ends; 0: free. A signal handler
- * reads them, so access is atomic. */
+/* process ids of running children, which are killed when glint ends; 0: unused
+ * entry. A signal handler reads the ids, so access is atomic. */
 static pid_t running[MAX_CHILDREN];
 
 static void kill_all_children(void)
@@ -263,9 +264,9 @@ static enum glint_status start_program(struct child *child,
 }
 
 /* Starts the program ARGV[0], found in $PATH, with the arguments ARGV, which
- * end with NULL. Errors: GLINT_E_UNSUPPORTED if it is not installed,
+ * end with NULL. Errors: GLINT_E_UNSUPPORTED if the program is not installed,
  * GLINT_E_MEMORY if the system has no free process or descriptor, GLINT_E_IO if
- * it cannot be executed. */
+ * the program cannot be executed. */
 static enum glint_status start_ffmpeg_child(struct child *child,
                                             const char *const *argv,
                                             enum child_pipe kind,
@@ -275,9 +276,10 @@ static enum glint_status start_ffmpeg_child(struct child *child,
     return start_program(child, argv, kind, error);
 }
 
-/* Starts a program like start_ffmpeg_child(), but its standard error is a file.
- * child_forward_messages() copies this file to glint's standard error, and sets
- * CHILD->heard if it contains one of WORDS, a list that ends with NULL. */
+/* Starts a program like start_ffmpeg_child(), but with a file as standard
+ * error. child_forward_messages() copies this file to glint's standard error,
+ * and sets CHILD->heard if the file contains one of WORDS, a list that ends
+ * with NULL. */
 static enum glint_status start_monitored_child(struct child *child,
                                                const char *const *argv,
                                                enum child_pipe kind,
@@ -298,7 +300,7 @@ static enum glint_status start_monitored_child(struct child *child,
     return status;
 }
 
-/* ------------------------------------------------------------------ hearing */
+/* ---------------------------------------------------------- child messages */
 
 /* Copies new messages of CHILD to standard error: complete lines, or all text
  * if ALL. */
@@ -340,10 +342,10 @@ static void close_child_messages(struct child *child)
     child->said = -1;
 }
 
-/* ------------------------------------------------------------------- ending */
+/* --------------------------------------------------------- end of children */
 
-/* Closes the filter file of CHILD after it has ended. Earlier it might not have
- * opened the file yet. */
+/* Closes the filter file of CHILD after CHILD has ended, because before it may
+ * not have opened the file yet. */
 static void close_filter_script(struct child *child)
 {
     if (child->script >= 0)
@@ -416,8 +418,9 @@ static bool set_file_url(char url[FFMPEG_URL], const char *name)
     return (size_t)snprintf(url, FFMPEG_URL, "file:%s", name) < FFMPEG_URL;
 }
 
-/* Container formats that ffmpeg may read. They cannot refer to other files,
- * unlike playlists (HLS, concat, DASH). The only protocol allowed is a file. */
+/* Container formats that ffmpeg may read, none of which can refer to other
+ * files as playlists (HLS, concat, DASH) do. The only protocol allowed is a
+ * file. */
 static const char containers[] =
     "mov,matroska,avi,mpeg,mpegvideo,mpegts,m4v,h264,hevc,asf,flv,"
     "ogg,mxf,mxf_opatom,gif";
@@ -467,10 +470,9 @@ static void parse_stream_line(struct ffmpeg_video *v, const char *line)
     parse_number_property(line, "height", &v->height);
 }
 
-/* Returns the value of NAME, N/D or N, in the ffprobe output TEXT, as a rounded
- * multiple of 1 / UNITS; -1 if it is missing. */
-static long parse_ratio_numerator(const char *text, const char *name,
-                                  long units)
+/* Returns UNITS times the value of NAME, N/D or N, in the ffprobe output TEXT,
+ * rounded to an integer; -1 if the value is missing or malformed. */
+static long parse_scaled_ratio(const char *text, const char *name, long units)
 {
     const char *const at = strstr(text, name);
     char *end;
@@ -496,7 +498,7 @@ static void parse_side_data(struct ffmpeg_video *v, const char *text)
     bool is_whole = true;
 
     for (int i = 0; i < 10; i++) {
-        m[i] = parse_ratio_numerator(text, names[i], i < 8 ? 50000 : 10000);
+        m[i] = parse_scaled_ratio(text, names[i], i < 8 ? 50000 : 10000);
         is_whole = is_whole && m[i] >= 0;
     }
     if (is_whole)
@@ -505,13 +507,13 @@ static void parse_side_data(struct ffmpeg_video *v, const char *text)
                  m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9]);
     if (strstr(text, "max_content="))
         snprintf(v->light, sizeof v->light, "%ld,%ld",
-                 parse_ratio_numerator(text, "max_content=", 1),
-                 parse_ratio_numerator(text, "max_average=", 1));
+                 parse_scaled_ratio(text, "max_content=", 1),
+                 parse_scaled_ratio(text, "max_average=", 1));
     v->has_dolby =
         v->has_dolby || strstr(text, "DOVI") || strstr(text, "Dolby Vision");
 }
 
-/* Counts a stream of type KIND, in the words of ffprobe, with CODEC. */
+/* Counts a stream of type KIND (ffprobe's codec_type), with CODEC. */
 static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
                                  const char *kind)
 {
@@ -534,8 +536,8 @@ static void count_stream_of_type(struct ffmpeg_video *v, const char *codec,
 }
 
 /* Parses LINE, ffprobe output about a stream of any type, a chapter or tags.
- * CODEC stores the codec between two lines of a stream. A time code track is
- * not counted as a stream, as its tag is preserved. */
+ * CODEC stores the codec from one line of a stream to the next. A time code
+ * track is not counted as a stream, because its tag is preserved. */
 static void parse_other_stream_line(struct ffmpeg_video *v, char *line,
                                     char codec[FFMPEG_WORD])
 {
@@ -576,8 +578,8 @@ static void read_child_output(struct child *child, char text[PROBE_BYTES])
     text[used] = '\0';
 }
 
-/* Sets TEXT to what ffprobe prints about ENTRIES of URL. OPTIONS are up to five
- * more arguments, ending with NULL. Returns false if ffprobe fails. */
+/* Sets TEXT to what ffprobe prints about ENTRIES of URL. OPTIONS has up to five
+ * more arguments and ends with NULL. Returns false if ffprobe fails. */
 static bool run_ffprobe(const char *url, const char *const *options,
                         const char *entries, char text[PROBE_BYTES])
 {
@@ -654,10 +656,10 @@ long ffmpeg_count_frames(const char *name)
     return strtol(n, NULL, 10);
 }
 
-/* Returns VALUE, or the default if VALUE is unknown. In this case appends ",
- * KIND TAG" to REPORT. */
-static int replace_unknown_tag(int value, const char *kind, const char *tag,
-                               char report[FFMPEG_REPORT])
+/* Appends ", KIND TAG" to REPORT if VALUE is below 0, because glint does not
+ * support TAG, and TAG is not empty. Returns VALUE. */
+static int report_unsupported_tag(int value, const char *kind, const char *tag,
+                                  char report[FFMPEG_REPORT])
 {
     const size_t n = strlen(report);
 
@@ -682,9 +684,9 @@ void ffmpeg_set_y4m_colour_tags(const struct ffmpeg_video *video,
 
     *report = '\0';
     if (!is_word_in_list(space, rgb))
-        replace_unknown_tag(matrix, "matrix", space, report);
-    replace_unknown_tag(transfer, "transfer", video->transfer, report);
-    replace_unknown_tag(primaries, "primaries", video->primaries, report);
+        report_unsupported_tag(matrix, "matrix", space, report);
+    report_unsupported_tag(transfer, "transfer", video->transfer, report);
+    report_unsupported_tag(primaries, "primaries", video->primaries, report);
     if (matrix >= 0)
         header->matrix = (enum glint_matrix)matrix;
     if (transfer >= 0)
@@ -693,7 +695,7 @@ void ffmpeg_set_y4m_colour_tags(const struct ffmpeg_video *video,
         header->primaries = (enum glint_primaries)primaries;
 }
 
-/* ------------------------------------------------------------------- words */
+/* ---------------------------------------------------------- argument lists */
 
 /* Command line under construction. N may exceed MAX_WORDS, which is then an
  * error. */
@@ -744,8 +746,8 @@ static enum glint_status end_ffmpeg_arguments(struct words *w,
     return GLINT_OK;
 }
 
-/* Messages of ffmpeg 5 about a truncated file, with which it nevertheless exits
- * with 0. The list ends with NULL. */
+/* Messages of ffmpeg 5 about a truncated file, despite which it exits with 0.
+ * The list ends with NULL. */
 static const char *const ffmpeg_cut_words[] = {
     "File ended prematurely" /* .mkv, .webm */, "partial file" /* .mp4, .mov */,
     NULL};
@@ -888,8 +890,8 @@ static void write_time_expression(FILE *to, const double *times, int first,
 }
 
 /* Writes a filter script to a memory file: FILTER (may be NULL), then a filter
- * that sets the TIMES of the frames. Sets NAME to the file's name. Returns its
- * descriptor, or -1 on failure. */
+ * that sets the TIMES of the frames. Sets NAME to the file's name. Returns the
+ * file's descriptor, or -1 on failure. */
 static int write_filter_script(const struct ffmpeg_times *times,
                                const char *filter, char name[FFMPEG_WORD + 16])
 {
@@ -1041,8 +1043,8 @@ static void add_colour_tags(struct words *w, const struct ffmpeg_target *t,
         add_two_arguments(w, "-color_primaries", v->primaries);
 }
 
-/* Returns the filter that pads an odd width or height by one pixel if chroma is
- * subsampled, or NULL. */
+/* Returns the filter that pads an odd width or height by one pixel. Returns
+ * NULL if both are even, or if the output is 4:4:4 and the input not RGB. */
 static const char *find_padding_filter(const struct ffmpeg_target *t,
                                        const struct ffmpeg_video *v)
 {
@@ -1060,9 +1062,9 @@ static const char *find_padding_filter(const struct ffmpeg_target *t,
  *
  * ffmpeg's .mov writer labels 10-bit H.264 in the sizes of AVC-Intra (4:2:2 of
  * 1280x720 and 1920x1080, 4:2:0 of 960x720 and 1440x1080) as AVC-Intra and
- * omits the decoder parameters, so that no program can decode the file. The
- * label avc1 includes them, but in these sizes ffmpeg accepts it only with
- * -strict -1. */
+ * omits the decoder parameters, so that no program can decode the file. With
+ * the label avc1 ffmpeg writes the parameters, but in these sizes it accepts
+ * this label only with -strict -1. */
 static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
                              const struct ffmpeg_video *v)
 {
@@ -1089,7 +1091,7 @@ static void add_h264_options(struct words *w, const struct ffmpeg_target *t,
 
 /* An encoder, and the codecs and file types for which it is used */
 struct family {
-    const char *codec; /* codec of the input */
+    const char *codec;
     /* extensions of supported output files, each after a blank */
     const char *types;
     const char *encoder;
@@ -1472,8 +1474,8 @@ __attribute__((format(printf, 2, 3))) static void note(struct report *report,
         report->n += (size_t)n;
 }
 
-/* Adds to the report that only MADE of the FROM streams of type KIND are in the
- * output. */
+/* Adds to the report that the output has only MADE of the input's FROM streams
+ * of type KIND. */
 static void note_lost_streams(struct report *r, const char *kind, int from,
                               int made)
 {

@@ -13,7 +13,7 @@
  * encoded again, and a message is printed. The output has the codec of the
  * input if its container supports that codec. Tags, chapters, time code,
  * subtitles, alpha, fields, colours and mastering data are preserved if the
- * output can store them. A single warning lists all that are lost.
+ * output can store them. A single warning lists all that the output lacks.
  *
  * A child is a program that glint runs at the end of a pipe. No shell is
  * involved, so names need no quotes. The child's messages go to glint's
@@ -53,7 +53,7 @@ struct child {
     off_t told;
     /* texts to search for in the child's messages; ends with NULL, not owned */
     const char *const *listening;
-    /* whether a message contained one of LISTENING */
+    /* whether a message contained one of the texts LISTENING */
     bool heard;
     int script; /* file from which the child reads its filter; -1: none */
 };
@@ -74,7 +74,7 @@ enum ffmpeg_subtitles { SUBTITLES_NONE, SUBTITLES_TEXT, SUBTITLES_IMAGES };
 struct ffmpeg_video {
     /* names of the video codec and its profile, such as hevc and Main 10 */
     char codec[FFMPEG_WORD], profile[FFMPEG_WORD];
-    char pixels[FFMPEG_WORD]; /* yuv420p ... */
+    char pixels[FFMPEG_WORD];
     /* progressive, or the order of interlaced fields: tt, bb, tb or bt */
     char fields[FFMPEG_WORD];
     /* nominal and mean frame rate, frames per second, as N/D */
@@ -105,10 +105,11 @@ struct ffmpeg_times {
 
 /* The output video, and what its encoder needs */
 struct ffmpeg_target {
-    const char *name; /* name of the output */
+    const char *name;
     /* temporary file that ffmpeg writes; has the extension of NAME */
     const char *file;
-    const char *sound; /* file whose sound and subtitles are copied, or NULL */
+    /* file whose sound and subtitles are copied; NULL: none */
+    const char *sound;
     /* Options for the encoder, separated by blanks, or NULL. */
     const char *options;
     int width, height;
