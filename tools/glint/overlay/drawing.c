@@ -15,7 +15,7 @@
 /* --quality of a preview, equal to that of the word draft */
 static const double preview_quality = 0.25;
 
-static double lens_focal_mm(const struct drawing *d)
+static double get_lens_focal_mm(const struct drawing *d)
 {
     return d->files.lens.setup.optics.focal_mm;
 }
@@ -70,7 +70,8 @@ static enum glint_status set_option_by_control(void *ctx, const char *name,
     enum glint_status status;
 
     if (column >= 0 && key_frames_have_column(&d->files.keys, column)) {
-        snprintf(error->text, sizeof error->text, "key frames set %s", name);
+        snprintf(error->text, sizeof error->text,
+                 "the key frames already set %s", name);
         return GLINT_E_ARGUMENT;
     }
     if (column == KEYS_ZOOM)
@@ -191,7 +192,7 @@ static int allocate_scene(struct drawing *d, int width, int height)
     dials.height = height;
     if (d->files.has_lens)
         dials.focal_px =
-            1 / glint_view_pixel_tangent(&d->run.view, lens_focal_mm(d));
+            1 / glint_view_pixel_tangent(&d->run.view, get_lens_focal_mm(d));
     dials.is_bounded = !dials.shadow_points;
     if (!dials.shadow_points)
         dials.shadow_points = d->line.is_still ? STILL_POINTS : VIDEO_POINTS;
@@ -241,7 +242,7 @@ static int report_sizing_failure(const struct tool *tool,
     if (scene)
         snprintf(more, sizeof more, ", and the scene %zu",
                  (scene + mib - 1) / mib);
-    snprintf(text, sizeof text, "--memory %zu is too little: %s%s",
+    snprintf(text, sizeof text, "--memory %zu is too small: %s%s",
              d->line.reserve_bytes / mib, error->text, more);
     return tool_fail(tool, status, text);
 }
@@ -411,8 +412,8 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
 /* -------------------------------------------------------------------- lamps */
 
 /* Returns whether one of the N user-defined lamps GIVEN is at the position of
- * LAMP, a detected lamp: in its disc, or closer to it than 1 / 100 of the
- * picture's width, the distance within which the detector merges lamps. */
+ * LAMP, a detected lamp: in LAMP's disc, or closer to this disc than 1 / 100 of
+ * the picture's width, within which the detector merges lamps. */
 static bool is_at_given_lamp(const struct drawing_run *run, double focal_mm,
                              const struct glint_engine_lamp *lamp,
                              const struct glint_engine_lamp *given, int n)
@@ -431,8 +432,8 @@ static bool is_at_given_lamp(const struct drawing_run *run, double focal_mm,
     return false;
 }
 
-/* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN,
- * except detected ones at the position of a user-defined lamp. Returns the
+/* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN.
+ * Omits detected lamps at the position of a user-defined lamp. Returns the
  * total number. */
 static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                            int32_t elapsed_us, int n)
@@ -447,7 +448,7 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                                 GLINT_ENGINE_MAX_LAMPS);
     run->n_found = 0;
     for (int i = 0; i < n_found; i++)
-        if (!is_at_given_lamp(run, lens_focal_mm(d), &lamp[i], given, n))
+        if (!is_at_given_lamp(run, get_lens_focal_mm(d), &lamp[i], given, n))
             lamp[run->n_found++] = lamp[i];
     for (int i = 0; i < n; i++) {
         /* The ids of detected lamps start at 1, so user-defined lamps get other
@@ -479,7 +480,7 @@ static void collect_image_lamps(struct drawing *d,
             &line->hand[i], (is_listed ? LAMP_ID_TEXT : 1) + (uint32_t)i);
     if (list->n > 0)
         n += lamp_list_get_frame(list, run->n_frames, &run->view,
-                                 lens_focal_mm(d), lamp + n, list->n);
+                                 get_lens_focal_mm(d), lamp + n, list->n);
     run->is_followed = elapsed_us > 0 && follows;
     run->n_found = 0;
     if (!is_listed && line->n_hand == 0)
@@ -502,7 +503,7 @@ static enum glint_status find_image_lamps(struct drawing *d,
         return status;
     collect_image_lamps(d, image, elapsed_us);
     occlusion_dim_lamps(&d->files.occlusion, d->run.n_frames, &d->run.view,
-                        lens_focal_mm(d), d->run.lamp, d->run.n_lamps);
+                        get_lens_focal_mm(d), d->run.lamp, d->run.n_lamps);
     return GLINT_OK;
 }
 
@@ -512,11 +513,11 @@ void drawing_measure_clipped_lamps(struct drawing *drawing,
     const struct drawing_run *const run = &drawing->run;
 
     add_lamp_excess(run->lamp, run->n_found, samples, run->white, &run->view,
-                    lens_focal_mm(drawing));
+                    get_lens_focal_mm(drawing));
 }
 
-/* Returns the row of lamp I for --save-lights. Its position is where the lamp
- * was detected or what a list or option sets. */
+/* Returns the row of lamp I for --save-lights. The row's position is where the
+ * lamp was detected, or the position that a list or option sets. */
 static struct lamp_row make_saved_lamp_row(const struct drawing_run *run,
                                            double focal_mm, int i)
 {
@@ -563,7 +564,7 @@ enum glint_status drawing_detect_lamps_only(struct drawing *drawing,
 
     if (status == GLINT_OK)
         save_frame_lamps(&drawing->files.save, &drawing->run,
-                         lens_focal_mm(drawing));
+                         get_lens_focal_mm(drawing));
     return status;
 }
 
@@ -585,7 +586,7 @@ static void add_scene_lamps(struct drawing *d)
     scene->lights = run->n_lamps - n;
     run->n_lamps += over_scene_add_highlights(
         scene, !d->line.settings.options.no_tracking, &run->view,
-        lens_focal_mm(d), run->lamp + run->n_lamps);
+        get_lens_focal_mm(d), run->lamp + run->n_lamps);
     glint_engine_apply_shares(run->lamp, run->n_lamps, d->line.is_still);
 }
 
@@ -699,7 +700,7 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     struct glint_engine_config cfg;
     enum glint_status status;
 
-    save_frame_lamps(&drawing->files.save, run, lens_focal_mm(drawing));
+    save_frame_lamps(&drawing->files.save, run, get_lens_focal_mm(drawing));
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
     drawing_start_flare(drawing);
@@ -799,7 +800,7 @@ void drawing_draw_marks(const struct drawing *drawing,
     if (!line->show_lights || !run->engine)
         return;
     for (int i = 0; i < run->n_lamps; i++)
-        draw_lamp_mark(run, lens_focal_mm(drawing), i, image);
+        draw_lamp_mark(run, get_lens_focal_mm(drawing), i, image);
     show_mark_legend(image, run->n_found > 0 && run->is_followed);
 }
 

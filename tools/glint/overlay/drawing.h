@@ -95,12 +95,12 @@ enum glint_status drawing_detect_and_draw_scene(struct drawing *drawing,
 void drawing_measure_clipped_lamps(struct drawing *drawing,
                                    const struct glint_samples *samples);
 
-/* Starts the progress of exact rays, and prints what they draw. Does nothing
- * with a model. */
+/* Starts the progress of exact rays, and prints what will be drawn. Does
+ * nothing with a model. */
 void drawing_start_flare(struct drawing *drawing);
 
 /* Ends the progress of the flare, and records its time. START is the time,
- * seconds, at which its drawing began. */
+ * seconds, at which the drawing of the flare began. */
 void drawing_end_flare(struct drawing_run *run, double start);
 
 /* Writes the lamps to the file of --save-lights and sets the exposure of the
@@ -109,8 +109,8 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
                                        const struct glint_image *image);
 
 /* Draws the flare into RGB, [height][width][3] of the upright picture, linear
- * light. If IS_DEEP, it has the accuracy of floats, else that of 8-bit codes in
- * half the time. Returns GLINT_E_MEMORY on failure. */
+ * light. If IS_DEEP, RGB has the accuracy of floats, else that of 8-bit codes
+ * in half the time. Returns GLINT_E_MEMORY on failure. */
 enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
                                      float *rgb);
 

@@ -117,7 +117,7 @@ static int report_bad_control_line(const struct tool *tool,
 }
 
 /* Checks that the lens supports each zoom and f-number of the control lines, by
- * setting it, and then restores the lens. Returns an exit code. */
+ * setting each value, and then restores the lens. Returns an exit code. */
 static int check_control_lines(const struct tool *tool, struct settings *s,
                                struct drawing_files *f)
 {
@@ -257,10 +257,10 @@ static enum glint_status open_lamp_inputs(const struct drawing_line *line,
     return status == GLINT_OK ? add_key_lamp(f) : status;
 }
 
-/* ---------------------------------------------------------------------- all */
+/* --------------------------------------------------------------- all files */
 
-/* Opens the scene. With --lens none there must be a scene, and its camera must
- * not need a lens. Returns an exit code. */
+/* Opens the scene. With --lens none there must be a scene whose camera needs no
+ * lens. Returns an exit code. */
 static int open_scene_file(const struct tool *tool,
                            const struct glint_options *o,
                            struct drawing_files *f)

@@ -25,7 +25,7 @@ struct drawing_files {
     /* "FILE:LINE" of the key frame that sets the f-number of the lens */
     char keys_line[224];
     struct occlusion occlusion; /* mask that occludes lamps */
-    struct over_scene scene;    /* scene that is drawn over the picture */
+    struct over_scene scene;
     struct lamp_save save;
 };
 

@@ -81,8 +81,8 @@ int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,
         code = drawing_line_set_text(tool, line, style->set[i].option,
                                      style->set[i].value);
     drawing_line_end_file(line);
-    /* A style may set coatings. If the lens is a model, whose coatings are
-     * fixed, that must not be an error as --coating is. */
+    /* A style may set coatings. Unlike --coating, this must not be an error if
+     * the lens is a model, whose coatings are fixed. */
     line->settings.coating.given = false;
     line->style = style->name;
     return code;

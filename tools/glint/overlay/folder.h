@@ -19,11 +19,11 @@ bool folder_is_path_a_folder(const char *path);
 bool folder_make_output_path(char path[FOLDER_PATH], const char *folder,
                              const char *input);
 
-/* Creates FOLDER if it does not exist, and sets *IS_NEW to whether it did so.
- * The outputs of INPUT[N], drawn with OPTIONS, will be written there. Rejects
- * inputs with equal file names, outputs that would overwrite an input, and
- * options that read a stream, which the first input would consume. Returns an
- * exit code. */
+/* Creates FOLDER if it does not exist. Sets *IS_NEW to whether FOLDER was
+ * created. The outputs of INPUT[N], drawn with OPTIONS, will be written there.
+ * Rejects inputs with equal file names, outputs that would overwrite an input,
+ * and options that read a stream, which the first input would consume. Returns
+ * an exit code. */
 int folder_create(const struct tool *tool, const char *folder, char **input,
                   int n, const struct glint_options *options, bool *is_new);
 

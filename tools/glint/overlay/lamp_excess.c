@@ -4,8 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Pixels around a lamp whose light above white may belong to the lamp: a disc,
- * and the rectangle around it */
+/* Region around a lamp in which light above white may belong to the lamp: a
+ * disc, and the rectangle around the disc */
 struct reach {
     double x, y, radius;
     int left, top, right, bottom;
@@ -16,8 +16,8 @@ static int clamp_coordinate(double v, int most)
     return (int)fmin(fmax(v, 0), most);
 }
 
-static struct reach find_lamp_reach(const struct glint_lamp_track *track,
-                                    int width, int height)
+static struct reach compute_lamp_region(const struct glint_lamp_track *track,
+                                        int width, int height)
 {
     struct reach r = {.x = track->x_q8 / 256.0, .y = track->y_q8 / 256.0};
 
@@ -29,7 +29,7 @@ static struct reach find_lamp_reach(const struct glint_lamp_track *track,
     return r;
 }
 
-static double distance_to_lamp(const struct reach *r, int x, int y)
+static double compute_distance_to_lamp(const struct reach *r, int x, int y)
 {
     return hypot(x + 0.5 - r->x, y + 0.5 - r->y);
 }
@@ -39,7 +39,7 @@ static double distance_to_lamp(const struct reach *r, int x, int y)
 static bool is_lamp_nearest(const struct reach *all, int n, int own, int x,
                             int y)
 {
-    const double d = distance_to_lamp(&all[own], x, y);
+    const double d = compute_distance_to_lamp(&all[own], x, y);
 
     if (d > all[own].radius)
         return false;
@@ -48,7 +48,7 @@ static bool is_lamp_nearest(const struct reach *all, int n, int own, int x,
 
         if (i != own && x >= r->left && x < r->right && y >= r->top &&
             y < r->bottom &&
-            distance_to_lamp(r, x, y) < d + (i < own ? 1e-9 : 0))
+            compute_distance_to_lamp(r, x, y) < d + (i < own ? 1e-9 : 0))
             return false;
     }
     return true;
@@ -132,7 +132,7 @@ void add_lamp_excess(struct glint_engine_lamp *lamp, int n,
     struct reach *const all = n > 0 ? malloc((size_t)n * sizeof *all) : NULL;
 
     for (int i = 0; i < n && all; i++)
-        all[i] = find_lamp_reach(&lamp[i].track, view->width, view->height);
+        all[i] = compute_lamp_region(&lamp[i].track, view->width, view->height);
     for (int i = 0; i < n && all; i++) {
         struct sum sum = compute_light_seen_in_proxy(&lamp[i].track, white);
 

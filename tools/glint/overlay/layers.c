@@ -127,8 +127,8 @@ static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
     struct glint_engine_report report;
 
     memset(rgb, 0, (size_t)n_layers * n * sizeof *rgb);
-    /* The veil is drawn first. It is computed from the flare that the engine
-     * drew last, which drawing another component replaces. */
+    /* The veil is drawn first, because it is computed from the flare that the
+     * engine drew last. Drawing another component replaces this flare. */
     for (int k = n_layers - 1; k >= GHOSTS && status == GLINT_OK; k--)
         if (is_lit || k == VEIL)
             status = glint_engine_draw_layer(c->run.engine, c->run.lamp,

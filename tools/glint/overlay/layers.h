@@ -28,7 +28,7 @@ int layers_check_file_names(const struct tool *tool,
 int layers_check_outputs(const struct tool *tool, const struct layers *layers,
                          const struct apart *files);
 
-/* Draws and writes the layers of the present frame of DRAWING, after its
+/* Draws and writes the layers of the present frame of DRAWING, after the
  * exposure was set. Does nothing if no layers are requested. Returns an exit
  * code. */
 int layers_write(const struct tool *tool, const struct layers *layers,

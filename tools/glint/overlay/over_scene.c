@@ -9,8 +9,7 @@
 #include "motions/time_line.h"
 #include "scenes/account.h"
 
-/* ------------------------------------------------------- lines of control
- */
+/* ----------------------------------------------------------- control lines */
 
 /* Checks that the command of LINE is valid, except for the value of a flare
  * option, which the lens may not support. */
@@ -79,7 +78,7 @@ static enum glint_status execute_control_line(struct over_scene *over,
                                        where, error);
 }
 
-/* Errors do not end the run. At most one of them is printed per picture. */
+/* Errors do not end the run. At most one error is printed per picture. */
 void over_scene_apply_control(struct over_scene *over, int frame)
 {
     const long before = over->control.n_bad;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * over_scene.h - draws a scene over the pictures of a video. Its objects
- * occlude lamps of the picture. Its lights and highlights become lamps of the
- * flare.
+ * over_scene.h - draws a scene over the pictures of a video. Objects of the
+ * scene occlude lamps of the picture. Lights and highlights of the scene become
+ * lamps of the flare.
  *
  *     over_scene_open(&over, tool);           scene and poses
  *     over_scene_allocate(&over, &dials);     when the size changes
@@ -41,9 +41,10 @@ struct scene_poses {
 
 struct over_scene {
     /* Options. */
-    const char *file;         /* scene file; NULL: no scene */
-    const char *pose_file;    /* or NULL */
-    const char *control_file; /* control file or NULL; "-": standard input */
+    const char *file;      /* scene file; NULL: no scene */
+    const char *pose_file; /* pose file; NULL: none */
+    const char
+        *control_file; /* control file, "-": standard input; NULL: none */
     /* whether poses and control lines are read from a FIFO, without waiting for
      * data */
     bool is_live;
@@ -66,7 +67,7 @@ struct over_scene {
     struct controls control;
     /* playback position of the pose file and of the recorded motion */
     struct playback playback;
-    int shown; /* number of the playback frame that was drawn last */
+    int shown; /* number of the playback frame drawn last */
     /* recorded motion of the scene, if it has one */
     struct glint_motion motion;
     struct steer steer;
@@ -108,7 +109,6 @@ enum glint_status over_scene_set_quality(struct over_scene *over,
  * lens. */
 void over_scene_apply_control(struct over_scene *over, int frame);
 
-/* Draws the scene of frame FRAME onto IMAGE. */
 enum glint_status over_scene_draw(struct over_scene *over,
                                   const struct glint_image *image, int frame);
 

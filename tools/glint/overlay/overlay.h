@@ -18,9 +18,9 @@ struct overlay_span {
 };
 
 struct overlay_figures {
-    /* Engine report of the frame in which most lights were merged. Instead of
-     * that frame's, its numbers of lights, of out-of-range lights, and of
-     * dropped bundles and cells are maxima over all frames. */
+    /* Engine report of the frame in which most lights were merged. In this
+     * report the numbers of lights, of out-of-range lights, and of dropped ray
+     * bundles and cells are maxima over all frames instead. */
     struct glint_engine_report worst;
     int most_lights;
     /* ranges of the options of this name over all frames */
@@ -29,8 +29,8 @@ struct overlay_figures {
     int n_reused;
     /* total times of lamp detection and of drawing flares, ms */
     double find_ms, flare_ms;
-    /* light of the flare, 1 = white: its max over all frames, and the sum over
-     * all frames of its mean over the pixels */
+    /* light of the flare, 1 = white: max over all frames, and sum over all
+     * frames of the mean over the pixels */
     double peak, mean_sum;
     size_t peak_bytes;
     /* times of the start of the run and of the last progress line, s */
@@ -45,7 +45,7 @@ struct overlay {
     int start_number;
     struct zoom_clip zoom;
     /* first and last frame of a video to draw, from 0; number of frames before
-     * FIRST in which lamps are only detected, so that they are tracked */
+     * FIRST in which lamps are detected and tracked, but nothing is drawn */
     int first, last, warm_up;
     /* microseconds between frames; 0: pictures are independent */
     int32_t elapsed_us;
@@ -83,7 +83,7 @@ int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
                             const struct glint_image *image);
 
 /* Draws a frame like overlay_draw_frame(), for a frame that cannot be drawn on
- * in place: the engine's work is done by DRAW, called with CTX. */
+ * in place: calls DRAW with CTX instead of drawing_draw_flare(). */
 typedef enum glint_status overlay_draw_fn(void *ctx, struct drawing *drawing,
                                           const struct glint_image *image,
                                           int32_t elapsed_us);
@@ -95,8 +95,8 @@ int overlay_draw_frame_by_callback(struct tool *tool, struct overlay *o,
  * line every few seconds. */
 void overlay_print_progress(const struct tool *tool, struct overlay *o);
 
-/* Rejects the output TO, and the other outputs of the options, if one would
- * overwrite the input FROM, another input or another output. */
+/* Rejects the outputs, TO and those of the options, if one would overwrite the
+ * input FROM, another input or another output. */
 int overlay_check_outputs(const struct tool *tool, const struct overlay *o,
                           const char *from, const char *to);
 

@@ -3,10 +3,10 @@
  * Draws on a picture file: opens it, adds scene and flare, and writes it.
  *
  * Opaque 8-bit sRGB is drawn on in place, in integers. For all other pictures
- * lamps are detected in an 8-bit proxy; their light is measured in floats if
- * the file has floats, and the flare is added in linear light to the samples
- * that it reaches. A file on which nothing is drawn is copied if the output has
- * the same type.
+ * lamps are detected in an 8-bit proxy; the light of the lamps is measured in
+ * floats if the file has floats, and the flare is added in linear light to the
+ * samples that the flare changes. A file on which nothing is drawn is copied if
+ * the output has the same type.
  */
 #include "overlay/overlay.h"
 
@@ -48,7 +48,7 @@ static int report_file_failure(const struct tool *tool,
 
 /* ------------------------------------------------------------------ opening */
 
-/* Sets f->work to a float copy of the input. It is needed if the output file
+/* Sets f->work to a float copy of the input, which is needed if the output file
  * stores floats but the input does not. */
 static enum glint_status convert_input_to_float(struct overlay_file *f)
 {
@@ -122,9 +122,9 @@ static int open_picture_file(const struct tool *tool, struct overlay_file *file,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Max difference between the channels of a pixel that counts as grey, in 8-bit
- * codes, as JPEG files and colour profiles cause it: for 99 % of the pixels,
- * and for all of them */
+/* Max difference between the channels of a grey pixel, 8-bit codes: for 99 % of
+ * the pixels, and for all pixels. Not 0, because JPEG compression and colour
+ * profiles add such differences. */
 enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
 
 static int compute_max_channel_difference(const uint8_t px[3])
@@ -136,7 +136,7 @@ static int compute_max_channel_difference(const uint8_t px[3])
 }
 
 /* Returns whether IMAGE is a monochrome photograph. All pixels are grey within
- * AT_MOST_GREY and 99 % within NEARLY_GREY. At least a tenth of them are
+ * AT_MOST_GREY and 99 % within NEARLY_GREY. At least a tenth of all pixels are
  * neither nearly black nor nearly white; otherwise IMAGE is a drawing, whose
  * flare has colours. */
 static bool is_image_monochrome(const struct glint_image *image)
@@ -508,7 +508,7 @@ static int save_picture(const struct tool *tool, struct overlay_file *file,
     return EXIT_OK;
 }
 
-/* -------------------------------------------------------------------- whole */
+/* ------------------------------------------------------------ picture file */
 
 int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
                               const char *from, const char *to)

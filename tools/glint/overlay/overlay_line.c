@@ -10,8 +10,8 @@
 /* Linear light, 1 = white, below which a flare is invisible: that of sRGB code
  * 2 of 255. Near black the sRGB curve has the slope 12.92. */
 static const double least_seen = 2 / 255.0 / 12.92;
-/* Linear light, 1 = white, that the peak of an invisible flare would get by the
- * option that is suggested for it */
+/* Linear light, 1 = white, of the flare's peak with the option that is
+ * suggested if the flare is invisible */
 static const double well_seen = 0.25;
 
 /* --------------------------------------------------------------- the light */
@@ -209,13 +209,13 @@ static void print_faint_flare_remedy(const struct overlay *o,
                 o->output);
     else if (light->peak <= 0 && are_all_lamps_off_screen(drawing))
         fprintf(to,
-                "%s: no ghost reaches the picture, as no lamp lies inside "
-                "it; a place in or near the %dx%d pixels may show a flare\n",
+                "%s: no ghost reaches the picture, because all lamps lie "
+                "outside it; move one into or near the %dx%d pixels\n",
                 o->output, drawing->run.view.width, drawing->run.view.height);
     else if (light->peak <= 0)
         fprintf(to,
-                "%s: no light reaches the picture through this lens; another "
-                "one (--lens) may show a flare\n",
+                "%s: no light of the flare reaches the picture with this lens; "
+                "try another one (--lens)\n",
                 o->output);
     else if (GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure))
         fprintf(to,
@@ -243,9 +243,9 @@ static const char *describe_picture_without_lamps(const struct drawing *drawing)
                                           : "nothing";
 }
 
-/* Returns whether --mask or --edge-fade removed the light of all lamps. If
- * there were several frames, this is so if LIGHT, the light of all flares, is 0
- * and all lamps of the last frame are hidden. */
+/* Returns whether --mask or --edge-fade removed the light of all lamps. For
+ * several frames, returns whether LIGHT, the light of all flares, is 0 and all
+ * lamps of the last frame are hidden. */
 static bool are_all_lamps_hidden(const struct drawing *drawing,
                                  const struct overlay_light *light)
 {
@@ -277,7 +277,7 @@ static void print_hidden_lamps(const struct drawing *drawing, int most,
             describe_picture_without_lamps(drawing));
 }
 
-/* Prints up to three --light-at options. They make lamps of the brightest spots
+/* Prints up to three --light-at options that add lamps at the brightest regions
  * that detection rejected. */
 static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
 {

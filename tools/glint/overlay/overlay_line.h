@@ -17,8 +17,8 @@ struct overlay_light {
      * several frames */
     bool is_known;
     /* Peak light. For a single picture 1 / 10000 of the pixels exceed it. For
-     * several frames it is the mean of the brightest 1 / 1000 of the pixels of
-     * the brightest frame. */
+     * several frames: mean of the brightest 1 / 1000 of the pixels of the
+     * brightest frame. */
     double peak;
     /* mean light over all pixels of all frames */
     double mean;
@@ -37,7 +37,8 @@ void overlay_print_summary(const struct overlay *o,
                            const struct overlay_light *light, FILE *to);
 
 /* Prints that no lamp was found. If IS_COPIED, prints that the file was copied.
- * For a single picture, also prints the brightest spots that could be lamps. */
+ * For a single picture, also prints the brightest regions that could be
+ * lamps. */
 void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
                                  FILE *to);
 

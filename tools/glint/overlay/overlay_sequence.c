@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws numbered pictures as the frames of a video. A missing number is
- * printed; it counts as a frame time in which nothing is drawn.
+ * Draws numbered pictures as the frames of a video. Missing numbers are printed
+ * and count as frame times in which nothing is drawn.
  */
 #include "options/numbered.h"
 #include "options/timed_text.h"

@@ -302,16 +302,17 @@ static int draw_all_frames(struct video *v)
             code = draw_and_write_frame(v, image);
     }
     if (code == EXIT_OK && *at <= v->o->first && !v->is_closed) {
-        fprintf(stderr, "glint overlay: %s: %s frames\n", v->in.name,
-                *at > 0 ? "has not as many" : "no");
+        fprintf(stderr, "glint overlay: %s: %s\n", v->in.name,
+                *at > 0 ? "ends before the first frame of --frames"
+                        : "has no frames");
         code = EXIT_INPUT;
     }
     return code;
 }
 
 /* Prints the first and last frame of each shot. A shot begins where tracking
- * and exposure restart. They restart in every frame without lamps; these frames
- * belong to the shot that follows. */
+ * and exposure restart. They restart in every frame without lamps; such frames
+ * belong to the shot that follows them. */
 static int print_shot_list(struct video *v)
 {
     const int *const at = &v->o->drawing.run.n_frames;

@@ -9,7 +9,7 @@
 /* Memory that is used again for each frame of a video */
 struct overlay_y4m {
     struct glint_y4m_light light;
-    uint8_t *planes; /* sample planes of the frame */
+    uint8_t *planes;
     float *layer;
 };
 

@@ -17,7 +17,7 @@ struct zoom_clip {
     /* zoom in the first and last frame: both mm, or both 0 .. 1 */
     double from, to;
     char label[80]; /* "--zoom A-B", used in error messages */
-    char *keys;     /* text of the key frames */
+    char *keys;
 };
 
 /* Parses TEXT, "A-B". Returns false if it is malformed. */
