@@ -241,13 +241,13 @@ TEST(reports_mistakes_with_their_line)
     expect_config_error(BYTES("dither=\n"),
                         "x.ini:1: dither accepts yes or no");
     expect_config_error(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
-                        "x.ini:4: dither is stated twice");
+                        "x.ini:4: dither is set twice");
     expect_config_error(BYTES("grid=4\nlens=a\0b\n"),
-                        "x.ini:2: holds a control character");
+                        "x.ini:2: contains a control character");
     expect_config_error(BYTES("lens=a\x1b[2J\n"),
-                        "x.ini:1: holds a control character");
+                        "x.ini:1: contains a control character");
     expect_config_error(BYTES("lens=a\rgrid=5\n"),
-                        "x.ini:1: holds a control character");
+                        "x.ini:1: contains a control character");
 }
 
 /* Checks an error that the command itself reports. Its message must be

@@ -39,8 +39,8 @@ const struct option *engine_build_options(struct tool *tool, unsigned groups,
                                           const struct glint_options *defaults,
                                           const struct option *own);
 
-/* Calls getopt_long(). Stores OPTIONS for the option --options, which prints
- * them for shell completion. */
+/* Calls getopt_long(). Stores OPTIONS, which the option --options prints for
+ * shell completion. */
 int tool_getopt(int argc, char *const *argv, const char *shorts,
                 const struct option *options, int *index);
 
@@ -56,7 +56,7 @@ const char *tool_find_option_value(int argc, char **argv, const char *shorts,
 
 /* Checks that N arguments of ARGV follow the options. Returns -1, or the code
  * of tool_usage() after printing TEXT. If arguments are missing, the message
- * also says that the last option consumed one as its value. */
+ * also states which word the last option consumed as its value. */
 int tool_check_inputs(const struct tool *tool, int argc, char **argv, int n,
                       const char *text);
 

@@ -105,7 +105,8 @@ static char *read_line_for_inih(char *dst, int size, void *stream)
     if (n > 0 && *line == '[')
         p->section_line = p->line;
     if (!is_text_option(line, n))
-        return report_config_error(p, "holds a control character%s", ""), NULL;
+        return report_config_error(p, "contains a control character%s", ""),
+               NULL;
     if (n > CONFIG_LINE || n + 2 > (size_t)size)
         return report_config_error(p, "has a line that is too long%s", ""),
                NULL;
@@ -134,8 +135,8 @@ static void record_section(struct pass *p, const char *section)
         p->config->tool->name, p->where, section);
 }
 
-/* Returns the option NAME. Returns NULL if it does not exist or files must not
- * contain it: options for help and version, and a further configuration
+/* Returns the option NAME. Returns NULL if the option does not exist or is not
+ * allowed in files: options for help and version, and a further configuration
  * file. */
 static const struct option *find_option(const struct config *config,
                                         const char *name)
@@ -162,7 +163,7 @@ static int check_config_entry(struct pass *p, const struct option *option,
     if (strcmp(value, "yes") != 0 && strcmp(value, "no") != 0)
         return report_config_error(p, "%s accepts yes or no", option->name);
     if (index < MAX_OPTIONS && p->stated[index])
-        return report_config_error(p, "%s is stated twice", option->name);
+        return report_config_error(p, "%s is set twice", option->name);
     if (index < MAX_OPTIONS)
         p->stated[index] = true;
     return 1;

@@ -104,7 +104,7 @@ static const char *format_range_start(double low, char start[32])
 }
 
 /* Writes "(LOW to HIGH, default VALUE)" for row I of the option table. Omits
- * values that its help text states already. */
+ * values that the row's help text states already. */
 static void write_option_limits(struct page *page,
                                 const struct glint_options *defaults, int i)
 {

@@ -28,8 +28,8 @@ static void write_json_text(FILE *file, const char *text)
     fputc('"', file);
 }
 
-/* Writes the next argument of VALUES, an integer, by the conversion FORM. Its
- * size is that of l, ll or z in FORM, or int. */
+/* Writes the next argument of VALUES, an integer, by the conversion FORM. The
+ * type of the integer is that of l, ll or z in FORM, else int. */
 static void write_json_integer(FILE *file, const char *form, va_list *values)
 {
     const char *const size = form + strcspn(form, "lz");

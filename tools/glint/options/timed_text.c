@@ -15,7 +15,8 @@
 #include "options/tool.h"
 #include "posix/input.h"
 
-/* max number of read() calls per turn, that is per picture */
+/* max number of read() calls between two calls of
+ * text_lines_reset_read_limit() */
 enum { READINGS = 16 };
 
 const char text_no_memory[] = "no memory";
@@ -150,7 +151,6 @@ char *text_lines_read_untrimmed(struct text_lines *lines)
     return line;
 }
 
-/* Returns TEXT without leading and trailing blanks. */
 static char *trim_blanks(char *text)
 {
     char *end = text + strlen(text);
@@ -293,7 +293,7 @@ const char *text_parse_json_object(struct text_lines *lines, char *line,
     }
     if (mark != '}')
         return "expected , or }";
-    return *skip_blanks(at + 1) ? "something follows the object" : NULL;
+    return *skip_blanks(at + 1) ? "text follows the closing brace" : NULL;
 }
 
 const char *text_parse_value(const struct text_column *column, const char *text,

@@ -24,7 +24,7 @@
 
 enum {
     TEXT_MAX_FRAME = 1000000000,
-    /* max bytes of a line of a pipe, with its end */
+    /* max bytes of a line of a pipe, with terminator */
     TEXT_PIPE_BYTES = 512
 };
 
@@ -42,7 +42,7 @@ struct text_lines {
     char text[TEXT_PIPE_BYTES], bytes[4096];
     size_t n_text, at, n_bytes;
     bool is_cut, has_ended;
-    int left; /* number of read() calls left in this turn */
+    int left; /* number of read() calls left until the limit is reset */
 };
 
 /* ------------------------------------------------------------------- lines */
@@ -58,17 +58,16 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
 /* Returns whether PATH is a FIFO. */
 bool text_is_named_pipe(const char *path);
 
-/* Opens the FIFO PATH, or standard input if PATH is "-".
- * text_lines_reset_read_limit() begins a turn, such as the time of a picture,
- * in which at most 64 KiB are read. Zero bytes become '?'. Error:
- * GLINT_E_IO. */
+/* Opens the FIFO PATH, or standard input if PATH is "-". At most 64 KiB are
+ * read until the next text_lines_reset_read_limit(), which is called once per
+ * picture. Zero bytes become '?'. Error: GLINT_E_IO. */
 enum glint_status text_lines_open_pipe(struct text_lines *lines,
                                        const char *path,
                                        struct glint_error *error);
 void text_lines_reset_read_limit(struct text_lines *lines);
 
 /* Return the next line, which the caller may change. Return NULL at the end of
- * the file or if the turn has no more lines. text_lines_read_untrimmed()
+ * the file or if a pipe has no more lines for now. text_lines_read_untrimmed()
  * returns every line unchanged. text_lines_read_next() trims lines, and skips
  * empty lines and those that begin with '#'. */
 char *text_lines_read_untrimmed(struct text_lines *lines);
@@ -105,10 +104,10 @@ struct text_column {
 };
 
 /* Splits LINE at commas into FIELD[MAX] without blanks around the fields.
- * Returns the number of fields, or a number above MAX if they do not fit. */
+ * Returns the number of fields, or MAX + 1 if there are more. */
 int text_split_fields(char *line, char **field, int max);
 
-/* Returns the index in COLUMN[N] of the column NAME, or -1. */
+/* Returns the index in COLUMN[N] of the column NAME, or -1 if there is none. */
 int text_find_column(const struct text_column *column, int n, const char *name);
 
 /* Parses LINE, a flat JSON object with keys that are names in COLUMN[N]. Sets

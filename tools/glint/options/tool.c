@@ -19,7 +19,7 @@
 #include "posix/ending.h"
 #include "posix/error.h"
 
-/* Prints an error message and copies it to the tool's cause, if it has one. */
+/* Prints an error message and copies it to tool->cause unless that is NULL. */
 static void print_tool_error(const struct tool *tool, const char *format,
                              va_list args)
 {
@@ -140,8 +140,8 @@ void tool_watch_closed_pipe(void)
 {
     struct sigaction note = {.sa_handler = record_closed_pipe};
 
-    /* The handler only records the signal. The write that caused it fails with
-     * an error, which is handled. */
+    /* The handler only records the signal. The write that caused the signal
+     * fails with an error, which is handled. */
     sigaction(SIGPIPE, &note, NULL);
 }
 

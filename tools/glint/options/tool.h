@@ -42,7 +42,7 @@ struct tool {
     int seed; /* random seed for synth, and for the noise of live -d test */
     /* instruction sets that kernels must not use, one bit each */
     unsigned sets_off;
-    const char *kernels; /* argument of --kernels, or NULL */
+    const char *kernels; /* argument of --kernels; NULL: not given */
     /* thread pool, created by tool_start_threads() */
     struct glint_workers *workers;
     /* output file of the command, which must not be an input of a scene; may be
@@ -61,8 +61,8 @@ void tool_stop_threads(struct tool *tool);
 
 /* Detect failed writes to standard output. A program calls
  * tool_watch_closed_pipe() at its start and tool_close_stdout() at its end. The
- * latter returns CODE, or EXIT_OUTPUT if a write failed. If the reader of a
- * pipe has closed it, that is not a failure. */
+ * latter returns CODE, or EXIT_OUTPUT if a write failed. A pipe that its reader
+ * has closed is not a failure. */
 void tool_watch_closed_pipe(void);
 int tool_close_stdout(int code);
 
@@ -74,8 +74,8 @@ void tool_error(const struct tool *tool, const char *format, ...);
 
 /* Print an error like tool_error() and return an exit code. tool_usage()
  * returns EXIT_USAGE, or EXIT_INPUT if the option comes from a file.
- * tool_fail() returns the code of STATUS. For GLINT_E_CLOSED, which means that
- * the reader of a pipe has closed it, tool_fail() prints nothing. */
+ * tool_fail() returns the code of STATUS. For GLINT_E_CLOSED (the reader of a
+ * pipe has closed it) tool_fail() prints nothing. */
 int tool_usage(const struct tool *tool, const char *format, ...);
 int tool_fail(const struct tool *tool, enum glint_status status,
               const char *text);
@@ -95,21 +95,21 @@ int tool_report_bad_value(const struct tool *tool, const char *option,
 
 /* ------------------------------------------------------------------ numbers */
 
-/* Parse TEXT, without a rest: tool_parse_number() a finite number,
- * tool_parse_numbers() up to MAX of them, separated by commas. Return how many
- * there are, 0 on failure. */
+/* Parse all of TEXT. tool_parse_number() parses a finite number and returns
+ * false on failure. tool_parse_numbers() parses up to MAX finite numbers,
+ * separated by commas, and returns how many there are, 0 on failure. */
 bool tool_parse_number(const char *text, double *value);
 int tool_parse_numbers(const char *text, double *values, int max);
 
-/* Parses TEXT, without a rest, as an integer, LOW .. HIGH. Returns false on
- * failure. */
+/* Parses all of TEXT as an integer, LOW .. HIGH. Returns false on failure. */
 bool tool_parse_integer(const char *text, int low, int high, int *value);
 
 /* Parses TEXT, "WxH", with W and H from 1 to GLINT_MAX_SIDE. Returns false on
  * failure. */
 bool tool_parse_size(const char *text, int *width, int *height);
 
-/* Returns the index of TEXT in the NULL-terminated WORDS, or -1. */
+/* Returns the index of TEXT in the NULL-terminated WORDS, or -1 if TEXT is not
+ * in WORDS. */
 int tool_find_word_index(const char *text, const char *const *words);
 
 /* Returns the time of a monotonic clock, s. */
@@ -144,9 +144,11 @@ int tool_save_text(const struct tool *tool, const char *path, FILE *file,
  * fraction of the work done, 0 .. 1. */
 struct tool_progress {
     const char *what;
-    /* option that shortens the work, or NULL; printed for work of minutes */
+    /* option that shortens the work, printed if the work takes minutes; NULL:
+     * none */
     const char *less;
-    /* text after the estimate about work that it omits, or NULL */
+    /* text after the estimate, about work that the estimate omits; NULL:
+     * none */
     const char *besides;
     double from, share; /* see tool_progress_set_part() */
     /* min total time for which an estimate is printed, s */
