@@ -139,7 +139,7 @@ TEST(rejects_wrong_lines)
     expect_poses_error("{\"x\":1\n", 1, "expected , or }");
     expect_poses_error("{\"x\" 1}\n", 1, "a colon is missing");
     expect_poses_error("{\"w\":1}\n", 1, "unknown key; expected one of");
-    expect_poses_error("{\"object\":3}\n", 1, "object is a");
+    expect_poses_error("{\"object\":3}\n", 1, "object must be a");
     assert_int_equal(poses_open(&poses, "/no/such/file", false, &model, &error),
                      GLINT_E_IO);
 }

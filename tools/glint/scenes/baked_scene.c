@@ -147,7 +147,6 @@ static size_t count_medium_bytes(const struct glint_scene_model *model)
     return bytes;
 }
 
-/* Returns the bytes of all environments. */
 static size_t count_environment_bytes(const struct glint_scene_model *model)
 {
     size_t bytes = 0;

@@ -4,7 +4,7 @@
 #include <math.h>
 
 /* Number of frames that are drawn with a level before a finer level is tried.
- * Each failed trial doubles it, up to MAX_HOLD. */
+ * Each failed trial doubles this number, up to MAX_HOLD. */
 #define HOLD     8
 #define MAX_HOLD 512
 /* Fraction of the time limit below which a finer level is tried. A level takes
@@ -16,12 +16,12 @@
 #define FRACTION     0.6
 #define MIN_FRACTION 0.1
 
-/* Quality levels, from fine to coarse. First they reduce shadow points and
- * lookups in brushed metal, because penumbrae cover little of an image and 4
- * lookups lose less than 2 dB. Then they reduce the number of shaded points,
- * and at last the edge samples. QUALITY is the min --quality that uses the
- * level. PSNR falls from 48 dB to 36 dB (mean of three scenes at revision
- * e8a4a84c). */
+/* Quality levels, from fine to coarse; level 1 is the default. Level 2 reduces
+ * shadow points and lookups in brushed metal, because penumbrae cover little of
+ * an image and 4 lookups lose less than 2 dB. Level 3 reduces the number of
+ * shaded points, level 4 the edge samples. QUALITY is the min --quality that
+ * uses the level. PSNR falls from 48 dB to 36 dB (mean of three scenes at
+ * revision e8a4a84c). */
 static const struct {
     int points, edge, samples;
     bool half;
@@ -131,8 +131,8 @@ bool scene_budget_update_level(struct scene_budget *budget, double ms,
 }
 
 /* The time of the flare does not show whether the flare needs more time,
- * because it uses all the time that the scene leaves. The quality of the flare
- * shows it. */
+ * because the flare uses all the time that the scene leaves. The quality of the
+ * flare shows the need. */
 double scene_budget_limit_flare(double all_ms, double flare_ms, double quality)
 {
     const double rest_ms = all_ms - flare_ms, part_ms = FRACTION * all_ms;

@@ -28,7 +28,6 @@ struct scene_budget {
 void scene_budget_init(struct scene_budget *budget,
                        const struct scene_dials *asked);
 
-/* Returns the drawing parameters of LEVEL. */
 struct scene_dials
 scene_budget_get_parameters(const struct scene_budget *budget, int level);
 

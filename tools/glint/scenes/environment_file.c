@@ -244,11 +244,11 @@ static void print_bake_statistics(const struct glint_environment_report *r)
     if (r->negative || r->not_finite)
         printf("; clamped: %lld pixels below 0, %lld not finite", r->negative,
                r->not_finite);
-    printf("\nlight        mean %.4g, largest %.4g, without the lights %.4g\n",
+    printf("\nluminance    mean %.4g, max %.4g, max without the lights %.4g\n",
            r->mean, r->largest, r->residual_largest);
-    printf("in lights    %.3g %% of the light", 100 * r->light_share);
+    printf("in lights    %.3g %% of all light", 100 * r->light_share);
     if (r->spots > 0)
-        printf(", of %d spots", r->spots);
+        printf(", %d lights found", r->spots);
     printf("\n");
 }
 
@@ -263,10 +263,11 @@ static void print_environment_text(const struct environment_file *file,
     printf("levels       %u:", h->n_levels);
     for (uint32_t k = 0; k < h->n_levels; k++)
         printf(" %d", 1 << file->environment.level[k].side_log2);
-    printf("\n"
-           "texels       %lld; with mips %lld, with all levels as fine as the "
-           "first %lld\n",
-           n->texels, n->mips, n->full);
+    printf(
+        "\n"
+        "texels       %lld; a mipmap would have %lld, all levels at full size "
+        "%lld\n",
+        n->texels, n->mips, n->full);
     printf("lights       %u\n", h->n_lights);
     for (uint32_t i = 0; i < h->n_lights; i++) {
         const struct glint_environment_light *l = &file->environment.light[i];

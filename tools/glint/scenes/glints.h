@@ -19,8 +19,8 @@
 #include "glint/setup.h"
 #include "glint/view.h"
 
-/* Max number of tracks. It is twice the max number of highlights, because just
- * as many may be fading out. */
+/* Max number of tracks: twice the max number of highlights, because as many
+ * others may be fading out. */
 enum { GLINTS_MAX = 2 * GLINT_SCENE_MAX_HIGHLIGHTS };
 
 struct glints {
@@ -46,7 +46,7 @@ int glints_track_frame(struct glints *glints, const struct glint_scene *scene,
                        int32_t elapsed_us);
 
 /* Sets LAMP to highlight I as a lens of FOCAL_MM sees it. Returns the level of
- * the lamp, the fraction of its power while it fades in or out, else 1. */
+ * the lamp: a fraction of its power while the lamp fades in or out, else 1. */
 double glints_get_lamp(const struct glints *glints, int i,
                        const struct glint_view *view, double focal_mm,
                        struct glint_lamp *lamp);

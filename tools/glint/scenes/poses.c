@@ -132,7 +132,7 @@ static const char *split_line_into_columns(struct text_lines *lines, char *line,
     }
     cause = text_parse_json_object(lines, line, columns, COLUMNS, field);
     if (field[OBJECT] && *field[OBJECT]++ != '"')
-        return "object is a \"name\"";
+        return "object must be a \"name\"";
     if (cause)
         return cause;
     for (int k = TURN; k < COLUMNS; k++)
@@ -264,8 +264,8 @@ void poses_close(struct poses *poses)
 
 /* --------------------------------------------------------------------- pipe */
 
-/* Counts the last line as skipped. Records CAUSE as its error if it is the
- * first such line. */
+/* Counts the last line as skipped. Records CAUSE as the error if no line was
+ * skipped before. */
 static void record_line_error(struct poses *p, const char *cause)
 {
     if (p->n_bad++ == 0)

@@ -15,7 +15,7 @@
 enum { TEXT_BYTES = 1 << 20 };
 
 /* Max work of baking the files that a scene names, in the units of
- * tool_count_bake_work(). It corresponds to about 30 s of processor time. */
+ * tool_count_bake_work(). This corresponds to about 30 s of processor time. */
 #define MOST_WORK (INT64_C(1) << 28)
 
 bool tool_is_scene_text(const char *argument)

@@ -9,8 +9,7 @@
 /* alignment of the run time's memory, bytes */
 #define ALIGNMENT 64
 
-/* ------------------------------------------------------------------- dials
- */
+/* ------------------------------------------------------ quality parameters */
 
 void scene_dials_set_defaults(struct scene_dials *dials,
                               const struct glint_options *o)

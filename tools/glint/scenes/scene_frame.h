@@ -36,8 +36,8 @@ struct scene_dials {
 /* Max number of intersection tests for a picture, as glint_scene_count_tests()
  * counts them. Each pixel of the tiles that a triangle touches counts as a
  * test. The limit corresponds to about 30 s of processor time; options can lift
- * it. For large pictures the limit is SCENE_TESTS_PX per pixel, ten times as
- * many as the scenes that come with glint need. */
+ * the limit. For large pictures the limit is SCENE_TESTS_PX per pixel, ten
+ * times as many as the scenes that come with glint need. */
 #define SCENE_TESTS    INT64_C(1500000000)
 #define SCENE_TESTS_PX 1000
 
@@ -71,8 +71,8 @@ struct scene_frame {
 };
 
 /* Allocates memory for pictures of MODEL, which must outlive FRAME. Returns an
- * exit code, after printing the reason on failure. It is EXIT_LENS if
- * dials->is_bounded and a picture exceeds the limit. */
+ * exit code, after printing the reason on failure. The exit code is EXIT_LENS
+ * if dials->is_bounded and a picture exceeds SCENE_TESTS. */
 int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct glint_scene_model *model,
                      const struct scene_dials *dials);

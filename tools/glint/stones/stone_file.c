@@ -30,7 +30,7 @@ bool stone_file_is_baked(const char *argument)
 struct source {
     struct glint_stone_text text;
     double *mask; /* coverage of each texel by the medium, owned */
-    /* measured rows, read from a picture; owned */
+    /* measured rows (the response of each texel), read from a picture; owned */
     struct glint_float_image rows;
     /* number of negative or non-finite values in the rows, set to 0 */
     long long held;
@@ -144,9 +144,9 @@ read_source(const struct tool *tool, const char *path,
 
 /* ------------------------------------------------------------------- baking */
 
-/* Sets *DB to the PSNR of the light that leaves STONE, compared with the light
- * by ROWS. The test light has lamps, shadows and a ramp. Returns GLINT_E_MEMORY
- * on failure. */
+/* Sets *DB to the PSNR of the light that leaves the medium STONE, compared with
+ * the light by ROWS, the responses of all texels. The test light has lamps,
+ * shadows and a ramp. Returns GLINT_E_MEMORY on failure. */
 static enum glint_status measure_fit_psnr(const struct glint_scatter_rows *rows,
                                           const struct glint_translucent *stone,
                                           double *db)
@@ -211,8 +211,8 @@ static enum glint_status fit_scatter_rows(struct glint_scatter_rows *rows,
     return status;
 }
 
-/* Sets ROWS to the measured rows of the medium in S. If it has none, computes
- * ROWS by simulation. */
+/* Sets ROWS to the measured rows of the medium in S. If S has no measured rows,
+ * computes ROWS by simulation. */
 static enum glint_status compute_scatter_rows(struct source *s,
                                               const struct glint_watch *watch,
                                               struct glint_scatter_rows *rows,
@@ -291,7 +291,8 @@ static void write_cached_medium(const struct tool *tool, char *path,
                 tool->name, error.text);
 }
 
-/* Returns the number of values that the rows of STONE have per channel. */
+/* Returns the number of values per channel that all rows of the medium STONE
+ * have. */
 static int64_t count_row_values(const struct glint_stone *stone)
 {
     const int64_t side = stone->side, kernel = stone->kernel;

@@ -9,9 +9,9 @@
 #include "glint/scene/stone_bake.h"
 #include "options/tool.h"
 
-/* PSNR, dB, of the light that leaves a medium, compared with the light by all
- * its measured or simulated rows: for the fit, and for the baked integers. The
- * test light has lamps, shadows and a ramp. */
+/* PSNR, dB, of the light that leaves a medium, compared with the light by the
+ * measured or simulated responses of all texels (rows): for the fit, and for
+ * the baked integers. The test light has lamps, shadows and a ramp. */
 struct stone_errors {
     double fit_db, baked_db;
     double kernel_loss;
@@ -37,7 +37,7 @@ bool stone_file_is_baked(const char *argument);
  * names, if it is the output file of TOOL. OVER (may be NULL) is called after
  * the text was read, and may change its values. If REBAKE, a text is baked even
  * if its medium is cached. LEFT (may be NULL) is the remaining bake work, see
- * tool_count_bake_work(); the work of a bake is 8 for each number in its rows.
+ * tool_count_bake_work(); the work of a bake is 8 for each number in the rows.
  * Sets ERROR to the reason of a failure. */
 enum glint_status
 stone_file_read(const struct tool *tool, const char *path,

@@ -80,9 +80,9 @@ static void print_medium_text(const struct stone_file *file,
         printf("rank loss    %.3g %% of the kernels' energy; columns have %d "
                "bits\n",
                100 * file->errors.kernel_loss, file->errors.tap_bits);
-        printf("took         %.1f s of processor time\n", file->errors.seconds);
+        printf("bake time    %.1f s of processor time\n", file->errors.seconds);
     }
-    printf("a texel has  %g bytes\n", n->each);
+    printf("per texel    %g bytes\n", n->each);
     printf("bytes        %zu\n  codes        %8zu\n", n->all, n->codes);
     if (n->clusters)
         printf("  clusters     %8zu\n", n->clusters);
