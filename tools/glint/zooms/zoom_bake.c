@@ -8,9 +8,11 @@
 #include "zooms/zoom_error.h"
 
 enum {
-    /* max number of times that the step between two even positions is halved */
+    /* max number of times that the step between two evenly spaced positions is
+     * halved */
     DEPTH = 4,
-    /* length of the smallest step in places; nothing is baked in its middle */
+    /* length of the smallest step, in places; nothing is baked in the middle of
+     * such a step */
     LAST = 2,
     /* Max number of places. A place is a zoom position where ghosts may be
      * baked, or the middle of a smallest step, where only errors are
@@ -19,14 +21,14 @@ enum {
 };
 
 /* Margin, dB. The error at the measured angles must be below the requested
- * error by this margin, because it may be larger at other angles. */
+ * error by this margin, because other angles may have larger errors. */
 #define MARGIN_DB 2
 /* If the max error of a ghost in a step is below this fraction of the requested
- * error, it is not measured again when the step is halved. */
+ * error, this ghost is not measured again when the step is halved. */
 #define SMALL 1e-3
 /* Shift of the measured angles from a place to the next, as a fraction of the
- * interval between two angles. Its multiples, modulo 1, are evenly distributed
- * from 0 to 1. */
+ * interval between two angles. Multiples of this fraction, modulo 1, are evenly
+ * distributed from 0 to 1. */
 #define GOLDEN 0.6180339887
 
 struct place {
@@ -47,7 +49,8 @@ struct run {
     const struct zoom_bake *bake;
     struct zoom_baked *baked;
     struct glint_error *error;
-    /* progress of baking all even positions, or one position between them */
+    /* progress of baking all evenly spaced positions, or one position between
+     * them */
     struct tool_progress progress;
     struct glint_prescription lens; /* lens at the present place */
     /* lens at one smallest step before and after the present place */
@@ -59,7 +62,6 @@ struct run {
     struct glint_zoom_lens zoom;
 };
 
-/* Sets LENS to the lens of RUN, zoomed to PLACE. */
 static enum glint_status
 set_lens_to_zoom_position(const struct run *run, int place,
                           struct glint_prescription *lens)
@@ -79,9 +81,9 @@ set_lens_to_zoom_position(const struct run *run, int place,
 
 /* Sets run->beside to the lens at one smallest step before and after PLACE, and
  * OPTIONS to bake ghosts in agreement with both. Ghosts that need only larger
- * steps use the same neighbours. Sets none if no positions are added between
- * the even ones, because ghosts of even positions differ too much, and none for
- * lenses without rotational symmetry. */
+ * steps use the same neighbours. Sets no neighbours if no positions are added
+ * between the evenly spaced ones, whose ghosts differ too much, nor for lenses
+ * without rotational symmetry. */
 static enum glint_status
 set_neighbour_lenses(struct run *run, int place,
                      struct glint_bake_options *options)
@@ -203,8 +205,8 @@ static double find_max_angle_error(const struct zoom_error *error)
     return worst;
 }
 
-/* Records the PSNR for the error LEFT at the present zoom position if it is the
- * lowest so far. Prints N_ADDED, the number of ghosts to bake there. */
+/* Records the PSNR for the error LEFT at the present zoom position if this PSNR
+ * is the lowest so far. Prints N_ADDED, the number of ghosts to bake there. */
 static void record_lowest_position_psnr(struct run *run,
                                         const struct zoom_error *left,
                                         int n_added)

@@ -4,8 +4,8 @@
  *
  * Input: a table of several positions, and the min number of positions to bake.
  * Output: a model of all ghosts at these positions, evenly spaced along the
- * zoom, and of those ghosts that need it in the middles between positions,
- * repeatedly halved until images there are exact enough.
+ * zoom, and of ghosts with large errors at positions between, where the steps
+ * are halved until images are exact enough.
  */
 #ifndef GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H
 #define GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H

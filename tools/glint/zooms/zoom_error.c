@@ -42,8 +42,8 @@ enum {
 };
 enum { SEEN = IN_MODEL | IN_EXACT };
 
-/* Data that all jobs use. The job for each angle is done by one thread, because
- * its frames are too small to be divided. */
+/* Data that all jobs use. One thread does the job for an angle, because the
+ * frames are too small to be divided among threads. */
 struct measuring {
     const struct glint_setup *setup;
     const struct glint_zoom_lens *zoom;
@@ -73,9 +73,9 @@ struct pictures {
     double exposure;
 };
 
-/* Sets ERROR to the mean squared error that the image would have if only this
- * ghost came from the interpolated model and all others were exact. Returns the
- * bits of the images in which the ghost is visible. */
+/* Sets ERROR to the mean squared error that this ghost alone causes: both
+ * images have the model's other ghosts, and this one by the model or by exact
+ * rays. Returns the bits of the images in which the ghost is visible. */
 static int compute_image_error_of_ghost(const struct pictures *p, double *error)
 {
     const size_t n = (size_t)p->all.width * (size_t)p->all.height;

@@ -5,8 +5,8 @@
  *
  * Input: a zoom model set to some position, and the table zoomed to the same
  * position. Output: for each ghost and for lights at several angles, the mean
- * squared error of the whole image (sRGB codes, 1 = white) if all other ghosts
- * were exact. Images are exposed as in glint compare.
+ * squared error of the whole image (sRGB codes, 1 = white) that the ghost alone
+ * causes. Images are exposed as in glint compare.
  */
 #ifndef GLINT_TOOLS_ZOOMS_ZOOM_ERROR_H
 #define GLINT_TOOLS_ZOOMS_ZOOM_ERROR_H
