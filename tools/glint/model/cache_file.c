@@ -102,9 +102,9 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes)
     return data;
 }
 
-/* Prepares PATH to be written: rejects it if it is a link or not a regular
- * file. Removes a file that other users own or may write to, so that the new
- * file gets safe permissions. */
+/* Prepares PATH to be written: rejects links and files that are not regular.
+ * Removes a file that other users own or may write to, so that the new file
+ * gets safe permissions. */
 static enum glint_status remove_untrusted_file(const char *path,
                                                struct glint_error *error)
 {
@@ -115,8 +115,8 @@ static enum glint_status remove_untrusted_file(const char *path,
     if (!S_ISREG(st.st_mode))
         return glint_error_report(error, GLINT_E_OUTPUT, path,
                                   "is not a regular file; remove it");
-    /* A failure is not reported here, because then writing the file fails,
-     * too. */
+    /* A failure is not reported here, because writing the file then fails with
+     * an error. */
     if (!is_writable_only_by_trusted_users(&st))
         unlink(path);
     return GLINT_OK;

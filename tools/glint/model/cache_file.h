@@ -32,7 +32,7 @@ void cache_file_make_folders(char *path);
  * missing, larger than MAX bytes, or could have been written by other users. */
 uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 
-/* Makes the folders of PATH and writes DATA[BYTES] to it. Errors:
+/* Makes the folders of PATH and writes DATA[BYTES] to PATH. Errors:
  * GLINT_E_OUTPUT, GLINT_E_MEMORY. */
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);

@@ -22,7 +22,7 @@ int coating_parse_option(const struct tool *tool, struct coating *c,
         text, error.text);
 }
 
-/* Returns the name of COATING, or NULL if it has none. */
+/* Returns the name of COATING, or NULL if it is not a named coating. */
 static const char *find_coating_name(const struct glint_coating *coating)
 {
     struct glint_coating known;

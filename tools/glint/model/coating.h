@@ -43,7 +43,6 @@ int coating_parse_option(const struct tool *tool, struct coating *coating,
  * any. */
 void coating_print(FILE *file, const struct glint_coating *coating);
 
-/* Coats the surfaces of LENS with COATING. */
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);
 

@@ -23,8 +23,8 @@ struct reading {
     bool *solo, *mute;
 };
 
-/* Returns the next word of *REST, delimited by blanks, and moves *REST past
- * it. Returns NULL if there is none. */
+/* Returns the next word of *REST, delimited by blanks, and moves *REST past the
+ * word. Returns NULL if there is none. */
 static char *read_next_word(char **rest)
 {
     char *word = *rest + strspn(*rest, " \t"), *end;
@@ -37,7 +37,8 @@ static char *read_next_word(char **rest)
     return word;
 }
 
-/* Returns the number of the ghost WORD, "12" or "7-3", or -1. */
+/* Returns the number of the ghost WORD, a number "12" or surfaces "7-3", or -1
+ * if there is no such ghost. */
 static int parse_ghost_number(const struct reading *r, const char *word)
 {
     const char *const dash = strchr(word, '-');

@@ -20,7 +20,8 @@
 
 /* Reads PATH and sets *TINTS to the colour factors of all ghosts of SETUP, and
  * of the parts of their pupils. The caller frees *TINTS. If the file names a
- * lens, it must be LENS. Errors: GLINT_E_IO, GLINT_E_MEMORY, GLINT_E_FORMAT. */
+ * lens, this lens must be LENS. Errors: GLINT_E_IO, GLINT_E_MEMORY,
+ * GLINT_E_FORMAT. */
 enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
                                   const struct glint_setup *setup,
                                   const char *lens, struct glint_error *error);

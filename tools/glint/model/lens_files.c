@@ -21,7 +21,8 @@ enum { ABOVE = 3, NAME_CHARS = 64, PATH_CHARS = 1024 };
 
 /* Sets PATH to a folder of the program or plug-in that contains this code: its
  * own folder for UP = 1, the one above that for 2, and so on. Returns false if
- * all users may write to that folder, as its lenses could not be trusted. */
+ * all users may write to that folder, because lenses in it could not be
+ * trusted. */
 static bool find_folder_above_program(int up, char *path, size_t bytes)
 {
     struct stat st;
@@ -142,8 +143,8 @@ static int compare_lens_names(const void *a, const void *b)
     return strcmp(a, b);
 }
 
-/* Prints a warning if the folder $GLINT_LENSES cannot be read. Without it the
- * user would not learn why its lenses are missing. */
+/* Prints a warning if the folder $GLINT_LENSES cannot be read. Otherwise the
+ * user would not learn why lenses of this folder are missing. */
 static void check_user_folder(void)
 {
     const char *own = glint_process_get_setting("GLINT_LENSES");

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * lens_files.h - the folders that contain the lenses that come with glint, and
- * their models. They are searched in this order: $GLINT_LENSES, a folder of
- * tables; lenses/ and models/ in a folder above the program or plug-in that
- * contains this code (a source tree); share/glint above it (an installation);
- * the folder given to make install.
+ * lens_files.h - the folders with the lenses that come with glint, and with
+ * their models. glint searches these folders in this order: $GLINT_LENSES, a
+ * folder of tables; lenses/ and models/ in a folder above the program or
+ * plug-in that contains this code (a source tree); share/glint above it (an
+ * installation); the folder given to make install.
  */
 #ifndef GLINT_TOOLS_MODEL_LENS_FILES_H
 #define GLINT_TOOLS_MODEL_LENS_FILES_H
@@ -12,9 +12,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Sets PATH to folder I, counted from 0, of the folders searched for KIND,
- * "lenses" or "models", or to "" if that folder is unknown. The folder need
- * not exist. Returns false if I is past the last folder. */
+/* Sets PATH to folder number I, from 0, that is searched for KIND, "lenses" or
+ * "models", or to "" if that folder is unknown. The folder need not exist.
+ * Returns false if I is past the last folder. */
 bool lens_find_folder(int i, const char *kind, char *path, size_t bytes);
 
 /* Sets PATH to the table of lens NAME, given without .lens. Returns false if

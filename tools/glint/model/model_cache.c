@@ -34,8 +34,8 @@ static uint8_t *read_cached_model(const char *path, size_t *bytes)
     return cache_file_read(path, MAX_BYTES, bytes);
 }
 
-/* Reads an installed model. It may belong to any user, because it is trusted as
- * much as the program itself. */
+/* Reads an installed model. The file may belong to any user, because it is
+ * trusted as much as the program itself. */
 static uint8_t *read_installed_model(const char *path, size_t *bytes)
 {
     struct glint_error error;

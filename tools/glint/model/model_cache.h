@@ -14,7 +14,7 @@
 
 /* Sets MODEL to the model of LENS with OPTIONS: the installed one, else the
  * cached one, else a new one, which is baked and added to the cache. FILE is
- * the lens as named on the command line. If it is a file outside glint's lens
+ * the lens as named on the command line. If FILE is outside glint's lens
  * folders, it is rejected if its bake exceeds MODEL_CACHE_WORK; glint bake has
  * no such limit. Replaces the members workers, progress and allow of OPTIONS.
  * Returns an exit code, after printing the reason on failure. */
@@ -24,7 +24,7 @@ int model_open_cached(const struct tool *tool,
                       struct model_file *model);
 
 /* Max work of a bake, in the units that allow() of struct glint_bake_options
- * counts. It corresponds to about 30 s of processor time. */
+ * counts. This corresponds to about 30 s of processor time. */
 enum { MODEL_CACHE_WORK = 750 };
 
 /* Returns whether FILE, the lens as named on the command line, is a lens file
@@ -37,8 +37,8 @@ bool model_is_lens_from_file(const struct glint_prescription *lens,
 bool model_is_cached(const struct glint_prescription *lens,
                      const struct glint_bake_options *options);
 
-/* Appends "/NAME-KEY.glint" to the folder in PATH. Returns false if it is too
- * long. */
+/* Appends "/NAME-KEY.glint" to the folder in PATH. Returns false if the path is
+ * too long. */
 bool model_cache_append_name(char *path, size_t bytes, const char *lens,
                              uint64_t key);
 

@@ -48,7 +48,6 @@ bool tool_is_model(const char *path)
            read_file_magic(b) == GLINT_ZOOM_MAGIC;
 }
 
-/* Opens the model in MODEL->data. */
 static enum glint_status open_model_data(struct model_file *model,
                                          const char **reason)
 {
@@ -108,7 +107,8 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
                                       struct glint_error *error)
 {
     const int32_t whole_q30 = INT32_C(1) << 30;
-    /* Tolerance for focal lengths: those engraved on barrels are rounded. */
+    /* Tolerance for focal lengths, because those engraved on lenses are
+     * rounded. */
     const double slack = 1.002;
     struct glint_zoom_lens *const z = model->zoom;
     const int32_t before_q30 = z->now_q30;

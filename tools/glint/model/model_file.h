@@ -18,7 +18,7 @@ struct model_file {
     struct glint_lens lens; /* points into data */
     void *data;
     size_t bytes;
-    /* the zoom lens at whose present position LENS is; NULL for other lenses */
+    /* zoom lens whose present position defines LENS; NULL: not a zoom lens */
     struct glint_zoom_lens *zoom;
 };
 
@@ -48,7 +48,6 @@ int model_file_count_positions(const struct glint_zoom_lens *zoom);
 /* Closes MODEL; does nothing if it is closed. */
 void model_file_close(struct model_file *model);
 
-/* Returns the value of X. */
 double model_convert_real_to_double(struct glint_real x);
 
 #endif

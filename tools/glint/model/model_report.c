@@ -258,8 +258,8 @@ static void print_ghost_table_title(const char *more)
            more);
 }
 
-/* Prints the table row of a ghost, or of a part of its pupil, which has a plus
- * after the number. Prints no line feed. */
+/* Prints the table row of a ghost, or of a further part of the ghost's pupil,
+ * whose number is followed by a plus. Prints no line feed. */
 static void print_ghost_row(const struct glint_lens *lens, uint32_t entry,
                             const struct model_summary *sum)
 {
@@ -411,9 +411,9 @@ static void print_bake_statistics(const struct tool *tool,
            (unsigned long)model_count_ghosts(lens), (unsigned long)h->n_ghosts,
            (unsigned long)h->n_systems, model_compute_mean_terms(&sum),
            seconds);
-    printf("%u of %lu ghosts miss the error target in some zone; %d rays pass "
-           "that the lens blocks, besides the %d measured ones; %d zones "
-           "exceed the tolerance\n",
+    printf("%u of %lu ghosts miss the error target at some angle; the model "
+           "transmits %d rays that the lens blocks, besides the %d measured "
+           "rays; %d zones exceed the tolerance\n",
            model_count_ghosts_with_missed_targets(lens),
            (unsigned long)model_count_ghosts(lens), report->intruders,
            report->rays, report->unmet);

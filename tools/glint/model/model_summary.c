@@ -184,8 +184,8 @@ static bool is_model_entry_of_ghost(const struct glint_lens *lens,
            lens->ghost[entry].j == lens->ghost[ghost].j;
 }
 
-/* Updates MISS if an output of SYSTEM, the polynomials of a zone, exceeds its
- * error target. */
+/* Updates MISS if the error of an output exceeds its target in SYSTEM, the
+ * polynomials of a zone (range of angles). */
 static void add_zone_with_missed_target(const struct glint_lens *lens,
                                         uint32_t system,
                                         struct model_miss *miss)

@@ -12,9 +12,9 @@ extern const char *const model_output_names[GLINT_OUT_KINDS];
 extern const char *const model_output_units[GLINT_OUT_KINDS];
 
 /* Error targets of the outputs. An output meets its target if the 99th
- * percentile of its error does not exceed it. The target of positions is a
- * quarter of a pixel in images of 1920 pixels width. Errors of this size in
- * other outputs are about as visible. */
+ * percentile of its error does not exceed the target. The target of positions
+ * is a quarter of a pixel in images of 1920 pixels width. Errors of this size
+ * in other outputs are about as visible. */
 extern const double model_output_targets[GLINT_OUT_KINDS];
 
 const char *model_get_basis_name(const struct glint_lens *lens);
@@ -45,8 +45,8 @@ size_t model_count_span_bytes(const struct glint_lens *lens,
 void model_find_span_angles(const struct glint_lens *lens,
                             struct model_span span, double range_deg[2]);
 
-/* Errors of one output. They are combined over the N systems of a span that
- * have the output. */
+/* Errors of one output, combined over the N systems of a span that have this
+ * output. */
 struct model_errors {
     uint32_t n;
     /* means over the systems: number of polynomial terms, squared error, and
@@ -82,7 +82,7 @@ uint32_t model_find_ghost_of_entry(const struct glint_lens *lens,
                                    uint32_t entry);
 
 /* Where the errors of a ghost exceed their targets. A zone is a range of field
- * angles with polynomials of its own. */
+ * angles that shares one set of polynomials. */
 struct model_miss {
     /* number of zones, counted for each part of the pupil, in which an error
      * exceeds its target */

@@ -11,9 +11,9 @@ bool tool_has_magic(const char *argument, uint32_t magic);
 
 enum { TOOL_PATH_BYTES = 4096 };
 
-/* Sets PATH to the file NAME, relative to the folder of the file TEXT. Returns
- * GLINT_E_IO if PATH is too long, or GLINT_E_ARGUMENT if it is the output file
- * WRITTEN (may be NULL). */
+/* Sets PATH to the path of the file NAME, which is relative to the folder of
+ * the file TEXT. Returns GLINT_E_IO if PATH is too long, or GLINT_E_ARGUMENT if
+ * PATH is the output file WRITTEN (may be NULL). */
 enum glint_status tool_make_input_path(const char *text, const char *name,
                                        const char *written,
                                        char path[TOOL_PATH_BYTES],

@@ -14,8 +14,8 @@
 #include "model/settings.h"
 #include "model/stop_mask.h"
 
-/* An opened lens. Its value is all zero bytes while it is closed. SETUP points
- * to TABLE; see opened_lens_update_table_pointer(). */
+/* A lens that is opened for drawing; all zero bytes while it is closed. SETUP
+ * points to TABLE; see opened_lens_update_table_pointer(). */
 struct opened_lens {
     /* lens table; for a model only its name and film are set */
     struct glint_prescription table;
@@ -27,7 +27,7 @@ struct opened_lens {
     /* projection for --projection lens; else all zero */
     struct glint_projection projection;
     struct glint_tint *tints; /* tint factors of --ghosts */
-    struct stop_mask mask;    /* mask of --stop-mask */
+    struct stop_mask mask;
     /* dirt on the stop, to which SETUP points */
     struct glint_dirt *dirt;
     struct glint_front_dirt *front; /* dirt on the front element; NULL: none */
@@ -42,8 +42,8 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
 
 void opened_lens_close(struct opened_lens *lens);
 
-/* Updates the pointer from the setup of LENS to its table, after LENS was
- * copied to a new address. */
+/* Updates the pointer from the setup of LENS to the table of LENS, after LENS
+ * was copied to a new address. */
 void opened_lens_update_table_pointer(struct opened_lens *lens);
 
 /* Sets the stop of LENS to that of SETTINGS. Returns GLINT_E_ARGUMENT if the

@@ -33,8 +33,8 @@ opened_table_bake_options(const struct glint_prescription *l,
     return o;
 }
 
-/* Sets the projection of LENS, and *DEG to the largest angle in the image,
- * degrees. */
+/* Sets the projection of LENS, and *DEG to the angle off the axis at a corner
+ * of the image, degrees. */
 static enum glint_status
 set_lens_projection(struct opened_lens *lens,
                     const struct glint_engine_camera *c, double *deg,
@@ -155,8 +155,8 @@ int opened_table_open(const struct tool *tool, struct opened_lens *lens,
     if (code != EXIT_OK)
         return code;
     coating_apply(&settings->coating, &lens->table);
-    /* The f-number of a model may be larger than that of its bake, so only a
-     * smaller one changes the table. */
+    /* A model may be drawn with a larger f-number than it was baked for, so
+     * only a smaller one changes the table. */
     if (o->rays == GLINT_RAYS_EXACT || o->f_number < lens->table.f_number)
         code = set_table_f_number(tool, lens, settings);
     if (code != EXIT_OK)

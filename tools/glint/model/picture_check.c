@@ -13,8 +13,8 @@ enum { WIDE = 480, MOST_HIGH = 480 };
 /* azimuth of lights, degrees; not on a symmetry axis of the film */
 #define AZIMUTH_DEG 33
 
-/* Angles of lights near the axis, degrees, at which ghosts fold. STEPS more
- * lights are evenly spaced up to the corner. */
+/* Angles of lights near the axis, degrees, at which ghosts have caustics. STEPS
+ * more lights are evenly spaced up to the corner. */
 static const double near_deg[] = {0, 0.3, 2, 5};
 enum { NEAR = sizeof near_deg / sizeof *near_deg, STEPS = 6 };
 
@@ -176,7 +176,7 @@ enum glint_status picture_check_run(const struct tool *tool,
                                     struct glint_error *error)
 {
     const double *const band = baked->band_nm, span = band[1] - band[0];
-    /* near 620, 540 and 460 nm in the default band */
+    /* about 620, 540 and 460 nm for the default wavelength range */
     const double wave_nm[] = {band[0] + 0.73 * span, band[0] + 0.47 * span,
                               band[0] + 0.2 * span};
     const double diagonal_mm = hypot(lens->film_width_mm, lens->film_height_mm);

@@ -38,9 +38,9 @@ struct picture_check {
 };
 
 /* Compares images by MODEL with images by exact rays, for up to ten lights: on
- * the axis of LENS, near it, and up to the corner of the film. Sets CHECK to
- * the light with the lowest PSNR. Wavelengths, angles and film are limited to
- * those of BAKED, the options with which the model was baked. */
+ * the axis of LENS, near the axis, and up to the corner of the film. Sets CHECK
+ * to the light with the lowest PSNR. Wavelengths, angles and film are limited
+ * to those of BAKED, the options with which the model was baked. */
 enum glint_status picture_check_run(const struct tool *tool,
                                     const struct glint_prescription *lens,
                                     const struct glint_lens *model,

@@ -49,9 +49,9 @@ static void write_cached_response(void *ctx, const char *lens, uint64_t key,
     if (!find_response_path(path, lens, key))
         print_response_notice(ctx, lens, "measured", "");
     else if (cache_file_write(path, data, bytes, &error) == GLINT_OK)
-        print_response_notice(ctx, lens, "measured, kept in ", path);
+        print_response_notice(ctx, lens, "measured, cached in ", path);
     else
-        print_response_notice(ctx, lens, "measured, not kept: ", error.text);
+        print_response_notice(ctx, lens, "measured, not cached: ", error.text);
 }
 
 struct glint_engine_cache response_cache_callbacks(const struct tool *tool)

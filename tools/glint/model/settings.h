@@ -17,8 +17,8 @@
 /* Max number of lamps on the command line; files may have more */
 enum { SETTINGS_MAX_LAMPS = 1024 };
 
-/* What to do with a lens table that has no model. BAKE: bake it. TRACE: trace
- * exact rays. SEARCH: bake it once a lamp is detected. */
+/* What to do with a lens table that has no model. BAKE: bake the model. TRACE:
+ * trace exact rays. SEARCH: bake the model once a lamp is detected. */
 enum settings_unbaked { SETTINGS_BAKE, SETTINGS_TRACE, SETTINGS_SEARCH };
 
 struct settings {
@@ -81,8 +81,8 @@ int settings_report_bad_stop(const struct tool *tool, const struct settings *s,
                              const char *text);
 
 /* Set the option NAME. TEXT is its value as a text. VALUE is its value as a
- * number; for words it is the index, for flags 0 or 1. Return false, without a
- * change, if the value is invalid. */
+ * number; for words VALUE is the index, for flags 0 or 1. Return false, without
+ * a change, if the value is invalid. */
 bool settings_set_text(struct settings *settings, const char *name,
                        const char *text);
 bool settings_set_number(struct settings *settings, const char *name,

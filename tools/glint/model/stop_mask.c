@@ -1,8 +1,4 @@
-/* SPDX-License-Identifier: MIT
- *
- * --stop-mask and --front-mask: reads an image by which the light at the stop,
- * or at the front element, is multiplied.
- */
+/* SPDX-License-Identifier: MIT */
 #include <stddef.h>
 #include <stdlib.h>
 

@@ -8,9 +8,9 @@
 #include "glint/prescription.h"
 #include "options/tool.h"
 
-/* Returns the file of the lens ARGUMENT. That is ARGUMENT if it is a file name,
- * else PATH, which is set to the table of the lens ARGUMENT. If there is no
- * such lens, prints similar names and returns NULL. */
+/* Returns the path of the lens ARGUMENT: ARGUMENT itself if it is a file name,
+ * else PATH, which receives the path of the lens's table. If there is no such
+ * lens, prints similar names and returns NULL. */
 const char *tool_find_lens_file(const struct tool *tool, const char *argument,
                                 char *path, size_t bytes);
 
