@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reads FlareSim's .lens files. They have lines "name:" and "focal_length:",
- * then "surfaces:" and one row per surface. Its columns are: radius or "stop",
- * thickness, index, Abbe number, semi-diameter, coating. A row of a cylinder
- * ends with cyl_x or cyl_y, the direction of the axis.
+ * then "surfaces:" and one row per surface. The columns of a row are: radius or
+ * "stop", thickness, index, Abbe number, semi-diameter, coating. A row of a
+ * cylinder ends with cyl_x or cyl_y, the direction of the axis.
  */
 #include <math.h>
 #include <stdio.h>
@@ -58,8 +58,8 @@ static bool is_semi_diameter_too_large(const struct imported *lens, int k)
                s, IMPORT_FREE * fmin(s[0].semi, s[1].semi)) < 0;
 }
 
-/* Halves all semi-diameters if they are too large and half of them fits better.
- * Some files were made from tables of diameters. */
+/* Halves all semi-diameters if fewer surfaces are then too large, because some
+ * files were made from tables of diameters. */
 static bool halve_diameters(struct imported *lens)
 {
     int at = -1, whole = 0, halved = 0;

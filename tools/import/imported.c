@@ -211,7 +211,6 @@ static const char *strip_glass_maker(const struct imported_surface *s,
     return known ? maker + 1 : "";
 }
 
-/* Returns whether A and B are equal if hyphens are ignored. */
 static bool equals_without_hyphens(const char *a, const char *b)
 {
     while (*a || *b) {
@@ -226,8 +225,9 @@ static bool equals_without_hyphens(const char *a, const char *b)
 }
 
 /* Returns the glass NAME of the catalogue; hyphens are ignored. If there is
- * none, returns its lead-free successor "N-NAME" and sets *SUCCEEDS, or returns
- * NULL. Considers only glasses of MAKER, unless MAKER is "". */
+ * none, returns its lead-free successor "N-NAME" and sets *SUCCEEDS. Returns
+ * NULL if there is neither. Considers only glasses of MAKER, unless MAKER is
+ * "". */
 static const struct glint_glass *
 find_catalogue_glass(const char *name, const char *maker, bool *succeeds)
 {
@@ -354,7 +354,7 @@ static bool set_surface_medium(struct imported *lens,
             lens, s->line,
             "glass '%s' is not in the catalogue, and the file "
             "does not state its index%s%s%s",
-            s->glass, glass ? "; did they mean " : "", glass ? glass->name : "",
+            s->glass, glass ? "; did you mean " : "", glass ? glass->name : "",
             glass ? "?" : "");
     }
     if (succeeds)
@@ -386,7 +386,7 @@ static bool set_all_media(struct imported *lens)
 /* A paraxial ray and its height at each surface */
 struct thin_ray {
     /* height and slope before the first surface; trace_paraxial_ray() replaces
-     * them by those behind the last surface */
+     * both by the values behind the last surface */
     double y, u;
     double height[IMPORT_SURFACES]; /* height at each surface, in the file's
                                        unit */
@@ -423,7 +423,7 @@ static void trace_paraxial_ray(const struct imported *lens,
     }
 }
 
-/* --------------------------------------------------------------- dummies */
+/* ---------------------------------------------------------- dummy surfaces */
 
 /* Returns whether the same medium is on both sides of surface K. */
 static bool is_dummy_surface(const struct imported *lens, int k)
@@ -486,7 +486,7 @@ static bool insert_stop_surface(struct imported *lens, int k)
     return true;
 }
 
-/* Moves the stop from the glass surface K into the adjacent air. Its new
+/* Moves the stop from the glass surface K into the adjacent air. The new
  * position on the axis is that of the surface's rim or of its vertex, whichever
  * is farther from the glass. */
 static bool move_stop_to_air(struct imported *lens, int k)
@@ -542,9 +542,9 @@ static bool separate_stop_from_glass(struct imported *lens)
     return is_dummy_surface(lens, at) || move_stop_to_air(lens, at);
 }
 
-/* Finds the stop, and moves it into the air if it is on a glass surface. A stop
- * without a semi-diameter is moved later, because the move needs the surface's
- * rim. */
+/* Finds the stop, and moves the stop into the air if it is on a glass surface.
+ * A stop without a semi-diameter is moved later, because the move needs the
+ * surface's rim. */
 static bool place_stop_surface(struct imported *lens)
 {
     int at = -1;
@@ -604,7 +604,7 @@ static void set_film_size(struct imported *lens, double focal_units)
                       lens->film_mm[0], lens->film_mm[1], 2 * half);
 }
 
-/* ------------------------------------------------------------- openings */
+/* --------------------------------------------------------------- apertures */
 
 /* Computes the f-number from the pupil diameter or vice versa, or both from the
  * stop's semi-diameter if the file states neither. */
@@ -628,7 +628,7 @@ static bool set_pupil_and_f_number(struct imported *lens, double focal_units)
         lens->f_number = ceil(lens->f_number * 1000) / 1000;
         lens->pupil = focal_units / lens->f_number;
         return imported_add_note(lens, lens->surface[stop].line,
-                                 "f/%g is assumed, the stop's full opening",
+                                 "f/%g is assumed, that of the fully open stop",
                                  lens->f_number);
     } else
         return imported_report_error(
@@ -651,8 +651,8 @@ static void set_missing_semi_diameters(struct imported *lens)
 
     trace_paraxial_ray(lens, &rim);
     trace_paraxial_ray(lens, &slant);
-    /* The chief ray has height 0 at the stop. It is a linear combination of the
-     * rays rim and slant. */
+    /* The chief ray has height 0 at the stop. The chief ray is a linear
+     * combination of the rays RIM and SLANT. */
     start = rim.height[stop] != 0
                 ? -slant.height[stop] / rim.height[stop] * lens->pupil / 2
                 : 0;
@@ -808,9 +808,10 @@ static bool check_last_surface(struct imported *lens)
                "missing, as the sensor is in air");
 }
 
-/* Rejects an f-number set by the user if its beam is wider than the front
- * surface. The f-number of the file is not checked, because published lenses
- * often have a stop that is slightly too wide for the front. */
+/* Rejects an f-number set by the user if the beam at this f-number is wider
+ * than the front surface. The f-number of the file is not checked, because
+ * published lenses often have a stop that is slightly too wide for the
+ * front. */
 static bool check_front_aperture(struct imported *lens, double focal_units)
 {
     const double slack = 1.01; /* tolerance, as semi-diameters are rounded */

@@ -52,9 +52,10 @@ struct imported {
     const char *file, *format;
     bool strict;
     char name[GLINT_NAME_BYTES], title[IMPORT_TEXT];
-    double unit_mm;    /* unit of lengths, mm */
-    bool unit_said;    /* whether the file states the unit */
-    bool stop_guessed; /* true: the file has no stop, so the front is assumed */
+    double unit_mm; /* unit of lengths, mm */
+    bool unit_said; /* whether the file states the unit */
+    /* true: the file has no stop, so the stop is assumed at the front */
+    bool stop_guessed;
     /* true: the file states an object that is not at infinity, which glint
      * ignores */
     bool object_near;
@@ -72,8 +73,8 @@ struct imported {
                           none */
     int position;      /* zoom position, from 1, set by the user; 0: not set */
     bool chosen;       /* whether a zoom position of the file was selected */
-    /* key of the lens that the user selects in a file of many lenses, or
-     * NULL */
+    /* key of the lens that the user selects in a file of many lenses; NULL:
+     * none */
     const char *key;
     bool keyed; /* whether the file has keys */
     int n;
@@ -93,8 +94,8 @@ struct imported {
 typedef bool import_read_fn(struct imported *lens, const char *text,
                             size_t bytes);
 
-/* A file format: its name for --format, its file extension with the dot or
- * NULL, and its reader. */
+/* A file format: its name for --format, its file extension with the dot (NULL:
+ * none), and its reader. */
 struct import_format {
     const char *name, *end;
     import_read_fn *read;
@@ -126,9 +127,9 @@ void imported_set_object(struct imported *lens, int line, double distance);
 /* Sets the unit of lengths to MM millimetres, as stated on line LINE. */
 bool imported_set_unit(struct imported *lens, int line, double mm);
 
-/* Sets the image plane of line LINE. If RADIUS is not 0, adds a note that
- * the image is curved. If DEFOCUS, in the file's unit, is not 0, moves the
- * sensor by it and adds a note. */
+/* Sets the image plane of line LINE. If RADIUS is not 0, adds a note that the
+ * image is curved. If DEFOCUS, in the file's unit, is not 0, moves the sensor
+ * by DEFOCUS and adds a note. */
 void imported_set_image_surface(struct imported *lens, int line, double radius,
                                 double defocus);
 
@@ -165,8 +166,9 @@ import_read_fn import_zmx, import_pbrt, import_flaresim, import_seq,
 /* Returns the Kth format, from 0, or NULL if there are no more. */
 const struct import_format *import_get_format(int k);
 
-/* Returns the format of the file NAME by its extension, or NULL. A .lens
- * file is taken as FlareSim's, a .dat file as pbrt's. */
+/* Returns the format of the file NAME by its extension, or NULL if no format
+ * has the extension. A .lens file is taken as FlareSim's, a .dat file as
+ * pbrt's. */
 const struct import_format *import_find_format(const char *name);
 
 /* Reads DATA as FORMAT, decoding it in place, and completes the lens.

@@ -5,7 +5,7 @@
  */
 #include "import/imported.h"
 
-static bool reject_json(struct imported *lens)
+static bool reject_json_format(struct imported *lens)
 {
     return imported_report_error(lens, 0,
                                  "glint was built without JSON (jansson)");
@@ -15,12 +15,12 @@ bool import_realflare(struct imported *lens, const char *text, size_t bytes)
 {
     (void)text;
     (void)bytes;
-    return reject_json(lens);
+    return reject_json_format(lens);
 }
 
 bool import_lentil(struct imported *lens, const char *text, size_t bytes)
 {
     (void)text;
     (void)bytes;
-    return reject_json(lens);
+    return reject_json_format(lens);
 }

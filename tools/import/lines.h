@@ -36,12 +36,11 @@ void lines_init(struct lines *lines, struct imported *lens, const char *text,
  * the text, or with the error set if the line is too long. */
 bool lines_read_next(struct lines *lines, char comment);
 
-/* Sets VALUE to word K. If there is no such word or it is not a number, sets an
- * error that names WHAT and returns false. */
+/* Sets VALUE to word K. If there is no such word or the word is not a number,
+ * sets an error that names WHAT and returns false. */
 bool lines_parse_number(const struct lines *lines, int k, const char *what,
                         double *value);
 
-/* Returns whether the first word is WORD. */
 bool lines_first_word_is(const struct lines *lines, const char *word);
 
 /* Sets RADIUS to 1 / c, where c is the curvature in word K. Sets it to 0

@@ -32,7 +32,7 @@ struct reader {
     bool coated, ended;
     int line; /* line number of <element> */
     char kind[24], text[IMPORT_TEXT];
-    size_t bytes; /* number of bytes in text */
+    size_t bytes;
     double value[ELEMENT_VALUES], system[SYSTEM_VALUES];
     bool has[ELEMENT_VALUES], system_has[SYSTEM_VALUES];
 };
@@ -42,7 +42,6 @@ static int get_parser_line(const struct reader *r)
     return (int)XML_GetCurrentLineNumber(r->parser);
 }
 
-/* Stops the parser if GOOD is false. */
 static void stop_parser_on_error(struct reader *r, bool good)
 {
     if (!good)

@@ -288,7 +288,7 @@ static void set_from_variable(const struct optical_bench *b, const char *name,
 
 bool import_opticalbench(struct imported *lens, const char *text, size_t bytes)
 {
-    /* static because it is too large for the stack */
+    /* static because the struct is too large for the stack */
     static struct optical_bench b;
     double object = (double)INFINITY;
 

@@ -43,8 +43,8 @@ static bool parse_glass(struct oslo *o)
     return true;
 }
 
-/* Handles an unsupported keyword: an error if it changes the lens, else a
- * note. */
+/* Handles an unsupported keyword: reports an error if the keyword changes the
+ * lens, else adds a note. */
 static bool reject_or_note_keyword(struct oslo *o)
 {
     static const char *const shaping[] = {"TLA", "TLB", "TLC", "DCX", "DCY",

@@ -4,8 +4,8 @@
  * surface, in mm. A surface with radius 0 and index 0 is the stop.
  *
  * A distance is measured to the next surface. The older tables, of 100 mm
- * lenses, measure it to the previous surface instead. They are recognised
- * because their first distance is 0 and their last is not.
+ * lenses, measure the distance to the previous surface instead. Such tables are
+ * recognised because the first distance is 0 and the last is not.
  */
 #include "import/lines.h"
 

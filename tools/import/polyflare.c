@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Reads .fx tables of polyflare and of polynomial optics. The columns are
- * radius, thickness, medium, and semi-diameter. Index and Abbe number follow
- * the medium if it is a glass.
+ * radius, thickness, medium, and semi-diameter. If the medium is a glass, index
+ * and Abbe number follow it.
  *
  * The medium is "air", "iris" or the name of a glass, which is ignored. The
  * prefix "cx_" makes a cylinder that is curved in x. A thickness "a/b/c" has
@@ -36,7 +36,6 @@ struct polyflare {
     double focal[POSITIONS], field[POSITIONS];
 };
 
-/* Removes the words of L that belong to a comment. */
 static void remove_comment_words(struct lines *l)
 {
     for (int k = 0; k < l->n; k++) {

@@ -117,7 +117,7 @@ static bool parse_aperture_command(struct seq *q)
                      strcasecmp(l->word[1], "HOL") == 0))
         return imported_add_note(
             q->lens, l->number,
-            "'%s %s' is not supported; openings must be circles", l->word[0],
+            "'%s %s' is not supported; apertures must be circular", l->word[0],
             l->word[1]);
     if (l->n > 1 && strcasecmp(l->word[1], "EDG") == 0 && q->s->semi > 0)
         return true;
