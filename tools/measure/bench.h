@@ -95,7 +95,7 @@ struct bench {
     int width, height, rounds, word;
     bool all;
     bool moving; /* true: the first light is at another angle in each round */
-    struct glint_workers *two; /* pool of two threads */
+    struct glint_workers *two;
     struct canvas canvas[BENCH_CANVASES];
     int n_canvases;
     struct bench_case *cases[BENCH_CASES];

@@ -84,7 +84,7 @@ static void invalidate_shadows(void *ctx, struct glint_scene *scene)
                              model->object[0].turn_q30);
 }
 
-/* Opens FRAME of MODEL and draws it once, which allocates all memory. */
+/* Opens FRAME of MODEL and draws one frame, which allocates all memory. */
 static int open_bench_frame(struct scene_case *t, struct scene_frame *frame,
                             const struct glint_scene_model *model,
                             const struct scene_dials *dials)

@@ -29,7 +29,6 @@ enum glint_status canvas_init(struct canvas *canvas,
                               enum glint_pixel_format format, int width,
                               int height);
 
-/* Restores the pixels of CANVAS to the background. */
 void canvas_restore_background(struct canvas *canvas);
 
 void canvas_free(struct canvas *canvas);

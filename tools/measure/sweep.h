@@ -21,8 +21,8 @@ enum { MAX_PARAMETERS = 12, MAX_VALUES = 10, MAX_TOGETHER = 5 };
 struct sweep_parameter {
     const char *name;   /* name in tables and plots */
     const char *option; /* engine option; NULL: the tolerance of a bake */
-    double standard;    /* default value */
-    bool opens;         /* whether a change requires opening the lens again */
+    double standard;
+    bool opens; /* whether a change requires opening the lens again */
     /* whether the parameter has no effect on a single light */
     bool many_lights;
     int n_values, n_together;
@@ -73,7 +73,7 @@ struct sweep_point {
 };
 
 struct sweep_case {
-    int lens; /* index of the lens */
+    int lens;
     int width, height, n_lamps;
     double angle;
     bool together; /* whether combinations of parameters are measured in this

@@ -77,7 +77,7 @@ void sweep_mark_fronts(struct sweep *s)
 
 /* Sets M to the means of setting I over all cases with combined parameters,
  * which all have the same settings. Returns false if a case has not measured
- * it. */
+ * this setting. */
 static bool compute_means_of_setting(const struct sweep *s, int i,
                                      struct sweep_mean *m)
 {

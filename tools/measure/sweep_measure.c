@@ -44,7 +44,7 @@ struct bay {
     struct glint_float_image exact;
 };
 
-/* ------------------------------------------------------------------ making */
+/* ------------------------------------------------------------------ set-up */
 
 static bool has_same_exact_image(const struct settings *a,
                                  const struct settings *b)

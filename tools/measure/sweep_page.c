@@ -150,7 +150,7 @@ void sweep_write_page(const struct sweep *s, FILE *file)
     fputs("<h2>Error against time</h2>\n", file);
     sweep_write_front_svg(s, file);
     write_front_table(s, file);
-    fputs("<h2>Each dial by itself</h2>\n", file);
+    fputs("<h2>Each quality parameter separately</h2>\n", file);
     sweep_write_dials_svg(s, file);
     write_picture_strips(s, file);
     html_write_end(file);

@@ -14,10 +14,10 @@ static const double between_steps[] = {0.0625, 0.505};
 enum { GRID, QUANTUM, CULL, DIM, WHOLE, HALF, TOLERANCE };
 
 /* The last list of values of each parameter is used for combinations. Some
- * parameters are not combined: apart and max_lights lose more accuracy than
- * they save time; wavelengths loses colour; each value of the tolerance needs a
- * bake; tile does not change the image. A single wavelength is the middle one,
- * drawn in grey. */
+ * parameters are not combined: 'apart' and 'max_lights' cost much accuracy for
+ * little time; 'wavelengths' costs colour; each value of the tolerance needs a
+ * bake; 'tile' does not change the image. A single wavelength is the middle
+ * one, drawn in grey. */
 /* clang-format off */
 const struct sweep_parameter sweep_parameter[] = {
     [GRID] = {"grid", "grid", 64, false, false, 9, 5,

@@ -126,7 +126,7 @@ void sweep_write_front_svg(const struct sweep *s, FILE *file)
     free(dot);
 }
 
-/* ------------------------------------------------------------------- alone */
+/* ------------------------------------------------------- single parameters */
 
 static bool is_point_of_parameter(const struct sweep_point *p, int d)
 {

@@ -3,9 +3,9 @@
  * Measures the error of a model against exact rays. Every ghost is compared at
  * the angles of the accuracy table and every STEP degrees up to the model's max
  * angle, at every wavelength. Rays start on a grid over the bounding box of the
- * rays that pass stop and barrels; only rays that land in the image circle
- * count. A ray that no polynomial of the model covers counts as an error of FAR
- * pixels in percentiles, and is left out of root mean squares.
+ * rays that pass the stop and all surface rims; only rays that land in the
+ * image circle count. A ray that no polynomial of the model covers counts as an
+ * error of FAR pixels in percentiles, and is left out of root mean squares.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -32,7 +32,6 @@ static char *copy_to_pool(const char *prefix, const char *text, size_t length)
     return to;
 }
 
-/* Adds the words of TEXT to ROW. */
 static void add_words_to_row(struct recipe_row *row, const char *text)
 {
     char *word, *rest = copy_to_pool("", text, strlen(text));

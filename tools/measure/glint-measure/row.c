@@ -61,7 +61,7 @@ static bool is_any_metric_requested(const struct figure_row *row,
     return false;
 }
 
-static double process_cpu_s(void)
+static double get_process_cpu_s(void)
 {
     struct timespec t;
 
@@ -178,7 +178,7 @@ static int bake_row_table(struct figure_row *r)
     unsigned char *model = NULL;
     size_t bytes = 0;
     enum glint_status status = GLINT_OK;
-    const double from = process_cpu_s();
+    const double from = get_process_cpu_s();
     char path[1024];
     FILE *file;
 
@@ -192,7 +192,7 @@ static int bake_row_table(struct figure_row *r)
             glint_bake(&r->table, &options, &model, &bytes, &report, &error);
     if (status != GLINT_OK)
         return tool_fail(r->tool, status, error.text);
-    json_write(&r->json, "bake_s: %.3f", process_cpu_s() - from);
+    json_write(&r->json, "bake_s: %.3f", get_process_cpu_s() - from);
     if (!model_cache_make_path(path, sizeof path, "measured.glint") ||
         !(file = fopen(path, "wb"))) {
         free(model);
@@ -318,12 +318,12 @@ static enum glint_status draw_all_rounds(struct figure_row *r, struct frame *f)
     f->least.bin_ms = f->least.draw_ms = f->least.plan_ms = HUGE_VAL;
     for (int i = r->rounds > 1 ? -1 : 0; i < r->rounds && status == GLINT_OK;
          i++) {
-        const double from = process_cpu_s();
+        const double from = get_process_cpu_s();
 
         status = draw_row_frame(r, f, i + 1 == r->rounds);
         if (i < 0)
             continue;
-        f->cpu_ms = fmin(f->cpu_ms, 1e3 * (process_cpu_s() - from));
+        f->cpu_ms = fmin(f->cpu_ms, 1e3 * (get_process_cpu_s() - from));
         f->least.plan_ms = fmin(f->least.plan_ms, f->report.plan_ms);
         f->least.bin_ms = fmin(f->least.bin_ms, f->report.bin_ms);
         f->least.draw_ms = fmin(f->least.draw_ms, f->report.draw_ms);
