@@ -3,10 +3,10 @@
  * glint synth: writes data sets for training flare removal.
  *
  * Several processes can write to the folder of a set, be killed, and continue.
- * Every file is written under a temporary name and renamed when it is complete,
- * the item's description, items/NUMBER.json, last. An item exists if its
- * description and all its images exist. The manifest contains all descriptions
- * in order; it is written when all items exist.
+ * Every file is written under a temporary name and renamed when it is complete.
+ * The item's description, items/NUMBER.json, is written last. An item exists if
+ * its description and all its images exist. The manifest contains all
+ * descriptions in order; it is written when all items exist.
  */
 #include <dirent.h>
 #include <errno.h>
@@ -27,7 +27,7 @@
 
 enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 
-/* A file that the set contains for each item */
+/* An output file that each item of the data set has */
 struct synth_file {
     const char *folder,
         /* folder and beginning of the file name, before the item number */
@@ -64,8 +64,8 @@ static const struct synth_layout layouts[] = {
       {"gt/", "", BASE | SOURCE, false},
       {"flare/", "", GLARE | GHOSTS, false},
       {"mask/", "", 0, false}}},
-    /* Layout of [Dai22]: flares on black, which its data loader adds to its own
-     * images, and pairs for testing */
+    /* Layout of [Dai22]: flares on black, which the data loader of [Dai22] adds
+     * to other images, and pairs for testing */
     {"flare7k",
      "png",
      {{"Flare7K/Scattering_Flare/Compound_Flare/", "", SOURCE | GLARE, false},
@@ -82,8 +82,8 @@ static const struct synth_layout layouts[] = {
       {"test/gt/", "", BASE | SOURCE, false},
       {"test/flare/", "", GHOSTS, false},
       {"test/mask/", "", 0, false}}},
-    /* Layout of [Wu21]: flares on black, and scenes to which its programs add
-     * them */
+    /* Layout of [Wu21]: flares on black, and scenes to which the programs of
+     * [Wu21] add the flares */
     {"wu2021",
      "png",
      {{"lens-flare/simulated/", "", SOURCE | GLARE | GHOSTS, false},
@@ -164,8 +164,8 @@ static int create_set_folders(const struct tool *tool,
                : report_long_folder_name(tool, set);
 }
 
-/* Rejects --item into a folder with a set, where it would overwrite an item of
- * the set. */
+/* Rejects --item into a folder with a set, because the file would overwrite an
+ * item of the set. */
 static int check_folder_contains_no_set(const struct tool *tool,
                                         const struct synth_set *set)
 {
@@ -341,7 +341,6 @@ static int write_item_files(const struct tool *tool,
 
 /* ---------------------------------------------------------------- manifests */
 
-/* Appends the contents of the file PATH to OUT. */
 static enum glint_status append_file_to_stream(struct glint_output *out,
                                                const char *path,
                                                struct glint_error *error)
@@ -390,7 +389,6 @@ static int write_item_descriptions(const struct tool *tool,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Removes the manifests of all shards. */
 static void remove_shard_manifests(const struct synth_set *set)
 {
     char path[SYNTH_PATH_BYTES];
@@ -786,7 +784,6 @@ static int init_item_drawing(const struct tool *tool, struct synth *s,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-/* Draws the single item described by --item. */
 static int draw_described_item(const struct tool *tool, struct synth *s)
 {
     struct glint_error error = {""};

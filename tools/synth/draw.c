@@ -212,8 +212,8 @@ static void resample_cropped_background(const struct glint_float_image *from,
         }
 }
 
-/* Scales RGB such that its mean light is LEVEL. The factor, in stops, is
- * limited to SYNTH_LEAST_EV .. SYNTH_MOST_EV. Returns it. */
+/* Scales RGB such that its mean light is LEVEL. Returns the factor in stops,
+ * which is limited to SYNTH_LEAST_EV .. SYNTH_MOST_EV. */
 static double scale_to_mean_level(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
@@ -238,8 +238,8 @@ static const char *find_background_path(const struct synth_backgrounds *list,
     return NULL;
 }
 
-/* Sets RGB[height][width][3], linear light, to the crop of the background
- * that ITEM defines, and EV to the stops by which it was scaled to ITEM's
+/* Sets RGB[height][width][3], linear light, to the crop of the background that
+ * ITEM defines, and EV to the stops by which the crop was scaled to ITEM's
  * level. Returns GLINT_E_IO with ERROR if there is no such background or the
  * file's hash differs from ITEM's, or the errors of
  * glint_picture_load_float(). */
@@ -376,8 +376,8 @@ static int set_lens_stop_and_dirt(const struct tool *tool,
     camera->front_dirt.dust = item->front_dust;
     camera->front_dirt.dust_seed = (int)item->front_dust_seed;
     result->f_number = lens->widest * exp2(item->stops_down / 2);
-    /* If stops_down is 0, the f-number is not set. Rounding might make it wider
-     * than the stop of the model. */
+    /* If stops_down is 0, the f-number is not set. A rounded f-number might
+     * open wider than the stop of the model. */
     s->options.f_number = item->stops_down > 0 ? result->f_number : 0;
     status = opened_lens_set_stop(&lens->opened, s, &error);
     if (status != GLINT_OK)

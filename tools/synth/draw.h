@@ -21,7 +21,7 @@ struct synth_backgrounds {
 };
 
 enum synth_layer {
-    SYNTH_BASE,   /* the background */
+    SYNTH_BASE,
     SYNTH_SOURCE, /* the discs of the lights */
     SYNTH_GLARE,  /* starburst and haze of the lights */
     SYNTH_GHOSTS,

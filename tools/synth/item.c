@@ -131,12 +131,13 @@ bool synth_ranges_parse(struct synth_ranges *ranges, const char *text,
 
 void synth_ranges_print(FILE *file, const struct synth_ranges *ranges)
 {
-    static const char *const law[] = {"",
-                                      "",
-                                      "even",
-                                      "logarithm even",
-                                      "0, or logarithm even",
-                                      "whole numbers"};
+    static const char *const law[] = {
+        "",
+        "",
+        "uniform",
+        "log-uniform",
+        "0 for half of the items, else log-uniform",
+        "whole numbers"};
 
     for (int k = 0; k < SYNTH_FIELDS + SYNTH_LIGHT_FIELDS; k++)
         if (get_item_field(k)->law > SYNTH_COUNTED)
@@ -214,7 +215,6 @@ static double draw_random_value(const struct synth_item *item, const char *name,
     return nearbyint(value * 1e6) / 1e6;
 }
 
-/* Returns the address of the number FIELD in the struct FROM. */
 static double *find_number_in_struct(void *from,
                                      const struct synth_field *field)
 {

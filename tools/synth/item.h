@@ -45,8 +45,8 @@ struct synth_item {
 
     /* The crop of the background. crop: its size, as a fraction of the largest
      * crop of that shape. crop_x, crop_y: its position, 0 .. 1. mirrored: 1 if
-     * it is mirrored. level: mean light to which it is scaled (1 = white), by
-     * SYNTH_LEAST_EV to SYNTH_MOST_EV stops. */
+     * it is mirrored. level: mean light to which the crop is scaled (1 =
+     * white), by SYNTH_LEAST_EV to SYNTH_MOST_EV stops. */
     double crop, crop_x, crop_y, mirrored, level;
 
     /* The aperture stop: stops below the widest opening, and members of struct
