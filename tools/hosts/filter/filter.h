@@ -21,8 +21,8 @@ enum { FILTER_MAX = 16 }; /* max number of parameters */
 
 enum filter_type { FILTER_NUMBER, FILTER_SWITCH, FILTER_TEXT };
 
-/* A parameter that hosts show. It is an engine option of this name, or one of
- * auto, x and y, which place a lamp manually. */
+/* A parameter that hosts show. A parameter is an engine option of this name, or
+ * one of auto, x and y, which place a lamp manually. */
 struct filter_parameter {
     const char *name, *label, *help;
     enum filter_type type;
@@ -71,15 +71,15 @@ void filter_set_live_values(struct filter *filter,
                             const struct filter_values *values);
 
 /* filter_has_size() returns whether FILTER draws pictures of WIDTH x HEIGHT.
- * filter_is_reusable() returns whether it also can draw with VALUES without
+ * filter_is_reusable() returns whether FILTER can also draw with VALUES without
  * opening its lens again. */
 bool filter_has_size(const struct filter *filter, int width, int height);
 bool filter_is_reusable(const struct filter *filter,
                         const struct filter_values *values, int width,
                         int height);
 
-/* Opens the lens before the first picture. If its model is not cached, bakes
- * it, which takes seconds to hours. Returns false on failure. */
+/* Opens the lens before the first picture. If the lens's model is not cached,
+ * bakes the model, which takes seconds to hours. Returns false on failure. */
 bool filter_open_lens(struct filter *filter);
 
 /* Returns the cause of the last failure of filter_draw_flare() or

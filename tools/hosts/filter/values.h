@@ -10,7 +10,6 @@
 /* Indices of the parameters that are not options. */
 enum { FILTER_AUTO = 5, FILTER_X, FILTER_Y };
 
-/* Returns whether NUMBER is the default of PARAMETER. */
 bool filter_is_default(const struct filter_parameter *parameter, double number);
 
 /* Copies FROM to TO, without freeing the old texts of TO. */

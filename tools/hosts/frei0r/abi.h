@@ -26,8 +26,8 @@ enum f0r_type {
 struct f0r_plugin {
     const char *name, *author;
     int kind, colour_model;
-    int frei0r_version;               /* F0R_MAJOR */
-    int major_version, minor_version; /* version of the plug-in */
+    int frei0r_version; /* F0R_MAJOR */
+    int major_version, minor_version;
     int n_params;
     const char *explanation;
 };

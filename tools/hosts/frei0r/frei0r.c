@@ -59,7 +59,7 @@ void f0r_get_plugin_info(struct f0r_plugin *info)
         .frei0r_version = F0R_MAJOR,
         .minor_version = 1,
         .n_params = n,
-        .explanation = "Lens flare: ghosts and stars of a real lens"};
+        .explanation = "Lens flare: ghosts and starbursts of a real lens"};
 }
 
 void f0r_get_param_info(struct f0r_param *info, int index)

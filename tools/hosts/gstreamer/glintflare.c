@@ -266,7 +266,7 @@ static void glint_flare_element_class_init(GlintFlareElementClass *class)
                                         make_parameter_spec(&p));
     gst_element_class_set_static_metadata(
         GST_ELEMENT_CLASS(class), "Lens flare", "Filter/Effect/Video",
-        "Draws the ghosts and stars of a real lens on frames, in place",
+        "Draws the ghosts and starbursts of a real lens on frames, in place",
         "glint");
     add_element_pad(GST_ELEMENT_CLASS(class), "sink", GST_PAD_SINK);
     add_element_pad(GST_ELEMENT_CLASS(class), "src", GST_PAD_SRC);

@@ -43,9 +43,9 @@ static bool find_pixel_format(enum video_format from,
 }
 
 /* Returns the luma matrix (BT.601 or BT.709) that is nearest to FRAME's matrix
- * from codes to RGB. They are distinguished by the factor from Cr to R: 1.40
- * for BT.601 and 1.57 for BT.709 at full range. If a source states no matrix,
- * all its factors are 0. */
+ * from codes to RGB. The matrices are distinguished by the factor from Cr to R:
+ * 1.40 for BT.601 and 1.57 for BT.709 at full range. If a source states no
+ * matrix, all its factors are 0. */
 static enum glint_matrix find_luma_matrix(const struct obs_source_frame *frame)
 {
     const float cr = frame->color_matrix[2];
@@ -97,7 +97,7 @@ static bool set_image_to_frame(const struct obs_source_frame *frame,
 }
 
 struct opening {
-    /* used only by the thread that opens it, until is_done is true */
+    /* used only by the thread that opens the filter, until is_done is true */
     struct filter *filter;
     pthread_mutex_t lock; /* guards the following members */
     bool is_done, is_left;
@@ -167,8 +167,8 @@ static bool collect_opened_filter(struct opening *o, struct filter **filter)
     return true;
 }
 
-/* Abandons the opening O, which may be NULL. Its thread frees everything when
- * it ends. */
+/* Abandons the opening O, which may be NULL. The thread of O frees everything
+ * when the thread ends. */
 static void abandon_opening(struct opening *o)
 {
     bool is_done;

@@ -24,7 +24,7 @@ enum { EXACT_WAVES = 9 };
 static struct {
     struct glint_error error;
     struct glint_options options;
-    char *text[GLINT_N_OPTIONS]; /* values of text options */
+    char *text[GLINT_N_OPTIONS];
 
     struct glint_prescription table;
     /* is_model: web_open() was called with an f-number (WIDEST) */
@@ -299,8 +299,8 @@ static int set_up_camera(struct glint_engine_camera *camera, bool exact)
 }
 
 /* Cache of the responses (brightness of the flare) of the lenses and stops that
- * were used last. It saves time because measuring a response takes about as
- * long as drawing a coarse picture. */
+ * were used last. Measuring a response takes about as long as drawing a coarse
+ * picture. */
 enum { KEPT = 16, KEPT_BYTES = 4096 };
 static struct {
     uint64_t key;

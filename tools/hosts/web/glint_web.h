@@ -92,8 +92,8 @@ WEB_EXPORT(web_size) int web_size(int width, int height);
 WEB_EXPORT(web_find) int web_find(uint8_t *pixels);
 WEB_EXPORT(web_lamps) double *web_lamps(void);
 
-/* Sets XY to the brightest spot that was not accepted as a lamp; returns 0 if
- * there is no such spot. */
+/* Sets XY to the centre of the brightest region that was not accepted as a
+ * lamp, and returns 1. Returns 0 if there is no such region. */
 WEB_EXPORT(web_doubtful) int web_doubtful(double xy[2]);
 
 /* Draws a flare into PIXELS: that of the first N rows of web_lamps(), N = 0 ..

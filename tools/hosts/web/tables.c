@@ -16,7 +16,7 @@
 static char *json; /* JSON text to return, [room] */
 static size_t used, room;
 
-/* Appends a formatted text. If there is no memory, omits it and all later
+/* Appends a formatted text. If there is no memory, omits this and all later
  * texts; the result is then not valid JSON. */
 __attribute__((format(printf, 1, 2))) static void append(const char *format,
                                                          ...)
