@@ -49,7 +49,7 @@ static int parse_number(const uint8_t **at)
 }
 
 /* Sets IMAGE to the pixels of the PPM file in picture, BYTES long. Returns 0 if
- * it is not a binary 8-bit PPM without comments. */
+ * the file is not a binary 8-bit PPM without comments. */
 static int find_ppm_pixels(struct glint_image *image, size_t bytes)
 {
     const uint8_t *at = picture + 2;
@@ -137,7 +137,8 @@ int main(int argc, char **argv)
                                    parse_pixel_centre_q8(argv[4]));
     light.power.exponent += stops;
     if (!draw_flare(&lens, &image, &light))
-        return print_error(1, "a picture of this size takes more than 16 MiB");
+        return print_error(
+            1, "a picture of this size needs more than 16 MiB of memory");
     return fwrite(picture, 1, bytes, stdout) == bytes && !fflush(stdout) ? 0
                                                                          : 6;
 }

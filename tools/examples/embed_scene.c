@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * embed_scene LENS SCENE IN.ppm >OUT.ppm - draws a baked scene over a picture,
- * then the flare of the lamps that it shows, like glint overlay --scene --stop
- * polygon:8. LENS is a baked model.
+ * then the flare of the picture's lamps and the scene's lights, like glint
+ * overlay --scene --stop polygon:8. LENS is a baked model.
  */
 #include "glint/engine.h"
 #include "glint/kernels.h"

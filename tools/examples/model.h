@@ -10,8 +10,8 @@
 
 #include "glint/model.h"
 
-/* Returns the content of the file PATH and sets *BYTES to its size. The caller
- * frees it. Returns NULL if the file cannot be read. */
+/* Returns the content of the file PATH, which the caller frees, and sets *BYTES
+ * to the size. Returns NULL if the file cannot be read. */
 static inline void *read_all(const char *path, size_t *bytes)
 {
     FILE *file = fopen(path, "rb");
