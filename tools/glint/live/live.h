@@ -23,7 +23,7 @@
  *   fb[:/dev/fb0]     the panel of a framebuffer
  *   y4m:FILE | y4m:-  a video file or pipe; also FILE.y4m
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
- *   window            one on the desktop, where there is the SDL plug-in
+ *   window            a desktop window; needs the SDL plug-in
  *   null              nowhere */
 
 enum live_output_kind {
@@ -50,7 +50,7 @@ struct live_output {
     } as;
 };
 
-/* Sets kind and path of OUTPUT by NAME, which must outlive OUTPUT. Returns
+/* Sets type and path of OUTPUT by NAME, which must outlive OUTPUT. Returns
  * false if NAME is not one of the names above. */
 bool live_output_parse(struct live_output *output, const char *name);
 
@@ -64,18 +64,19 @@ enum glint_status live_output_open(struct live_output *output,
                                    int fps_den, struct glint_error *error);
 
 /* Describe an open output. live_output_describe() writes a description to TEXT
- * and returns TEXT; it is "" if the output's name says enough.
- * live_output_get_console_note() returns why the text console of a framebuffer
- * could not be switched off, or NULL if it could. */
+ * and returns TEXT, which is "" for outputs other than framebuffers and V4L2
+ * nodes. live_output_get_console_note() returns why the text console of a
+ * framebuffer could not be switched off, or NULL if it could. */
 const char *live_output_describe(const struct live_output *output, char *text,
                                  size_t size);
 const char *live_output_get_console_note(const struct live_output *output);
 
-/* Returns the number of frames that OUTPUT dropped because it was busy. */
+/* Returns the number of frames that OUTPUT dropped because the device was
+ * busy. */
 long live_output_count_dropped_frames(const struct live_output *output);
 
-/* Closes OUTPUT, unless it is closed already, and renames its file, if any, to
- * its path. */
+/* Closes OUTPUT, unless it is closed already. Renames its temporary file, if
+ * any, to the output path. */
 enum glint_status live_output_close(struct live_output *output,
                                     struct glint_error *error);
 

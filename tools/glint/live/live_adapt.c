@@ -15,8 +15,8 @@
 #define SMOOTHING  0.2
 
 /* Quality and max number of lights at each step. Quality falls from the middle
- * of the scale of --quality to its end, and never exceeds the requested
- * quality. The last steps only reduce the number of lights. */
+ * of the --quality scale to 0, and never exceeds the requested quality. The
+ * last steps only reduce the number of lights. */
 static const struct {
     double quality;
     int max_lights;

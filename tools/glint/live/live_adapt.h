@@ -4,9 +4,9 @@
  *
  * Quality falls by one step if frames are missed or hardly any time is left,
  * and by several steps if a frame takes several frame periods. It rises by one
- * step only after some seconds with spare time; this wait is doubled each time
- * that a step up was too early. Steps follow the table of --quality; steps
- * after its end reduce the number of lights.
+ * step only after some seconds with spare time. Each time that a step up was
+ * too early, this wait is doubled. Steps follow the table of --quality; steps
+ * after the end of the table reduce the number of lights.
  */
 #ifndef GLINT_TOOLS_LIVE_LIVE_ADAPT_H
 #define GLINT_TOOLS_LIVE_LIVE_ADAPT_H
@@ -18,12 +18,13 @@
 #define LIVE_MAX_STEP 7
 
 struct live_adapt {
-    int step; /* present step, 0 .. LIVE_MAX_STEP; 0: the requested quality */
+    /* present step: 0, the requested quality, to LIVE_MAX_STEP, the coarsest */
+    int step;
     /* smoothed processing time of a frame, ms; -1: no frame since the last
      * step */
     double busy_ms;
-    /* below_s: seconds with spare time so far; hold_s: how many of these a step
-     * up requires */
+    /* below_s: consecutive seconds with spare time so far; hold_s: min of
+     * below_s for a step up */
     double below_s, hold_s;
     double since_s; /* seconds since the last step */
     /* whether the last change was a step up, to better quality */

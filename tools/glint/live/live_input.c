@@ -93,7 +93,7 @@ static uint64_t count_frames_due_by_now(struct live_timed *timed)
 }
 
 /* Begins FRAME. Returns the number of frames that became due since the last
- * call; the caller shows only the last of them. */
+ * call; the caller shows only the last one. */
 static uint64_t begin_timed_frame(struct live_timed *timed,
                                   struct glint_source_frame *frame)
 {
@@ -127,7 +127,6 @@ static void stop_frame_timer(struct live_timed *timed)
 
 enum { HOUSES = 14, DARKEST = 22, BRIGHTEST = 235 };
 
-/* Returns a 32-bit hash of X. */
 static uint32_t hash_32_bits(uint32_t x)
 {
     x = (x ^ x >> 16) * 0x7feb352du;

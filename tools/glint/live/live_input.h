@@ -17,17 +17,16 @@
 #include "linux/v4l2.h"
 #include "live/live_log.h"
 
-/* A source without a device: frames are due at times of a clock, and the
- * format is known when it is opened. */
+/* A source without a device: frames are due at times of a clock, and the format
+ * is known when the source is opened. */
 struct live_timed {
     struct glint_source source;
     struct glint_source_format format;
     const char *name; /* name of the source, for errors */
-    int timer;        /* timer descriptor; -1: each frame is due when it
-                         arrives */
+    int timer;        /* timer descriptor; -1: a frame is due when it arrives */
     int64_t n;        /* number of the next frame */
 
-    struct glint_y4m_reader reader; /* reader of a video file */
+    struct glint_y4m_reader reader;
     /* members of the test image: */
     struct glint_image image; /* the last frame, I420, limited range */
     uint32_t seed;
@@ -40,7 +39,7 @@ struct live_wish {
     /* device, size and rate; used for any source */
     struct glint_v4l2_config camera;
     enum glint_v4l2_io io; /* I/O method of a camera; other sources ignore it */
-    int n_buffers;         /* number of buffers of a camera */
+    int n_buffers;
 };
 
 struct live_input {
@@ -51,7 +50,6 @@ struct live_input {
     } as;
 };
 
-/* Returns whether NAME is a camera. */
 bool live_input_is_camera(const char *name);
 
 /* Opens the source that WISH names; live_input_start() starts it. SEED seeds

@@ -41,8 +41,8 @@ void live_stats_begin_second(struct live_stats *stats, int64_t now_us)
     reset_frame_sums(&stats->second, now_us);
 }
 
-/* Counts a latency of US microseconds in S. If its bin is full, all bins are
- * halved, but none to 0, which preserves percentiles. */
+/* Counts a latency of US microseconds in S. If the latency's bin is full,
+ * halves all bins, but none to 0, which preserves percentiles. */
 static void add_latency_to_histogram(struct live_sums *s, int64_t us)
 {
     const int64_t at = us < 0 ? 0 : us / LIVE_BIN_US;
@@ -295,11 +295,12 @@ void live_log_warn_of_memory_limit(struct live_log *log,
         return;
     if (log->n_short++ > 0)
         return;
-    snprintf(text, sizeof text,
-             "a frame needs more than --memory allows: %d of %d bundles and %d "
-             "of %d edges are left out",
-             of->dropped_bundles, of->need_bundles,
-             of->need_primitives - of->primitives, of->need_primitives);
+    snprintf(
+        text, sizeof text,
+        "a frame needs more than --memory allows: %d of %d ray bundles and %d "
+        "of %d edges are left out",
+        of->dropped_bundles, of->need_bundles,
+        of->need_primitives - of->primitives, of->need_primitives);
     live_log_print_message(log, text);
 }
 

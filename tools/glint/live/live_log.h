@@ -34,9 +34,10 @@ enum live_stage {
 };
 
 enum {
-    LIVE_BINS = 10000,    /* number of latency bins */
-    LIVE_BIN_US = 100,    /* width of a bin, microseconds */
-    LIVE_STATS_TEXT = 672 /* max bytes of a line of statistics, with its end */
+    LIVE_BINS = 10000, /* number of latency bins */
+    LIVE_BIN_US = 100, /* width of a bin, microseconds */
+    /* max bytes of a line of statistics, with terminator */
+    LIVE_STATS_TEXT = 672
 };
 
 /* Times of a frame that was shown, or only numbers of lost frames */
@@ -93,7 +94,6 @@ void live_stats_add_frame(struct live_stats *stats,
  * live_stats_begin_second(). */
 bool live_stats_is_second_over(const struct live_stats *stats, int64_t now_us);
 
-/* Begins the next second. */
 void live_stats_begin_second(struct live_stats *stats, int64_t now_us);
 
 /* Returns the latency in ms that PERCENT of the frames (1 .. 100) do not
@@ -133,8 +133,8 @@ void live_log_print_message(const struct live_log *log, const char *text);
 void live_log_warn_of_memory_limit(struct live_log *log,
                                    const struct glint_flare_stats *of);
 
-/* Prints the statistics of the last second if it has ended or IS_ASKED, and
- * begins the next second. */
+/* Prints the statistics of the last second if the second has ended or IS_ASKED,
+ * and begins the next second. */
 void live_log_print_second(struct live_log *log, bool is_asked);
 
 /* Prints the statistics of the run. As text they include how many of N_SHOWN

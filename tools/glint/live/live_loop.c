@@ -22,12 +22,12 @@ struct live {
     void *ctx;
 
     struct live_input in;
-    /* format of the input, read when it was opened or restarted */
+    /* format of the input, read when the input was opened or restarted */
     struct glint_source_format format;
     /* number of restarts of the input at the time FORMAT was read */
     int n_restarts;
     struct live_output output;
-    /* buffer for copies of frames whose own memory is slow to read */
+    /* buffer for copies of frames whose memory is slow to read */
     struct live_copy copy;
 
     struct live_adapt adapt;
@@ -44,7 +44,7 @@ struct live {
     bool had_signal;
 };
 
-/* --------------------------------------------------------------------- made */
+/* ------------------------------------------------------------------ set-up */
 
 /* Queries and prints the format of the input. */
 static void read_input_format(struct live *l)
@@ -248,7 +248,7 @@ static void record_frame_statistics(struct live *l,
     live_stats_add_frame(&l->log.stats, &t);
 }
 
-/* ------------------------------------------------------------- what is lost */
+/* ------------------------------------------------------------- device loss */
 
 /* Prints that the device WHAT was lost, with the reason WHY. With --reconnect
  * the run continues, the panel shows the last image, and the device is retried.
@@ -414,8 +414,8 @@ static int process_next_frame(struct live *l)
 }
 
 /* Checks FRESH, the options after a reload: if the present options name a lens,
- * FRESH must name one, too. Otherwise the configuration file was probably read
- * while it was being written. */
+ * FRESH must also name one. Otherwise the configuration file was probably read
+ * while another program wrote it. */
 static bool check_config_names_lens(const struct live *l,
                                     const struct live_options *fresh)
 {

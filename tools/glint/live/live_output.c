@@ -69,7 +69,7 @@ const char *live_output_describe(const struct live_output *o, char *text,
     if (o->kind == LIVE_OUTPUT_FB)
         snprintf(text, size, "%s: %dx%d, %d bits a pixel%s", fb->id, fb->width,
                  fb->height, 8 * fb->layout.bytes,
-                 fb->n_pages > 1 ? ", drawn unseen" : "");
+                 fb->n_pages > 1 ? ", double-buffered" : "");
     else if (o->kind == LIVE_OUTPUT_V4L2)
         snprintf(text, size, "%s", o->as.v4l2.card);
     return text;

@@ -48,8 +48,8 @@ bool live_signals_has_arrived(enum live_signal which)
 {
     const bool was = asked[which];
 
-    /* The flag is reset only if it was set: a signal that arrives between the
-     * two would be lost otherwise. */
+    /* The flag is reset only if it was set, because a signal that arrives
+     * between the read and the reset would be lost otherwise. */
     if (was && which != LIVE_STOP)
         asked[which] = 0;
     return was;

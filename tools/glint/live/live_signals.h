@@ -24,9 +24,9 @@ void live_signals_install(void);
 bool live_signals_has_arrived(enum live_signal which);
 
 /* Waits until FD (-1: none) is readable or has an event or an error, or for MS
- * milliseconds. A signal ends the wait at once, also one that arrived before
- * it, unless live_signals_has_arrived() has returned it already. LIVE_SNAPSHOT,
- * which needs a frame, does not end it. */
+ * milliseconds. A signal ends the wait at once, even a signal that arrived
+ * before the wait, unless live_signals_has_arrived() has returned it already.
+ * LIVE_SNAPSHOT, which needs a frame, does not end the wait. */
 void live_signals_wait(int fd, int ms);
 
 #endif
