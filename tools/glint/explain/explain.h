@@ -17,7 +17,7 @@ struct explain_title {
     bool linear;
     int top; /* max ghosts and lights to list, and ghosts to mark */
     const struct glint_engine_report *report;
-    /* engine that searched the picture, or NULL */
+    /* engine that searched the picture for lamps; NULL: none */
     const struct glint_engine *engine;
 };
 

@@ -98,8 +98,9 @@ static bool is_pixel_lit(const struct marking *m, int x, int y)
     const int32_t *px;
 
     if (x < 0 || y < 0 || x >= m->width || y >= m->height)
-        return true; /* Pixels outside the picture count as lit, so that its
-                        border is not outlined. */
+        /* Pixels outside the picture count as lit, so that the picture's border
+         * is not outlined. */
+        return true;
     px =
         m->explain->linear_q20 + 3 * ((size_t)y * (size_t)m->width + (size_t)x);
     return (px[0] | px[1] | px[2]) != 0;
@@ -123,9 +124,9 @@ static bool is_label_space_free(const struct marking *m, const struct label *l)
     return true;
 }
 
-/* Sets L to the position of a label of W x H pixels on the ghost's rim, else
- * inside the ghost: the first free one from row START downwards, then from the
- * top. Returns false if there is none. */
+/* Sets L to the position of a label of W x H pixels on the ghost's outline,
+ * else inside the ghost: the first free position from row START downwards, then
+ * from the top. Returns false if there is none. */
 static bool find_label_position(const struct marking *m, int start, int w,
                                 int h, struct label *l)
 {
@@ -232,8 +233,8 @@ static void draw_legend_title(const struct marking *m,
     paint_text(&p, 12 * p.line, y, text);
 }
 
-/* Draws entry K of the legend: the number of GHOST, the surfaces that reflect
- * it, and its fraction of the light. */
+/* Draws entry K of the legend: the number of GHOST, its pair of surfaces, and
+ * its fraction of the light. */
 static void draw_legend_entry(const struct marking *m, int k, int ghost)
 {
     struct paint p = {.image = m->image, .line = m->scale};
@@ -253,7 +254,7 @@ static void draw_legend_entry(const struct marking *m, int k, int ghost)
     paint_text(&p, x + 24 * p.line, y, text);
 }
 
-/* ------------------------------------------------------------------- whole */
+/* ----------------------------------------------------------------- picture */
 
 enum glint_status explain_copy_picture(const struct glint_image *picture,
                                        int legend, struct glint_image *marked)

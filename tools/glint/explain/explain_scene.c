@@ -51,14 +51,14 @@ void explained_scene_close(struct explained_scene *scene)
 /* State of a scene light in the picture */
 struct light {
     const char *word;  /* drawn, hidden, behind, outside ... */
-    const char *extra; /* name of the object that hides the light, or NULL */
+    const char *extra; /* name of the object that hides the light; NULL: none */
     double x, y;  /* position, pixels; undefined for lights behind the camera */
     double share; /* visible fraction of the light */
     bool is_ahead;
 };
 
-/* Returns the index of the flare's light that includes LAMP, within its extent
- * plus a pixel, or -1. */
+/* Returns the index of the flare's light that is nearest to LAMP, at most
+ * LAMP's extent plus a pixel away, or -1 if there is none. */
 static int find_flare_light_of_lamp(const struct explained_scene *s,
                                     const struct glint_lamp *lamp)
 {
@@ -113,7 +113,7 @@ static const char *describe_lamp_outcome(const struct explained_scene *s,
 }
 
 /* Returns the state of scene light I. SEEN[N] are the lights in front of the
- * camera. Those of them whose intensity is not 0 are, in the same order, the
+ * camera. The lights in SEEN whose intensity is not 0 are, in this order, the
  * lamps that the scene adds to the flare. */
 static struct light find_light_outcome(const struct explained_scene *s, int i,
                                        const struct glint_scene_lamp *seen,
@@ -124,8 +124,7 @@ static struct light find_light_outcome(const struct explained_scene *s, int i,
     const struct glint_engine_lamp *lamp = c->run.lamp + c->run.n_own;
 
     if (!get_model(s)->header->flare) {
-        light.word =
-            "only lights objects ('flare lights' shows it to the lens)";
+        light.word = "lights objects only (add 'flare lights' for its flare)";
         return light;
     }
     for (int k = 0; k < n; k++) {
@@ -170,8 +169,8 @@ static int list_scene_lights(const struct explained_scene *s,
     int all = (int)h->n_lights;
 
     while (all > own && !has_light_power(&get_model(s)->light[all - 1]))
-        all--; /* an unused entry, which an environment with more lights would
-                * use */
+        /* skips unused entries, reserved for an environment with more lights */
+        all--;
     for (int i = 0; i < all; i++)
         light[i] = find_light_outcome(s, i, seen, n);
     return all;
@@ -196,8 +195,9 @@ static const char *write_light_name(const struct explained_scene *s, int i,
 struct highlight {
     const char *word; /* drawn, merged, too faint ... */
     double x, y, power;
-    int object, bundles; /* object with the highlight, and number of ghost
-                            bundles that it causes */
+    /* object with the highlight, and number of ray bundles drawn for the
+     * highlight */
+    int object, bundles;
 };
 
 /* Sets FOUND[GLINT_SCENE_MAX_HIGHLIGHTS] to the highlights, which are the last
@@ -261,7 +261,7 @@ static void print_scene_lights(const struct explained_scene *s)
     const int n = list_scene_lights(s, light);
     char name[40];
 
-    printf("\n%-22s %9s %9s %7s  %s\n", "light", "x", "y", "seen", "");
+    printf("\n%-22s %9s %9s %7s  %s\n", "light", "x", "y", "visible", "");
     for (int i = 0; i < n; i++) {
         printf("%-22s ", write_light_name(s, i, name));
         if (light[i].is_ahead)

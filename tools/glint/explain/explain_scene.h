@@ -10,7 +10,7 @@
 #include "scenes/account.h"
 
 struct explained_scene {
-    const struct drawing *drawing; /* drawing of the explained frame */
+    const struct drawing *drawing;
     /* explanation of the flare; NULL without a lens */
     const struct glint_explain *flare;
     struct scene_account account;

@@ -29,9 +29,10 @@ static const struct {
     [GLINT_OUTCOME_FAINT] = {"faint", "too faint to change a pixel code"},
     [GLINT_OUTCOME_NO_ROOM] = {"no_room",
                                "the memory limit is reached (--memory)"},
-    [GLINT_OUTCOME_OTHER_SET] = {"other_set", "another set of wavelengths"},
+    [GLINT_OUTCOME_OTHER_SET] = {"other_set",
+                                 "drawn with another set of wavelengths"},
     [GLINT_OUTCOME_SHARED] = {"shared",
-                              "dim: drawn as one with that of a near light"},
+                              "faint: drawn with the rays of a nearby light"},
 };
 
 const char *explain_outcome_reason(enum glint_outcome outcome)
