@@ -104,7 +104,7 @@ static int parse_options(struct tool *tool, int argc, char **argv,
     return -1;
 }
 
-/* ----------------------------------------------------------------- by rays */
+/* -------------------------------------------------------------- exact rays */
 
 /* Traces rays that start at (PX_MM, PY_MM) in the vertex plane of the front
  * element to the sensor, exactly or by a model. */
@@ -131,7 +131,7 @@ static enum glint_ray_status trace_exact_ray(const struct tracer *t,
     return glint_trace(&t->path, px_mm, py_mm, direction, ray, NULL);
 }
 
-/* -------------------------------------------------------------- by a model */
+/* --------------------------------------------------------- rays of a model */
 
 static double evaluate_model_output(const struct glint_transfer *t,
                                     const struct glint_outputs *out, int kind)
@@ -139,8 +139,8 @@ static double evaluate_model_output(const struct glint_transfer *t,
     return ldexp(out->at[kind], t->exponent[kind]);
 }
 
-static double compute_relative_stop_radius(const struct glint_transfer *t,
-                                           const struct glint_outputs *out)
+static double compute_max_relative_radius(const struct glint_transfer *t,
+                                          const struct glint_outputs *out)
 {
     double most = evaluate_model_output(t, out, GLINT_OUT_RADIUS);
 
@@ -152,8 +152,8 @@ static double compute_relative_stop_radius(const struct glint_transfer *t,
     return most;
 }
 
-/* Sets (U, V) to the coordinates of a ray relative to the bounding box of pupil
- * part T, which is -1 .. 1. Returns whether the ray is in the part. */
+/* Sets (U, V) to the start of a ray relative to the bounding box of pupil part
+ * T; the box spans -1 .. 1. Returns whether the ray is in the part. */
 static bool is_ray_in_pupil_box(const struct glint_transfer *t, double px_mm,
                                 double py_mm, double *u, double *v)
 {
@@ -203,7 +203,7 @@ static enum glint_ray_status trace_model_ray(const struct tracer *t,
         .sensor_y_mm =
             side[1] * evaluate_model_output(p, &out, GLINT_OUT_SENSOR_Y),
         .energy = evaluate_model_output(p, &out, GLINT_OUT_ENERGY),
-        .rel_radius = compute_relative_stop_radius(p, &out)};
+        .rel_radius = compute_max_relative_radius(p, &out)};
     return GLINT_RAY_OK;
 }
 
@@ -222,7 +222,8 @@ static bool is_model_entry_of_ghost(const struct glint_lens *model,
 }
 
 /* Stores in TRACER the parts of GHOST's pupil for which MODEL has polynomials
- * at the tracer's angle and at WAVE_Q24. Returns GLINT_E_MEMORY on failure. */
+ * at the tracer's angle and at WAVE_Q24, 1 / wavelength^2. Returns
+ * GLINT_E_MEMORY on failure. */
 static enum glint_status find_ghost_parts(const struct glint_lens *model,
                                           uint32_t ghost, int32_t sine_q30,
                                           int32_t wave_q24,
@@ -278,7 +279,7 @@ static int prepare_model_tracer(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* --------------------------------------------------------------------- both */
+/* ---------------------------------------------------------------- ray grid */
 
 /* Sets AREA to the rectangle, mm, in the vertex plane of the front element
  * where the rays start. Returns an exit code. */
