@@ -326,8 +326,8 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
                b->halfway_db);
 }
 
-/* Bakes LENS at all zoom positions into OUT. LENS must be at the default
- * position of its table. Returns an exit code. */
+/* Bakes LENS at all zoom positions into OUT. LENS must be at the table's
+ * default position. Returns an exit code. */
 static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
                                struct bake *b,
                                const struct glint_prescription *lens)

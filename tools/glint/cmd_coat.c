@@ -77,7 +77,7 @@ static double get_table_wavelength_nm(int k)
     return band_nm[0] + (band_nm[1] - band_nm[0]) * k / STEPS;
 }
 
-/* ------------------------------------------------------------------- words */
+/* ----------------------------------------------------------- text and JSON */
 
 static void print_reflectance_text(const struct coat *c)
 {
@@ -122,7 +122,9 @@ static void print_reflectance_json(const struct coat *c)
 /* A curve of a plot: reflectance in percent over wavelength or angle. */
 struct curve {
     const struct coat *c;
-    double fixed; /* the constant: angle, degrees (KIND 0), or wavelength, nm */
+    /* quantity that is constant along the curve: angle, degrees (KIND 0), or
+     * wavelength, nm (KIND 1, 2) */
+    double fixed;
     /* 0: mean polarisation over wavelength; 1: s, 2: p over angle */
     int kind;
     double lo, hi;
@@ -300,8 +302,7 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         c->coating = s->coating;
         snprintf(c->name, sizeof c->name, "%.60s, surface %d", lens->name,
                  c->surface);
-        /* If surface K has air behind it, the coated glass is the one in front
-         * of it. */
+        /* If air is behind the surface, the coated glass is in front of it. */
         if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)

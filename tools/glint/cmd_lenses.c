@@ -173,7 +173,7 @@ static void print_entry_text(struct lenses *l, const char *name,
                *e->table.character ? "\n    " : "", e->table.character);
 }
 
-/* ------------------------------------------------------------------ a page */
+/* --------------------------------------------------------------- HTML page */
 
 /* Sets SETTINGS for thumbnails of E: three wavelengths and coarse grids, which
  * suffice for their size. */
@@ -267,7 +267,7 @@ static int save_model_to_folder(const struct tool *tool, const char *path,
 }
 
 /* Writes the model of E to the folder, from the cache or by a bake. Does
- * nothing if the folder already contains it. Returns an exit code. */
+ * nothing if the folder already contains the model. Returns an exit code. */
 static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
 {
     const uint64_t key = glint_bake_key(&e->table, &e->options);

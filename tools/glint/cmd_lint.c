@@ -21,8 +21,8 @@ struct mend {
     char from[24], to[24];
     /* focal length and back focal length with the corrected number, mm */
     double focal_mm, back_mm;
-    /* whether the catalogue or another surface of the table has the corrected
-     * glass */
+    /* true: the corrected glass is in the catalogue or also behind another
+     * surface */
     bool listed;
     /* relative difference of the focal length or back focus from its stated
      * value, the larger of both */
@@ -57,8 +57,8 @@ static bool is_plastic(double nd, double vd)
            vd <= fmax(least + 6.5, 35);
 }
 
-/* Returns whether a glass with ND and VD can exist, according to ENDS. If
- * MOULDED, plastics count, too. */
+/* Returns whether a glass with ND and VD can exist, according to the table
+ * ENDS. If MOULDED, plastics also count. */
 static bool is_glass_possible(double nd, double vd, bool moulded)
 {
     int k = 0;
@@ -115,10 +115,10 @@ static bool is_index_precise(double nd)
     return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
 }
 
-/* Returns the first surface of LENS whose nd or Vd is suspect, or -1, and
- * writes the reason to TEXT[BYTES]. They are suspect if no glass has both, or
- * if an earlier surface has the same nd, to four decimals or more, with another
- * Vd. */
+/* Returns the first surface of LENS whose nd or Vd is suspect, and writes the
+ * reason to TEXT[BYTES]. Returns -1 if there is none. A surface is suspect if
+ * no glass has its nd and Vd, or if an earlier surface has the same nd, stated
+ * with four decimals or more, and another Vd. */
 static int find_suspect_glass(const struct glint_prescription *lens, char *text,
                               size_t bytes)
 {
@@ -206,8 +206,8 @@ static void insert_correction(struct search *s, const struct mend *found)
         s->mend[k] = *found;
 }
 
-/* Replaces the current number by NUMBER. Records this correction if the table
- * then has no errors. */
+/* Replaces the current number by NUMBER and records this correction if the
+ * changed table has no errors. */
 static void try_replacement_number(struct search *s, const char *number,
                                    enum slip slip)
 {

@@ -240,8 +240,8 @@ static int check_input_options(const struct tool *tool, int argc, char **argv,
 }
 
 /* Parses the command line and moves the inputs to ARGV[optind] on. OUTPUT
- * replaces the value of -o unless it is NULL. If -o is a folder, stores it in
- * *FOLDER. */
+ * replaces the value of -o unless it is NULL. If -o is a folder, sets *FOLDER
+ * to the folder. */
 static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
                                     struct overlay *o, const char *output,
                                     const char **folder)

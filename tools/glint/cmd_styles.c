@@ -187,7 +187,7 @@ static int draw_style_image(struct tool *tool, struct styles_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
 }
 
-/* Opens the lens of a style without baking it. Returns an exit code. */
+/* Opens the lens of a style without baking a model. Returns an exit code. */
 static int open_style_lens(const struct tool *tool, struct drawing *drawing)
 {
     drawing->line.is_still = true;

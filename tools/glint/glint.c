@@ -62,8 +62,8 @@ static const struct command commands[] = {
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
-/* Runs COMMAND with "glint COMMAND" as ARGV[0], which getopt_long() prints
- * in its error messages. */
+/* Runs COMMAND with "glint COMMAND" as ARGV[0], because getopt_long() prints
+ * ARGV[0] in error messages. */
 static int run_command(const struct command *command, int argc, char **argv)
 {
     char name[32];

@@ -19,10 +19,10 @@
 
 /* clang-format off */
 const struct control_form control_forms[] = {
-    /* Columns: verb; command word; clause, a keyword after the names, or NULL;
-     * number of names, and how many of these follow the clause; min and max
-     * count of numbers; min and max value of a number; whether numbers must be
-     * integers; usage. */
+    /* Columns: verb; command word; clause, a keyword after or between the
+     * names, or NULL; number of names, and how many names follow the clause;
+     * min and max count of numbers; min and max value of a number; whether
+     * numbers must be integers; usage. */
     {CONTROL_ORBIT,    "orbit",       NULL,       0, 0, 2, 2, -360, 360, false,
      "orbit YAW PITCH"},
     {CONTROL_DISTANCE, "distance",    NULL,       0, 0, 1, 1, 1e-6, 1e6, false,
@@ -71,7 +71,6 @@ const struct control_form control_forms[] = {
 /* clang-format on */
 const int control_n_forms = sizeof control_forms / sizeof *control_forms;
 
-/* Returns whether control lines can change OPTION. */
 static bool can_control_change_option(const struct glint_option *option)
 {
     return option->changes == GLINT_OPTION_FRAME &&
@@ -104,7 +103,7 @@ enum glint_status control_set_line_error(struct glint_error *error,
     return glint_error_report(error, GLINT_E_FORMAT, place, "%s", cause);
 }
 
-/* Reads the next word of the line. Returns false at its end. */
+/* Reads the next word of the line. Returns false at the line's end. */
 static bool read_next_word(struct reader *r)
 {
     const char *const from = r->at + strspn(r->at, blanks);
@@ -249,7 +248,6 @@ static enum glint_status read_frame_number(struct reader *r,
     return GLINT_OK;
 }
 
-/* Reads the value of OPTION, whose form is FORM. */
 static enum glint_status read_option_value(struct reader *r,
                                            const struct glint_option *option,
                                            const struct control_form *form,

@@ -34,8 +34,8 @@
 #include "options/timed_text.h"
 
 enum {
-    CONTROL_LINE = 256, /* max bytes of a line with its end */
-    CONTROL_NAME = 32,  /* max bytes of a name with its end */
+    CONTROL_LINE = 256, /* max bytes of a line with its terminator */
+    CONTROL_NAME = 32,  /* max bytes of a name with its terminator */
     CONTROL_VALUES = 3,
     CONTROL_MOST_FRAME = TEXT_MAX_FRAME
 };
@@ -43,12 +43,12 @@ enum {
 enum control_verb {
     CONTROL_NONE, /* empty line, no command */
     /* Camera: */
-    /* orbits the camera about a point in front of it: yaw to the right, pitch
-     * up, degrees */
+    /* orbits the camera about a point ahead of the camera: yaw to the right,
+     * pitch up, degrees */
     CONTROL_ORBIT,
     /* sets the distance from the centre of the orbit, scene units */
     CONTROL_DISTANCE,
-    /* moves the camera to sensor K of the recorded motion, from 1 */
+    /* moves the camera to sensor K of the recorded motion; K counts from 1 */
     CONTROL_SENSOR,
     CONTROL_SCENE, /* returns the camera to its pose in the scene file */
     CONTROL_WALK,  /* moves the camera right, up and ahead, scene units */
@@ -93,9 +93,9 @@ enum control_verb {
 struct control_form {
     enum control_verb verb;
     const char *word; /* first word of the line */
-    /* keyword that follows the names or stands between them, or NULL */
+    /* keyword after or between the names; NULL: none */
     const char *clause;
-    /* number of names, 0 .. 2; all forms of a word have the same */
+    /* number of names, 0 .. 2; equal in all forms with the same WORD */
     int names;
     int behind;      /* number of names after the clause */
     int least, most; /* min and max count of numbers */
@@ -113,7 +113,7 @@ struct control_line {
     int frame;  /* frame number; -1: not given */
     enum control_verb verb;
     /* true for a key: angles (degrees) are added to the present value, and
-     * other numbers multiply it */
+     * other numbers multiply the present value */
     bool is_change;
     char name[2][CONTROL_NAME];
     /* columns, in bytes from 1, of the names and of the first number */
@@ -145,7 +145,7 @@ struct controls {
     bool is_open, is_keys, has_ahead;
     /* lines of the pipe or file; closed once a file was read */
     struct text_lines lines;
-    struct control_line *row; /* parsed lines of a file */
+    struct control_line *row;
     int n, next;
     int read_at; /* number of the picture at which the pipe was read last */
     struct control_line ahead;

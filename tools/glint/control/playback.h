@@ -19,7 +19,7 @@ struct playback {
     bool is_paused;
     double fps; /* playback rate, frames per second; below 0: one frame per
                    picture */
-    int last;   /* number of the last frame */
+    int last;
 
     /* Private. */
     double at;      /* playback position, fractional frame number */

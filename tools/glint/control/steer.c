@@ -11,7 +11,7 @@
 #define RADIAN 0.017453292519943295
 
 /* Min and max factor on the light of an environment. Scene texts have the same
- * limits; keys could exceed them. */
+ * limits; without them keys could exceed the range. */
 #define LEAST_SCALE 1e-6
 #define MOST_SCALE  1e6
 
@@ -33,7 +33,7 @@ static void open_environments(struct steer *steer)
 }
 
 /* Checks LINE, a command about environments: the scene must have an
- * environment, and one with the name in LINE, if any. */
+ * environment, and if LINE names one, that environment. */
 static enum glint_status
 check_environment_command(const struct steer *steer,
                           const struct control_line *line, const char *where,
@@ -95,8 +95,9 @@ static enum glint_status change_environment(struct steer *steer,
     return show_environment(steer, scene);
 }
 
-/* Sets KIND to the type NAME of a recorded motion's objects, such as "shells".
- * Returns false if NAME is not a type or is the name of an object. */
+/* Sets KIND to the type that NAME denotes, such as "shells", of a recorded
+ * motion's objects. Returns false if NAME is not a type or is the name of an
+ * object. */
 static bool find_object_type(const struct steer *steer, const char *name,
                              enum glint_scene_kind *kind)
 {
@@ -269,8 +270,7 @@ static enum glint_status move_camera_to_sensor(struct steer *s,
     return set_scene_camera(s, scene);
 }
 
-/* --------------------------------------------------------------------- kinds
- */
+/* ------------------------------------------------------------ object types */
 
 static enum glint_status change_objects_of_type(struct steer *s,
                                                 struct glint_scene *scene,
@@ -313,7 +313,8 @@ static void apply_object_type_changes(const struct steer *steer,
  * down, and its right axis would be undefined. */
 #define MOST_PITCH 89.0
 
-/* Min and max alpha (roughness) of brushed metal. Keys could exceed them. */
+/* Min and max alpha (roughness) of brushed metal; without them keys could
+ * exceed the range. */
 #define LEAST_ALPHA 0.001
 #define MOST_ALPHA  1.0
 
@@ -380,10 +381,8 @@ void steer_close(struct steer *steer)
     steer->look = NULL;
 }
 
-/* --------------------------------------------------------------------- names
- */
+/* ----------------------------------------------- object and material names */
 
-/* Returns the name of material I if IS_MATERIAL, else of object I. */
 static const char *find_object_or_material_name(const struct steer *s,
                                                 bool is_material, int i)
 {
@@ -441,7 +440,6 @@ find_name_indices(const struct steer *s, const struct control_line *line,
     return status;
 }
 
-/* Returns whether material I is brushed metal. */
 static bool is_brushed_metal(const struct steer *s, int i)
 {
     return s->model.material[i].ward != GLINT_SCENE_NONE;
@@ -576,8 +574,7 @@ static enum glint_status execute_camera_command(struct steer *s,
     return status;
 }
 
-/* --------------------------------------------------------------------- looks
- */
+/* ----------------------------------------------------- material appearance */
 
 /* Applies LINE to LOOK, the present appearance of material I. */
 static void change_material_appearance(const struct steer *s,
@@ -616,8 +613,8 @@ static bool conserves_energy(const struct steer *s, int i,
 }
 
 /* Changes the appearance of material INDEX, or of all brushed metals if LINE
- * names no material. Changes none if the result would be invalid for one of
- * them. */
+ * names no material. Changes no material if the result would be invalid for
+ * any. */
 static enum glint_status
 change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
                                const struct control_line *line, int index)
@@ -651,7 +648,8 @@ change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
 /* -------------------------------------------------------------------- objects
  */
 
-/* Returns the first visible object that is not a shadow catcher, or -1. */
+/* Returns the index of the first visible object that is not a shadow catcher,
+ * or -1 if there is none. */
 static int find_first_object(const struct steer *s)
 {
     for (int i = 0; i < count_objects(s); i++)
@@ -695,8 +693,7 @@ static enum glint_status change_object_size(struct steer *s,
     return status;
 }
 
-/* ---------------------------------------------------------------------- line
- */
+/* ------------------------------------------------------------ control line */
 
 static enum glint_status execute_control_line(struct steer *s,
                                               struct glint_scene *scene,

@@ -55,7 +55,8 @@ struct steer {
     struct steer_map environment[GLINT_SCENE_MAX_ENVIRONMENTS];
     int shown; /* index of the visible environment */
     struct steer_kind kind[GLINT_KINDS];
-    int sensor; /* index of the motion's sensor at which the camera is, or -1 */
+    /* index of the motion's sensor at which the camera is; -1: at none */
+    int sensor;
 };
 
 /* Initialises STEER with a copy of MODEL; the data that MODEL points to must

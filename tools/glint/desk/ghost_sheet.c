@@ -102,8 +102,9 @@ static int compare_floats(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Returns the factor on LIGHT[N] by which its 99th percentile becomes SHOWN.
- * ROOM is scratch memory of N floats. */
+/* Returns the factor by which the 99th percentile of the samples above 0 in
+ * LIGHT[N] becomes SHOWN, or 0 if there are none. ROOM is scratch memory of N
+ * floats. */
 static double find_display_exposure(const float *light, size_t n, float *room)
 {
     size_t lit = 0;

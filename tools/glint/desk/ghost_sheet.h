@@ -8,8 +8,8 @@
 
 #include "glint/explain.h"
 
-/* The ghosts of a frame in the order of the list, and the image that they
- * are drawn over. */
+/* The ghosts of a frame in the order of the list, and the image over which the
+ * ghosts are drawn. */
 struct ghost_list {
     struct glint_explain *explain;
     const char *lens;

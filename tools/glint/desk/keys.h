@@ -61,10 +61,9 @@ enum glint_status key_frames_parse_text(struct keys *keys, const char *name,
                                         const char *text, size_t bytes,
                                         struct glint_error *error);
 
-/* Returns the index of the column NAME, or -1. */
+/* Returns the index of the column NAME, or -1 if there is none. */
 int key_frames_find_column(const char *name);
 
-/* Returns whether COLUMN has keys. */
 bool key_frames_have_column(const struct keys *keys, enum key_column column);
 
 /* Returns the value of COLUMN at FRAME, or OTHER if COLUMN has no keys. */

@@ -51,7 +51,6 @@ static enum glint_status load_numbered_mask(struct occlusion *o, int frame,
     return GLINT_OK;
 }
 
-/* Reads frames of the mask video up to FRAME. */
 static enum glint_status read_mask_video_up_to_frame(struct occlusion *o,
                                                      long frame,
                                                      struct glint_error *error)
@@ -131,10 +130,10 @@ static void load_frame_mask(struct occlusion *o, int frame)
     o->is_over = true;
 }
 
-/* -------------------------------------------------------------------- shares
- */
+/* ------------------------------------------------------- visible fractions */
 
-/* Returns the mask, 0 .. 1, at its pixel (X, Y), clamped to its borders. */
+/* Returns the mask's value, 0 .. 1, at pixel (X, Y), clamped to the mask's
+ * borders. */
 static double read_mask_pixel(const struct occlusion *o, int x, int y)
 {
     const struct glint_image *m = &o->image;
@@ -170,7 +169,6 @@ static double interpolate_mask(const struct occlusion *o,
     return above * (j + 1 - v) + below * (v - j);
 }
 
-/* Returns the mean of the mask over the disc of LAMP. */
 static double compute_mean_mask_over_lamp(const struct occlusion *o,
                                           const struct glint_view *view,
                                           double focal_mm,
@@ -200,8 +198,8 @@ static double compute_mean_mask_over_lamp(const struct occlusion *o,
 }
 
 /* Returns the factor on the light of a lamp at (X, Y), pixels, in an image of
- * WIDTH x HEIGHT. It falls from 1 at the border to 0 at a distance of
- * FADE_PX. */
+ * WIDTH x HEIGHT. The factor falls from 1 at the image border to 0 at a
+ * distance of FADE_PX. */
 static double compute_off_screen_fade(double x, double y, int width, int height,
                                       double fade_px)
 {

@@ -32,7 +32,7 @@ struct occlusion {
     double black, white; /* mask codes at which no light and all light passes */
     bool is_video, is_numbered, is_over;
     struct glint_y4m_reader video;
-    long frame; /* frame number of IMAGE, or -1 */
+    long frame; /* frame number of IMAGE; -1: none loaded yet */
 };
 
 /* Opens the mask of O, whose file and fade_px must be set. Errors are as of
@@ -40,9 +40,9 @@ struct occlusion {
 enum glint_status occlusion_open(struct occlusion *o,
                                  struct glint_error *error);
 
-/* Scales power and level of each of N LAMPS by its visible fraction in
- * FRAME. FRAME must increase from call to call. After the end of the mask
- * its last frame is used. A read error is reported once. */
+/* Scales power and level of each of N LAMPS by the lamp's visible fraction in
+ * FRAME. FRAME must increase from call to call. After the end of the mask its
+ * last frame is used. A read error is reported once. */
 void occlusion_dim_lamps(struct occlusion *o, int frame,
                          const struct glint_view *view, double focal_mm,
                          struct glint_engine_lamp *lamps, int n);

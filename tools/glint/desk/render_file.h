@@ -10,13 +10,13 @@
 #include "options/tool.h"
 
 /* Checks before rendering whether PATH can be written. Sets *IS_LINEAR to
- * whether its format stores floats. Returns EXIT_OK, or EXIT_OUTPUT after
- * printing the reason. */
+ * whether PATH's file format stores floats. Returns EXIT_OK, or EXIT_OUTPUT
+ * after printing the reason. */
 int render_file_check_path(const struct tool *tool, const char *path,
                            bool *is_linear);
 
 /* Writes IMAGE to PATH, after render_file_check_path(): unchanged if IS_LINEAR,
- * else as sRGB codes of its light times EXPOSURE (0: an exposure that makes the
+ * else as sRGB codes of the light times EXPOSURE (0: an exposure that makes the
  * 99.9th percentile white). Returns EXIT_OK or the code of tool_fail(). */
 int render_file_save(const struct tool *tool, const char *path, bool is_linear,
                      const struct glint_float_image *image, double exposure);

@@ -20,7 +20,7 @@ struct style {
 
 extern const struct style styles[];
 
-/* Returns the style NAME, or NULL. */
+/* Returns the style NAME, or NULL if there is none. */
 const struct style *find_style_by_name(const char *name);
 
 #endif

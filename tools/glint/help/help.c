@@ -31,7 +31,7 @@ void help_print_complete(const struct help *help)
             fputs(help->part[i], stdout);
 }
 
-static size_t help_line_length(const char *line)
+static size_t get_help_line_length(const char *line)
 {
     const size_t n = strcspn(line, "\n");
 
@@ -68,7 +68,7 @@ static int count_help_lines(const char *text)
 {
     int n = 0;
 
-    for (; *text; text += help_line_length(text))
+    for (; *text; text += get_help_line_length(text))
         n++;
     return n;
 }
@@ -89,7 +89,7 @@ static void print_common_options(const char *text, const char *options,
     char name[NAME_CHARS];
     bool shown = intro;
 
-    for (; *text; text += help_line_length(text)) {
+    for (; *text; text += get_help_line_length(text)) {
         if (parse_option_name(text, name))
             shown = contains_option_name(options, name);
         else if (!intro && !is_continuation_line(text))
@@ -97,7 +97,7 @@ static void print_common_options(const char *text, const char *options,
         if (parse_option_name(text, name))
             intro = false;
         if (shown)
-            fwrite(text, 1, help_line_length(text), stdout);
+            fwrite(text, 1, get_help_line_length(text), stdout);
     }
 }
 
@@ -128,7 +128,7 @@ static bool print_option_summary(const char *text, const char *name)
 {
     char at[NAME_CHARS];
 
-    for (; *text; text += help_line_length(text)) {
+    for (; *text; text += get_help_line_length(text)) {
         size_t n = strcspn(text, "\n"), from = ABOUT;
 
         if (!parse_option_name(text, at) || strcmp(at, name) != 0)

@@ -20,14 +20,14 @@ struct help {
     const char *part[HELP_PARTS];
 };
 
-/* Print HELP. help_print_complete() prints all of it. If that has more than
- * HELP_SCREEN lines, help_print_screen() prints only the synopsis and the most
- * common options. */
+/* Print HELP. help_print_complete() prints the whole text. help_print_screen()
+ * prints only the synopsis and the most common options if the whole text has
+ * more than HELP_SCREEN lines. */
 void help_print_complete(const struct help *help);
 void help_print_screen(const struct help *help);
 
-/* Prints a line for each of OPTIONS, an array for getopt_long(): the name,
- * "=" if the option has a value, a tab, and the first line of its
+/* Prints a line for each of OPTIONS, an array for getopt_long(): the name, "="
+ * if the option has a value, a tab, and the first line of the option's
  * description in HELP. */
 void help_print_options(const struct help *help, const struct option *options);
 

@@ -10,8 +10,8 @@
 #define GLINT_TOOLS_HELP_VALUES_H
 
 /* Returns a description of the values that OPTION (without dashes) of COMMAND
- * accepts, or NULL. It is valid until the next call. Engine options are
- * described by glint/options.h. */
+ * accepts, or NULL if the table lacks OPTION. The text is valid until the next
+ * call. Engine options are described by glint/options.h. */
 const char *values_describe(const char *command, const char *option);
 
 /* Prints the fixed words among the values of OPTION, one per line; nothing if

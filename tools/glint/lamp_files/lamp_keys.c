@@ -19,12 +19,12 @@ uint32_t lamp_hash_id(const char *text)
     return id | LAMP_ID_TEXT;
 }
 
-/* -------------------------------------------------------------------- links */
+/* ---------------------------------------------------- key frames of a lamp */
 
 struct key {
     int row, frame;
-    /* identity of the lamp: 2^32 + its id, or, without an id, its index among
-     * such lamps of the frame */
+    /* identity of the lamp: 2^32 + id; for a lamp without an id, its index
+     * among the frame's lamps without ids */
     uint64_t lamp;
 };
 

@@ -141,7 +141,7 @@ static const char *parse_lamp_object(struct text_lines *lines, char *line,
     return parse_row_fields(field, true, "a value is not a number", v);
 }
 
-/* Sets the columns from LINE, a heading, if one of its names is "id". Returns
+/* Sets the columns from LINE, a heading, if the heading contains "id". Returns
  * NULL or an error message. */
 static const char *parse_column_heading(struct reading *r, char *line)
 {
@@ -226,7 +226,7 @@ void lamp_list_free(struct lamp_list *list)
     *list = (struct lamp_list){NULL, 0};
 }
 
-/* Sets the extent of LAMP from R: a disc if its shape is 1, else an ellipse.
+/* Sets the extent of LAMP from R: a disc if R's shape is 1, else an ellipse.
  * TANGENT is the tangent of a pixel's angle. */
 static void set_lamp_shape(struct glint_lamp *lamp, const struct lamp_row *r,
                            double tangent)

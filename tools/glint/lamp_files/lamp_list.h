@@ -16,7 +16,7 @@ struct lamp_row {
     int frame; /* frame number; -1: every frame */
     double x, y, power, rgb[3];
     double size;  /* RMS radius, pixels; 0: a point */
-    double shape; /* minor axis / major axis, 0 .. 1 */
+    double shape; /* (minor axis) / (major axis), 0 .. 1 */
     double turn;  /* direction of the major axis, degrees from +x; 90 is up */
     /* fraction of the power that a lamp has while it fades in or out, else 1 */
     double level;
@@ -24,8 +24,8 @@ struct lamp_row {
      * lamp is clipped; 0: not clipped */
     double seen;
     uint32_t id; /* id of the lamp; 0: none */
-    int next; /* index of the lamp's next row, set by lamp_keys_link_rows(), or
-                 -1 */
+    /* index of the lamp's next row, set by lamp_keys_link_rows(); -1: none */
+    int next;
 };
 
 struct lamp_list {
@@ -52,8 +52,8 @@ enum glint_status lamp_list_add(struct lamp_list *list,
 
 /* Sets LAMPS to the lamps of FRAME, at most MAX. In a list with linked rows,
  * lamps between two rows are interpolated. Returns the number of lamps. A lamp
- * without an id gets one from its index in LAMPS, above all ids of the list
- * below LAMP_ID_TEXT. */
+ * without an id gets an id from its index in LAMPS. This id exceeds all ids
+ * below LAMP_ID_TEXT in the list. */
 int lamp_list_get_frame(const struct lamp_list *list, int frame,
                         const struct glint_view *view, double focal_mm,
                         struct glint_engine_lamp *lamps, int max);

@@ -9,8 +9,8 @@
 
 #include "glint/glint.h"
 
-/* Parallel rays at one angle through the lens, or along a ghost, and the pupil
- * through which they pass */
+/* Parallel rays through the lens or along a ghost's path, and their pupil, the
+ * area of the front vertex plane where the rays start */
 struct fan {
     struct glint_path path;
     struct glint_pupil pupil;
@@ -48,7 +48,7 @@ struct figure {
     double z0, z1, x1;   /* extent of the section: z0 .. z1, -x1 .. x1, mm */
     double scale;        /* pixels per millimetre */
     double left, middle; /* position of z = 0 and of x = 0, pixels */
-    double height_px;    /* height of the section, pixels */
+    double height_px;
     double vertex[GLINT_MAX_SURFACES], stop_z, sensor_z;
     /* half the image size in the section's plane, as displayed, mm */
     double film_mm;
@@ -57,8 +57,8 @@ struct figure {
 };
 
 /* Initialises FAN for light at THETA_DEG in the plane at azimuth PHI_DEG about
- * the axis. This plane becomes the x-z plane of the rays. GHOST is NULL for the
- * direct path. Returns false if no light passes. */
+ * the axis. The azimuth plane becomes the x-z plane of the rays. GHOST is NULL
+ * for the direct path. Returns false if no light passes. */
 static bool init_ray_fan(struct fan *fan, const struct glint_prescription *lens,
                          const struct glint_ghost *ghost, double nm,
                          double phi_deg, double theta_deg)
@@ -132,9 +132,9 @@ static bool find_fan_edges(const struct fan *fan, double u[2])
 
 static const double spot_nm[SPOT_COLOURS] = {450, 546, 650};
 
-/* Traces the rays of one ring and adds those that pass to S. In U and V the
- * bounding box of the pupil is the square -1 .. 1; the outermost ring passes
- * through its corners. */
+/* Traces the rays of one ring and adds to S the rays that reach the sensor. The
+ * pupil's bounding box is the square -1 .. 1 in U and V; the outermost ring
+ * passes through the corners of this square. */
 static void gather_ring_rays(struct spots *s, const struct fan *fan, int colour,
                              int ring)
 {
@@ -191,8 +191,8 @@ static void gather_field_spots(struct spots *s,
     measure_spot_extent(s);
 }
 
-/* image height of the outermost field, as a fraction of half the film; below 1,
- * so that all rays stay inside the film */
+/* image height of the outermost field point, as a fraction of half the film;
+ * below 1, so that all rays stay inside the film */
 #define FIELD_ENDS 0.995
 
 static const char *const field_colour[DRAWING_FIELDS] = {"#1f5fa8", "#2f8a3c",
@@ -266,7 +266,7 @@ enum { PROFILE = 24 };
 #define TITLE_PX  52.0
 #define HEIGHT_PX 400.0 /* max height of the section */
 
-/* ------------------------------------------------------------------ places */
+/* --------------------------------------------------------------- positions */
 
 /* Sets AT to the x, y and z of surface K at height X in the plane of the
  * section. */
@@ -285,7 +285,7 @@ static void find_section_point(const struct figure *f, int k, double x,
 }
 
 /* Sets AT to the z and x of HIT, the point where a ray meets EVENT, a surface
- * or the stop. HIT is as glint_trace() stores it. */
+ * or the stop. HIT has the format of glint_trace(). */
 static void find_surface_hit(const struct figure *f,
                              const struct glint_event *event,
                              const double hit[2], double at[2])
@@ -649,7 +649,7 @@ static void draw_ray_path(struct figure *f, const struct fan *fan, double x,
         double at[2];
 
         /* The stop lies behind the front vertex but in front of the rim of the
-         * glass. The ray crosses it only if it is extended, so no point is
+         * glass. Only the extended ray crosses the stop, so no point is
          * drawn. */
         if (stop && f->drawing->lens->stop_after == 0 &&
             f->drawing->lens->stop_thickness_mm < 0)
@@ -710,7 +710,7 @@ static void draw_ghost_path(struct figure *f, const struct glint_ghost *ghost,
     }
 }
 
-/* ------------------------------------------------------------------- words */
+/* -------------------------------------------------------------------- text */
 
 static void write_svg_text(FILE *file, const char *text)
 {
@@ -762,7 +762,7 @@ static void draw_scale_bar(const struct figure *f)
             FIGURE_MARGIN_PX + mm * f->scale + 6, y + 4, mm);
 }
 
-/* --------------------------------------------------------------------- all */
+/* ------------------------------------------------------------------ figure */
 
 static void open_svg_file(const struct figure *f)
 {

@@ -22,9 +22,9 @@ struct lens_drawing {
                          0 or 90 */
     int rays;         /* rays per fan, 1 .. DRAWING_MAX_RAYS */
     bool spots;       /* spot diagrams below the section */
-    bool title;       /* title above the section */
-    double focus_m;   /* focus distance, printed in the title; 0: infinity. Rays
-                         are always from infinity. */
+    bool title;
+    double focus_m; /* focus distance, printed in the title; 0: infinity. Rays
+                       are always from infinity. */
     double width_px;
 };
 

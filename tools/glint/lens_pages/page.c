@@ -82,14 +82,14 @@ enum { ANGLES = 3, WIDE = 168, MOST_HIGH = 168 };
 
 static const double share[ANGLES] = {0.25, 0.5, 0.8};
 
-/* Max ratio of a thumbnail's exposure to the automatic exposure of ghosts and
- * starburst. Thumbnails have the exposure of the ghosts alone, by which the
- * starburst of a lens with faint ghosts would fill the image. */
+/* Max ratio of a thumbnail's exposure, that of the ghosts alone, to the
+ * automatic exposure of ghosts and starburst. Without this limit the starburst
+ * of a lens with faint ghosts would fill the image. */
 #define BRIGHTER 40.0
 
 /* Returns the angle, degrees, of a light at the fraction AT of the half
- * diagonal. Images place lamps by the pinhole projection (f tan), so this does,
- * too. */
+ * diagonal. The projection is that of a pinhole camera (f tan), as in all
+ * images. */
 static double compute_field_angle_deg(const struct opened_lens *lens, double at)
 {
     const double half =

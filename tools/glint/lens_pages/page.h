@@ -28,7 +28,7 @@ struct page_card {
 };
 
 /* Reads the row of lens NAME; without one, f_number is "". Returns
- * GLINT_E_MEMORY if there is no memory to read it. */
+ * GLINT_E_MEMORY if there is no memory to read the file. */
 enum glint_status page_read_measured_times(const char *name,
                                            struct measured *measured);
 

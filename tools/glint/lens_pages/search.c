@@ -87,7 +87,7 @@ static bool search_words_in_lens(void *ctx, const char *name)
     return !s->found;
 }
 
-/* Returns the most similar known word, or NULL. */
+/* Returns the most similar known word, or NULL if none is similar enough. */
 static const char *find_similar_word(const struct search *s)
 {
     const struct suggest *best = &s->near[0];

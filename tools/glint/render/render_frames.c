@@ -61,8 +61,8 @@ static int check_output_name(const struct tool *tool, struct frames *f)
     return EXIT_OK;
 }
 
-/* Opens the output video and initialises the conversion of linear light to its
- * codes. */
+/* Opens the output video and initialises the conversion of linear light to the
+ * video's codes. */
 static enum glint_status open_output_video(struct frames *f,
                                            struct glint_error *error)
 {
@@ -226,7 +226,7 @@ static int finish_output_video(struct frames *f)
                : tool_fail(f->tool, status, error.text);
 }
 
-/* ------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------- all frames */
 
 static void print_run_summary(const struct frames *f, double ms)
 {

@@ -238,8 +238,8 @@ static void print_frame_json(const struct tool *tool,
                count_hidden_lights(frame), ms);
 }
 
-/* Prints a note if the scene has a shadow catcher. Its shadows are invisible
- * here, because the scene is drawn over black. */
+/* Prints a note if the scene has a shadow catcher, because its shadows are
+ * invisible over black. */
 static void print_catcher_note(const struct tool *tool,
                                const struct glint_scene_model *model)
 {

@@ -18,9 +18,9 @@ struct render_scene {
     /* whether --pose, --frame, --frames or --lens was given, so that
      * render_frames() draws */
     bool is_frames;
-    bool is_lit;     /* whether an option of the flare was given */
-    bool is_video;   /* --frames FIRST-LAST */
-    int first, last; /* first and last frame number */
+    bool is_lit;   /* whether an option of the flare was given */
+    bool is_video; /* --frames FIRST-LAST */
+    int first, last;
     double fps;
     struct drawing drawing;
     struct glint_float_image image;
