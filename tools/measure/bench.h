@@ -110,7 +110,6 @@ extern const char *const bench_format[]; /* option values of the pixel formats,
  * exit code. */
 int bench_run_all(struct bench *bench, int n, const char *const *name);
 
-/* Frees BENCH and closes all lenses and scenes. */
 void bench_close(struct bench *bench);
 
 /* Adds a case of variation V, with its canvas, threads and kernels. Returns

@@ -57,7 +57,8 @@ struct block {
 static struct {
     const char *function, *name;
 } mark[MAX_MARKS];
-static int n_marks = 1; /* mark[0] is the frame function */
+/* number of stage functions; mark[0] is the frame function */
+static int n_marks = 1;
 static const char *idle = "";
 static int stage = ASLEEP, n_frames, n_skipped;
 static uint64_t spent[MAX_MARKS];

@@ -119,7 +119,6 @@ int sweep_measure_case(struct sweep *s, int c, struct tool_progress *progress);
 
 /* ------------------------------------------------------------------- fronts */
 
-/* Marks the points on the Pareto front of each case. */
 void sweep_mark_fronts(struct sweep *s);
 
 /* Sets FRONT[N] to the indices of the points on the Pareto front, by rising

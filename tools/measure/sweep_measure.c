@@ -66,7 +66,10 @@ find_lens(struct bay *b, const struct sweep_setting *set, int *code)
         if (has_same_exact_image(&b->open[i].settings, &asked))
             return &b->open[i];
     if (b->n_open == MAX_OPEN) {
-        *code = tool_usage(b->s->tool, "more than %d scenes", MAX_OPEN);
+        *code = tool_usage(
+            b->s->tool,
+            "a case opens the lens with more than %d different settings",
+            MAX_OPEN);
         return NULL;
     }
     open = &b->open[b->n_open++];

@@ -23,8 +23,8 @@ struct places {
     double field_mm;
 };
 
-/* x_mm: mean position of a ghost's rays on the sensor, mm; light: their
- * energy */
+/* x_mm: mean position of a ghost's rays on the sensor, mm; light: energy of the
+ * rays */
 struct ghost {
     double x_mm, light;
 };
@@ -67,7 +67,7 @@ static struct ghost find_ghost_position(const struct figure_row *row,
 }
 
 /* Writes the metrics for a light whose image is MM millimetres from the axis.
- * WHERE: prefix of their names. */
+ * WHERE: prefix of the metrics' names. */
 static void write_ghost_position(struct figure_row *row, const struct places *r,
                                  const char *where, double mm)
 {
