@@ -226,7 +226,8 @@ static void print_measured_times(struct lenses *l, const char *name)
     if (page_read_measured_times(name, &m) != GLINT_OK)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
     else if (!*m.f_number)
-        fputs("<p class=\"less\">bake and frame not measured yet</p>", page);
+        fputs("<p class=\"less\">bake and frame times not measured yet</p>",
+              page);
     else if (!*m.kb)
         fprintf(page, "<p class=\"less\">measured for f/%s: bake %s s</p>",
                 m.f_number, m.seconds);

@@ -115,10 +115,10 @@ static bool is_index_precise(double nd)
     return fabs(1e3 * nd - nearbyint(1e3 * nd)) > 1e-6;
 }
 
-/* Returns the first surface of LENS whose nd or Vd is suspect, and writes the
- * reason to TEXT[BYTES]. Returns -1 if there is none. A surface is suspect if
- * no glass has its nd and Vd, or if an earlier surface has the same nd, stated
- * with four decimals or more, and another Vd. */
+/* Returns the index of the first surface of LENS whose nd or Vd is suspect, and
+ * writes the reason to TEXT[BYTES]. Returns -1 if there is none. A surface is
+ * suspect if no glass has its nd and Vd, or if an earlier surface has the same
+ * nd, stated with four decimals or more, and another Vd. */
 static int find_suspect_glass(const struct glint_prescription *lens, char *text,
                               size_t bytes)
 {

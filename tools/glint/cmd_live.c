@@ -114,7 +114,7 @@ struct line {
     struct tool *tool;
     int argc;
     char **argv;
-    /* configuration files read at the start, and by the last reload */
+    /* files read at the start (CONFIG) and by the last reload (AGAIN) */
     struct config config, again;
     struct live_options *into;
 };

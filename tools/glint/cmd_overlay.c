@@ -389,8 +389,8 @@ static int check_output_file(struct tool *tool, struct overlay *o)
     if (!frames && !o->lists_shots &&
         o->is_video != overlay_is_video(o->output))
         return tool_usage(tool, "the output of a video must be a video (.y4m, "
-                                "- or a type of ffmpeg), that of a picture a "
-                                "picture");
+                                "- or a type of ffmpeg), and that of a "
+                                "picture must be a picture");
     if (!o->is_video && (o->last < INT_MAX || o->lists_shots))
         return tool_usage(tool,
                           "--%s applies to videos only; %s is not a video",

@@ -76,7 +76,7 @@ struct imported {
     /* key of the lens that the user selects in a file of many lenses; NULL:
      * none */
     const char *key;
-    bool keyed; /* whether the file has keys */
+    bool keyed; /* whether the file has several lenses, named by keys */
     int n;
     struct imported_surface surface[IMPORT_SURFACES];
     char error[IMPORT_TEXT + 64]; /* "FILE:LINE: cause" */

@@ -61,7 +61,8 @@ static bool copy_line_without_comment(struct lines *l, char comment)
     return fits;
 }
 
-/* Splits the line at each tab. Words may be empty, unless the line is. */
+/* Splits the line at each tab. Words may be empty; an empty line has no
+ * words. */
 static void split_at_tabs(struct lines *l)
 {
     const bool said = *l->text != '\0';

@@ -160,7 +160,6 @@ static const struct control_form *find_command_form(const char *word, int i)
     return NULL;
 }
 
-/* Reads the N names of FORM. */
 static enum glint_status read_command_names(struct reader *r,
                                             const struct control_form *form,
                                             int n, struct control_line *line)

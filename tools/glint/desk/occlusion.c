@@ -36,7 +36,7 @@ static enum glint_status load_numbered_mask(struct occlusion *o, int frame,
 
     if (!numbered_make_name(name, o->file, 0))
         return glint_error_report(error, GLINT_E_FORMAT, o->file,
-                                  "is too long a name");
+                                  "the file name is too long");
     numbered_make_name(name, o->file, frame + !does_file_exist(name));
     if (o->frame >= 0 && !does_file_exist(name)) {
         o->is_over = true;

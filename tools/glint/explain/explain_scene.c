@@ -124,7 +124,7 @@ static struct light find_light_outcome(const struct explained_scene *s, int i,
     const struct glint_engine_lamp *lamp = c->run.lamp + c->run.n_own;
 
     if (!get_model(s)->header->flare) {
-        light.word = "lights objects only (add 'flare lights' for its flare)";
+        light.word = "lights objects only (add 'flare lights' to the scene)";
         return light;
     }
     for (int k = 0; k < n; k++) {
@@ -176,7 +176,6 @@ static int list_scene_lights(const struct explained_scene *s,
     return all;
 }
 
-/* Writes the name of light I, or its number. */
 static const char *write_light_name(const struct explained_scene *s, int i,
                                     char text[40])
 {

@@ -6,7 +6,8 @@
 
 #include "options/tool.h"
 
-/* Returns whether the lens NAME has all N WORDS, ignoring case. */
+/* Returns whether name, source and character of the lens NAME contain all N
+ * WORDS, ignoring case. */
 bool lens_has_words(const char *name, const struct glint_prescription *lens,
                     char **words, int n);
 

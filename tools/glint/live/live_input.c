@@ -322,8 +322,8 @@ static enum glint_status open_test_image(struct live_timed *test,
     return GLINT_OK;
 }
 
-/* Reads the last frame that is due, or the last frame of the video if there are
- * fewer. Skipped frames are counted as late. */
+/* Reads the last frame that is due, or the last frame of the video if it ends
+ * before. Skipped frames are counted as late. */
 static enum glint_status read_next_video_frame(struct glint_source *source,
                                                struct glint_source_frame *frame,
                                                struct glint_error *error)

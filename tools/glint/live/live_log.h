@@ -40,7 +40,8 @@ enum {
     LIVE_STATS_TEXT = 672
 };
 
-/* Times of a frame that was shown, or only numbers of lost frames */
+/* Times of a shown frame and number of frames lost before it; if no frame was
+ * shown, only these numbers */
 struct live_frame_times {
     bool shown; /* false: only the three counts below are set */
     int n_dropped, n_late, n_corrupt; /* see struct glint_source_frame */

@@ -88,7 +88,6 @@ bool settings_set_text(struct settings *settings, const char *name,
 bool settings_set_number(struct settings *settings, const char *name,
                          double value);
 
-/* Sets --quality, 0 .. 1. */
 void settings_set_quality(struct settings *settings, double quality);
 
 /* Returns whether --grid, --quality or --error was given. */

@@ -28,7 +28,8 @@ static void draw_frame_tick(const struct bar *b, uint32_t frame)
 }
 
 /* Marks the frames in which a new landmark ("food") replaces another. */
-static void draw_food_changes(const struct bar *b, struct glint_motion *motion)
+static void draw_landmark_changes(const struct bar *b,
+                                  struct glint_motion *motion)
 {
     const struct glint_motion_header *const h = &motion->header;
     const uint32_t each =
@@ -67,7 +68,7 @@ void draw_time_line(const struct glint_image *image,
     paint_set_colour(&b.paint, 70, 75, 80);
     paint_fill_rectangle(&b.paint, b.x0, b.y0, b.x1, b.y1);
     paint_set_colour(&b.paint, 255, 150, 40);
-    draw_food_changes(&b, motion);
+    draw_landmark_changes(&b, motion);
     paint_set_colour(&b.paint, 240, 240, 240);
     paint_fill_rectangle(&b.paint, b.x0, b.y0,
                          compute_frame_position_px(&b, now), b.y1);

@@ -29,8 +29,8 @@ void suggest_begin(struct suggest *suggest, const char *word);
 void suggest_add_candidate(struct suggest *suggest, const char *candidate,
                            size_t n);
 
-/* Returns the candidate with the smallest distance. Returns NULL if that
- * distance exceeds 1 and a third of the candidate's letters. */
+/* Returns the candidate with the smallest distance, or NULL if that distance
+ * exceeds the larger of 1 and a third of the candidate's letters. */
 const char *suggest_find_best(const struct suggest *suggest);
 
 /* Returns "; did you mean 'BEST'?", or "" if no candidate is similar enough. */

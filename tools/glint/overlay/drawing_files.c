@@ -161,8 +161,8 @@ static int reject_zoom_control_lines(const struct tool *tool,
         if (find_key_column(line) == KEYS_ZOOM)
             return report_bad_control_line(
                 tool, scene, i,
-                "control lines can zoom a model of 'glint bake LENS "
-                "--positions N', not a table");
+                "control lines cannot zoom a lens table; use a model of "
+                "'glint bake LENS --positions N'");
     return EXIT_OK;
 }
 

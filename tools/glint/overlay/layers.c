@@ -183,7 +183,7 @@ static enum glint_status save_all_layers(const struct layers *layers,
         status = make_layer_file_name(name, layers->path, first[k].name, frame)
                      ? save_layer_file(name, all, error)
                      : glint_error_report(error, GLINT_E_OUTPUT, layers->path,
-                                          "is too long a name");
+                                          "the file name is too long");
     }
     return status;
 }

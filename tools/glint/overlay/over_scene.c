@@ -110,8 +110,8 @@ static int count_scene_lights(const struct over_scene *over)
     return (int)over->baked.model.header->n_lights;
 }
 
-/* Returns the index in over->poses.moved of THING, the index of an object or
- * light, or POSES_CAMERA. */
+/* Returns the index in over->poses.moved of THING: the index of an object,
+ * n_objects + that of a light, or POSES_CAMERA. */
 static int find_pose_index(const struct over_scene *over, int thing)
 {
     return thing == POSES_CAMERA
