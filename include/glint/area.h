@@ -19,11 +19,11 @@ extern "C" {
 
 enum {
     GLINT_AREA_SAMPLES = 7, /* default max points of the brightest lamp */
-    /* A still picture has this many times as many points per lamp as a frame of
-     * a video. Precisely: the factor on (number of points of a lamp - 1). */
+    /* Factor on (number of points of a lamp - 1) for a still picture, relative
+     * to a frame of a video. */
     GLINT_AREA_STILL = 20,
-    /* A still picture may have this many times max_lights points, for all wide
-     * lamps together. */
+    /* Max number of points of all wide lamps of a still picture together, as a
+     * multiple of max_lights (glint/dials.h). */
     GLINT_AREA_STILL_ROOM = 4,
     /* Each point represents a square of the lamp with this side, pixels. */
     GLINT_AREA_SPACING_PX = 4,

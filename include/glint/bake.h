@@ -39,8 +39,8 @@ struct glint_bake_options {
      * 0.07 pixels for positions, 0.4 pixels for outlines, and 1.2 % for the
      * energy. */
     double tolerance;
-    /* Which ghosts of the lens are baked, [ghosts of the lens]; NULL: all.
-     * Other ghosts have no systems in the model. */
+    /* Which ghosts of the lens are baked, [ghosts of the lens]; NULL: all. The
+     * model has no polynomials for other ghosts. */
     const bool *ghosts;
     /* [n_beside], at most 2: the same lens at neighbouring zoom positions. The
      * model also includes light and barrels that matter only at these

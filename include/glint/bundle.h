@@ -57,8 +57,8 @@ struct glint_bundle {
  * callbacks, with its number WORKER; they must give the same result each
  * time. */
 struct glint_flare_rays {
-    /* Starts bundle I for WORKER. Returns 0 if the whole bundle lies outside
-     * the pixel rows Y0 .. Y1 - 1. */
+    /* Starts bundle I for WORKER. Returns 0 to skip the bundle, because all of
+     * it lies outside the pixel rows Y0 .. Y1 - 1; else not 0. */
     int (*open)(void *ctx, int worker, int i, int y0, int y1);
     /* Sets ROW to row J, 0 .. n_cells, of the vertices of the bundle that
      * WORKER has opened. Called for increasing J. */

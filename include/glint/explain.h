@@ -19,11 +19,11 @@
 extern "C" {
 #endif
 
-/* Kinds of items that are counted to compute the cost of a frame. Counts are
+/* Types of work that are counted to compute the cost of a frame. Counts are
  * predicted from the frame's plan, or taken from the drawn frame. */
 enum glint_cost_kind {
-    /* In a plan: bundles that are estimated by tracing a few rays (probed). In
-     * a drawn frame: the rays that its plans traced for these estimates. */
+    /* In a plan: bundles whose light the plan estimates from a few traced rays
+     * (probes). In a drawn frame: number of these rays. */
     GLINT_COST_LOOKED_AT,
     /* Bundles drawn. Each costs a few rays and, per row of rays, one
      * substitution into its polynomials. */
@@ -41,13 +41,13 @@ enum glint_cost_kind {
     GLINT_COST_KINDS
 };
 
-/* Cost of one item, in thousands of instructions of a processor with 8 SIMD
- * lanes of 32 bits. */
+/* Cost of one unit of work (enum glint_cost_kind), in thousands of instructions
+ * of a processor with 8 SIMD lanes of 32 bits. */
 struct glint_cost_weight {
     const char *name;
-    double planned; /* cost of an item that glint_cost_of() predicts from a
-                       plan */
-    double counted; /* cost of an item that is counted in a drawn frame */
+    double
+        planned; /* cost of a unit that glint_cost_of() predicts from a plan */
+    double counted; /* cost of a unit that is counted in a drawn frame */
 };
 extern const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS];
 

@@ -306,10 +306,10 @@ enum glint_status glint_flare_init(struct glint_flare **flare,
                                    const struct glint_flare_config *cfg,
                                    void *mem, size_t bytes);
 
-/* Sets the stop of the following frames: STOP is copied, except its shade,
- * which must outlive the flare. Capacities do not change. Returns
- * GLINT_E_ARGUMENT if STOP is out of range, or has a shade that the rasteriser
- * does not support. */
+/* Sets the stop of the following frames: STOP is copied, but not the SHADE
+ * (soft edge, dust, mask) to which it points, which must outlive the flare.
+ * Capacities do not change. Returns GLINT_E_ARGUMENT if STOP is out of range,
+ * or the rasteriser does not support its SHADE. */
 enum glint_status glint_flare_set_stop(struct glint_flare *flare,
                                        const struct glint_stop *stop);
 
@@ -426,8 +426,8 @@ enum glint_outcome {
     /* The light has no power in this wave, or no power at all. */
     GLINT_OUTCOME_DARK,
     GLINT_OUTCOME_OUTSIDE, /* the ghost's light lands off-screen */
-    /* The ghost is too faint for any pixel, even if the light of all lamps fell
-     * together. */
+    /* The ghost is too faint for any pixel, even if the ghosts of all lamps
+     * fell on the same pixels. */
     GLINT_OUTCOME_FAINT,
     GLINT_OUTCOME_NO_ROOM,   /* left out because a capacity is full */
     GLINT_OUTCOME_OTHER_SET, /* the ghost uses another set of waves */

@@ -14,13 +14,14 @@
  * through glint/engine.h, which limits both.
  *
  * Variables of a polynomial, each -1 .. 1:
- *   u, v   place in the ghost's box on the vertex plane of the first surface,
- *          u in the plane of the light, v across; everything is symmetric in v
- *   s      sine of the light's angle within the range of the system
- *   w      1 / wavelength^2 within the band of the system
- * s and w are the same for a whole bundle: glint_transfer_init() substitutes
- * them; the resulting polynomials depend only on u and v. The method follows
- * [Bodonyi25], in coordinates in which ghosts vary slowly.
+ *   u, v   position in the ghost's pupil box, a rectangle of the vertex plane
+ * of the first surface: u in the plane of the light, v across; everything is
+ * symmetric in v s      sine of the light's angle, scaled to the range of the
+ * system w      1 / wavelength^2, scaled to the band of the system A system is
+ * the polynomials for one range of angles and wavelengths. s and w are the same
+ * for a whole bundle: glint_transfer_init() substitutes them; the resulting
+ * polynomials depend only on u and v. The method follows [Bodonyi25], in
+ * coordinates in which ghosts vary slowly.
  *
  * The ghosts of a lens that is not symmetric about its axis also depend on the
  * azimuth of the light. Its model uses the lens's own frame: u lies along x, v
@@ -87,8 +88,8 @@ struct glint_model_header {
      * the axis are not drawn. */
     int32_t sine_hi_q30;
     /* Flux of the direct image at angle 0 through a circular stop, if the
-     * irradiance is 1, mm^2. The flux is a polynomial in w over the band; these
-     * are the coefficients. */
+     * irradiance is 1, mm^2. The flux is a polynomial in w over the wavelength
+     * band; these are the coefficients. */
     struct glint_real direct_flux[GLINT_FLUX_TERMS];
     /* Correction for smaller stops: at R times the radius of the stop, the flux
      * is R^2 (direct_flux + c (stopped_flux[0] + c stopped_flux[1])) with c = 1
@@ -102,9 +103,9 @@ struct glint_model_header {
     uint32_t n_systems, system_at; /* array of struct glint_model_system */
 };
 
-/* A ghost and its systems. The systems of one ghost follow each other by rising
- * angle or band, without overlap. The systems of successive ghosts follow each
- * other, too. A ghost without systems is invisible. */
+/* A ghost and its systems. The systems of one ghost are sorted by rising angle
+ * or wavelength band, without overlap. The systems of successive ghosts follow
+ * each other, too. A ghost without systems is invisible. */
 struct glint_model_ghost {
     uint32_t i, j; /* indices of the two reflecting surfaces, i < j */
     uint32_t first_system, n_systems;

@@ -80,7 +80,8 @@ struct glint_surface {
     /* Distance along the axis to the next surface, the stop, or the sensor,
      * mm. */
     double thickness_mm;
-    double semi_mm; /* semi-diameter of the barrel at the surface */
+    double semi_mm; /* semi-diameter; the lens barrel blocks rays farther from
+                       the axis */
     double nd;      /* index of refraction, at 587.56 nm, of the medium
                        behind the surface */
     double vd; /* Abbe number of the medium behind the surface; 0 for air */
@@ -147,7 +148,7 @@ const struct glint_glass *glint_glass_near(const char *name, size_t bytes);
 double glint_surface_index(const struct glint_surface *s, double wavelength_nm);
 
 #define GLINT_MAX_POSITIONS 8  /* max columns of the table of a zoom lens */
-#define GLINT_MAX_MOVES     12 /* max gaps of a zoom lens that change */
+#define GLINT_MAX_MOVES     12 /* max number of gaps that zooming changes */
 
 /* The values of a zoom lens at each of its positions (columns of the table),
  * sorted by ascending or descending focal length. Monotone cubics interpolate

@@ -17,7 +17,7 @@ extern "C" {
 #endif
 
 #define GLINT_MAX_WAVELENGTHS 32
-/* Number of waves of all sets together, see glint_setup_spread(). */
+/* Total number of wavelengths in all sets, see glint_setup_spread(). */
 #define GLINT_SET_WAVES 65
 
 /* Chooses N wavelengths, 1 .. GLINT_MAX_WAVELENGTHS, that represent the

@@ -22,9 +22,10 @@
 extern "C" {
 #endif
 
-/* A window of a box, _q30. u runs from u_middle - u_half to u_middle + u_half,
- * within -1 .. 1. |v| runs from v_from to v_to, where 0 is the middle of the
- * box (the inner rim, if the box is annular) and 1 is its end. */
+/* A window of a pupil box (glint/model.h), _q30. u runs from u_middle - u_half
+ * to u_middle + u_half, within -1 .. 1. |v| runs from v_from to v_to, where 0
+ * is the middle of the box (the inner rim, if the box is annular) and 1 is its
+ * end. */
 struct glint_box_window {
     int32_t u_middle_q30, u_half_q30, v_from_q30, v_to_q30;
 };

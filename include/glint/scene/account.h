@@ -30,14 +30,13 @@ enum glint_scene_fate {
     GLINT_SCENE_FATES
 };
 
-/* Items of work in a frame that are counted for each object. */
+/* Types of work that are counted for each object of a frame. */
 enum glint_scene_item {
-    /* Number of entries for the object's triangles in the lists of all
-     * tiles. */
+    /* Entries of the object's triangles in the lists of all tiles. */
     GLINT_SCENE_TRIANGLES,
-    /* Number of samples of pixels in which the object is visible. */
+    /* Samples of pixels in which the object is visible. */
     GLINT_SCENE_SAMPLED,
-    /* Number of pixels in which the object is visible. */
+    /* Pixels in which the object is visible. */
     GLINT_SCENE_COVERING,
     GLINT_SCENE_SHADED,  /* points of the object that are shaded */
     GLINT_SCENE_SHADOWS, /* sample points of lights to which shadow rays are
@@ -76,7 +75,7 @@ void glint_scene_account(struct glint_scene *scene,
  * processor or the number of threads. */
 int64_t glint_scene_count_tests(struct glint_scene *scene, int64_t most);
 
-/* Statistics of one kind of overlays of a recorded motion: number of shells,
+/* Statistics of one type of overlay of a recorded motion: number of shells,
  * lines or box edges in the picture, and number of pixels that they may
  * cover. */
 struct glint_scene_layered {
@@ -85,8 +84,8 @@ struct glint_scene_layered {
 };
 
 /* Sets OF to the statistics of the overlays of the frame that was begun last,
- * one entry per kind. All are 0 without a recorded motion. Kinds that are drawn
- * as objects have no overlays. */
+ * one entry per enum glint_scene_kind. All are 0 without a recorded motion, and
+ * for types that are drawn as objects, not as overlays. */
 void glint_scene_account_layers(struct glint_scene *scene,
                                 struct glint_scene_layered of[GLINT_KINDS]);
 

@@ -141,8 +141,9 @@ struct glint_described_environment {
 };
 
 /* A recorded motion, and how it is shown. A body with sensors moves among food
- * items, which the sensors may see. Lengths are in units of the scene, which
- * equal the units of the recording. Elements of length 0 are not shown. */
+ * items (landmarks that its sensors detect). Lengths are in units of the scene,
+ * which equal the units of the recording. Elements of length 0 are not
+ * shown. */
 struct glint_described_motion {
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     uint8_t *data; /* a baked motion, malloc'ed; NULL: there is no motion */

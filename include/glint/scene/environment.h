@@ -84,9 +84,8 @@ struct glint_environment_light {
 struct glint_environment_header {
     uint32_t magic, version;
     uint32_t bytes;     /* bytes of the whole file */
-    uint32_t crc32;     /* CRC-32 of all bytes after this word: polynomial
-                           0xedb88320, reflected; initial value and final XOR
-                           are all ones */
+    uint32_t crc32;     /* checksum of all bytes after this word, as in struct
+                           glint_model_header */
     uint32_t variant;   /* enum glint_environment_levels: type of levels */
     uint32_t key[2];    /* key of the picture and the options, low word first */
     char name[64];      /* name of the environment, terminated */

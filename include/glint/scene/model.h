@@ -180,8 +180,8 @@ struct glint_scene_stone {
 /* The light map of a translucent object, which states for each texel to which
  * point of the surface it belongs. */
 struct glint_scene_skin {
-    /* Indices of the object (a sphere or a mesh with uv, in at most one skin)
-     * and of its translucent medium. */
+    /* Indices of the object (a sphere or a mesh with texture coordinates; at
+     * most one map per object) and of its translucent medium. */
     uint32_t object, stone;
     /* Mesh: uint32 [side][side]: index of the triangle at or nearest to each
      * texel, or GLINT_SCENE_NONE. Texel (i, j) is at u = (i + 1/2) / side, v =
@@ -280,7 +280,7 @@ enum glint_scene_detect {
 };
 
 /* A recorded motion, and how it is shown. A body with sensors moves among food
- * items, which the sensors may see. The file of the motion
+ * items (landmarks that its sensors detect). The file of the motion
  * (glint/scene/motion.h) follows this struct; its axes are those of the scene's
  * text. */
 struct glint_scene_motion {
@@ -321,9 +321,8 @@ enum glint_scene_hand { GLINT_HAND_LEFT, GLINT_HAND_RIGHT };
 struct glint_scene_header {
     uint32_t magic, version;
     uint32_t bytes;   /* bytes of the whole file */
-    uint32_t crc32;   /* CRC-32 of all bytes after this word: polynomial
-                         0xedb88320, reflected; initial value and final XOR
-                         are all ones */
+    uint32_t crc32;   /* checksum of all bytes after this word, as in struct
+                         glint_model_header */
     uint32_t variant; /* enum glint_scene_hand */
     /* Key (hash) of the scene's text and of all files that it names, low word
      * first. */

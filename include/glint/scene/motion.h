@@ -7,8 +7,8 @@
  *     status = glint_motion_over(&motion, &blocks, buffer, &reason); elsewhere
  *     status = glint_motion_frame(&motion, k, &frame); any frame
  *
- * A body with sensors moves among food items, the objects that the sensors
- * detect. Each frame of the file has position and rotation of the body and the
+ * A body with sensors moves among food items (landmarks that its sensors
+ * detect). Each frame of the file has position and rotation of the body and the
  * position of each food item. In frame 0 the body is at the origin and not
  * rotated, so positions are relative to that pose. Axes are those of the
  * recording, right-handed.
@@ -20,8 +20,8 @@
  * of GLINT_MOTION_BLOCK bytes, little-endian. A block has as many records as
  * fit into the first GLINT_MOTION_ROOM bytes, then the number of the block and
  * its glint_motion_sum(). To read any frame, three blocks are needed (poses,
- * index and intensities), and the blocks with the events since the first frame
- * of the block of poses. */
+ * index and intensities), and the blocks with the events (replacements of food
+ * items) since the first frame of the block of poses. */
 #ifndef GLINT_SCENE_MOTION_H
 #define GLINT_SCENE_MOTION_H
 
@@ -68,7 +68,7 @@ struct glint_motion_index {
     /* Max distance, over the frames of the block, between the stored position
      * of a food item and the position where it was observed, steps. */
     uint32_t residual;
-    /* Index of the event that placed each food item. */
+    /* For each food item, index of the event that states its position. */
     uint32_t food[GLINT_MOTION_MAX_FOODS];
 };
 
@@ -82,9 +82,8 @@ struct glint_motion_sensor {
 struct glint_motion_header {
     uint32_t magic, version;
     uint32_t bytes;    /* bytes of the whole file */
-    uint32_t crc32;    /* CRC-32 of all bytes after this word: polynomial
-                          0xedb88320, reflected; initial value and final XOR are
-                          all ones */
+    uint32_t crc32;    /* checksum of all bytes after this word, as in struct
+                          glint_model_header */
     uint32_t variant;  /* must be 0 */
     uint32_t key[2];   /* key of the recording, low word first */
     char name[64];     /* name of the motion, terminated */
@@ -93,8 +92,8 @@ struct glint_motion_header {
     uint32_t n_frames; /* number of frames, 1 .. GLINT_MOTION_MAX_FRAMES */
     uint32_t n_foods;  /* number of food items, 0 .. GLINT_MOTION_MAX_FOODS */
     uint32_t n_sensors;
-    uint32_t n_events; /* number of events, at least n_foods: the events that
-                          place the food items of frame 0 come first */
+    uint32_t n_events; /* number of events, at least n_foods: first the events
+                          that state the food items of frame 0 */
     int32_t size;      /* radius of the body, steps */
     /* Half of the angle of view of a sensor: its cosine, -1 .. 1; and its
      * tangent, for cameras, clamped to 64 (2^30). */

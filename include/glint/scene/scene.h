@@ -11,11 +11,11 @@
  *     glint_scene_draw(scene, &image);
  *     n = glint_scene_lights(scene, lights);                 for the flare
  *
- * Objects replace the pixels that they cover; their edges are blended in linear
- * light. The caller passes all memory to glint_scene_init(); drawing never
- * allocates and cannot fail. If the lists of tiles have no capacity for the
- * triangles of an object, the object is left out and counted. No result depends
- * on the number of workers, the order of jobs or the tile size.
+ * Objects replace the pixels that they cover; pixels at their edges are blended
+ * in linear light. The caller passes all memory to glint_scene_init(); drawing
+ * never allocates and cannot fail. If the lists of tiles have no capacity for
+ * the triangles of an object, the object is left out and counted. No result
+ * depends on the number of workers, the order of jobs or the tile size.
  *
  * Spheres, planes, Phong shading and shadows are built in. All other modules
  * are pointers in struct glint_scene_parts, so that only programs that use a

@@ -40,9 +40,8 @@ struct glint_stone_text {
 
 /* Results of baking. */
 struct glint_stone_report {
-    /* Part of the response to light that is lost because the rank of kernels is
-     * limited, as a root mean square fraction over all kernels; 0 for factored
-     * fits. */
+    /* Fraction of the response to light that is lost because the rank of
+     * kernels is limited, RMS over all kernels; 0 for factored fits. */
     double kernel_loss;
     /* Number of bits of the largest tap of a column. With many taps it is below
      * GLINT_TRANSLUCENT_TAP_BITS, because the sum of taps is limited. */
