@@ -6,18 +6,19 @@
  *   in   two transfers of the same ghost, angle and wavelength
  *   out  one transfer: each coefficient and the box interpolated linearly
  *
- * In the coordinates of its box a ghost changes slowly with the zoom. Between
- * both positions the weights are 0 or more and sum to 1. The sum of magnitudes
- * of each mixed output is then at most the larger of the two sums, so the
- * bounds on which the transfer relies hold. In extrapolation the weights are up
- * to 2 and -1, so sums may triple; two bits are reserved for this. Each
+ * In the coordinates of its pupil box a ghost changes slowly with the zoom.
+ * Between both positions the weights are 0 or more and sum to 1. The sum of
+ * magnitudes of each mixed output is then at most the larger of the two sums,
+ * so the bounds on which the transfer relies hold. In extrapolation the weights
+ * are up to 2 and -1, so sums may triple; two bits are reserved for this. Each
  * coefficient is rounded once. The unit of the result is the coarser of the two
  * units.
  *
- * Each barrel is mixed with its partner, which pair.c finds at the other
- * position. A barrel without a partner stays at its place in the stop, because
- * boxes may change faster than the visible rays. It is widened towards the
- * position that lacks it, where it blocks nothing. */
+ * Each barrel (the rim of a lens surface, which cuts rays) is mixed with the
+ * corresponding barrel of the other position, which pair.c finds. A barrel
+ * without a counterpart keeps its position in the stop, because boxes may
+ * change faster than the visible rays. Near the position that lacks it, the
+ * barrel is widened until it blocks nothing. */
 #include "lens/blend.h"
 
 #include "base/q.h"
@@ -27,25 +28,26 @@
 enum {
     ROWS = GLINT_MAX_POWER + 1,
     BARREL = GLINT_OUT_BARREL_0,
-    /* value of a barrel's polynomial at the barrel's centre, where all light
-     * passes */
+    /* (1 + r^2) / 2, the value of a barrel's polynomial, at r = 0: no light is
+     * blocked */
     OPEN_Q16 = 1 << 15,
-    /* Min exponent of the unit of a barrel's polynomial, relative to 2^-46.
-     * With it, OPEN_Q16 is below 2^30 units. */
+    /* Min value of 46 + exponent of a barrel's unit; OPEN_Q16 is then below
+     * 2^30 units. */
     LEAST_UP = 16,
     MOST_HEAD = 28,
     /* Max move of a box for which first-order terms are exact enough: 1/2 of a
      * half width. */
     NEAR_Q24 = 1 << 23,
-    /* Fraction of the distance between both positions at which a barrel begins
-     * to open. */
+    /* A barrel that one position lacks is widened over the last quarter of the
+     * distance to that position. */
     LATE_Q30 = 3 << 28,
-    MOST_MOVE = 8, /* max distance between both boxes, in half widths */
+    MOST_MOVE = 8, /* max distance between the boxes of both positions, in half
+                      widths */
     /* number of bits reserved for extrapolation, which triples sums */
     BEYOND = 2
 };
 
-/* Returns X / 2^S, rounded, for any S >= 0. */
+/* Returns X / 2^S, rounded; S may exceed 62. */
 static int64_t shift_right_rounded(int64_t x, int s)
 {
     return s > 62 ? 0 : q_shift(x, s);
@@ -125,8 +127,8 @@ static int is_box_move_small(const struct glint_blend_move *m)
            q_magnitude(m->higher_q24) <= NEAR_Q24;
 }
 
-/* If O is an output for the position in the stop, records in STOP where rays
- * pass the stop. */
+/* If O is the x or y output of the position in the stop, records in STOP where
+ * rays pass the stop. */
 static void record_stop_position(struct glint_blend_stop *stop,
                                  const struct glint_blend_output *o)
 {
@@ -300,9 +302,10 @@ void glint_blend_scale_energy(struct glint_transfer *t, int32_t share_q30)
 
 /* ----------------------------------------------------------------- barrels */
 
-/* Widens barrel KIND by the fraction SHARE_Q30: interpolates between the barrel
- * and a barrel that blocks nothing. A barrel with a very fine unit, with which
- * sums would reach 2^30, stays unchanged; no lens has such a barrel. */
+/* Widens barrel KIND at the fraction SHARE_Q30 of the distance to the position
+ * that lacks it: beyond LATE_Q30, interpolates between the barrel and a barrel
+ * that blocks nothing. A barrel with a unit so fine that sums would reach 2^30
+ * stays unchanged. */
 static void widen_barrel_opening(struct glint_transfer *t, int kind,
                                  int32_t share_q30)
 {
@@ -373,9 +376,10 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
     return most;
 }
 
-/* Moves barrel KIND so that it stays at its place in the stop. Only position
- * SIDE (0: this one, 1: the other one) has the barrel. Does nothing if the
- * barrel would then block more, or sums would be too large for the transfer. */
+/* Moves barrel KIND so that it keeps its position in the stop. Only zoom
+ * position SIDE (0: this one, 1: the other one) has the barrel. Does nothing if
+ * the barrel would then block more, or sums would be too large for the
+ * transfer. */
 static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
                                              int side, int kind)
 {
@@ -406,8 +410,8 @@ static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
             own.row[b][a] = kept.row[b][a];
 }
 
-/* Adds barrel O, which only the other position has. The barrel is widened in
- * proportion to the distance of the zoom from that position. */
+/* Adds barrel O, which only the other position has, widened if the zoom is near
+ * this position. */
 static void add_unmatched_barrel(struct glint_zoom_mix *blend,
                                  const struct glint_blend_output *o)
 {
@@ -435,7 +439,7 @@ static void mix_barrel_output(struct glint_zoom_mix *blend,
         add_unmatched_barrel(blend, o);
 }
 
-/* -------------------------------------------------------------------- both */
+/* ------------------------------------------------------------- all outputs */
 
 void glint_blend_mix_output(struct glint_zoom_mix *blend,
                             const struct glint_blend_output *o)

@@ -11,17 +11,18 @@ enum {
     GLINT_BLEND_PLACES = 6
 };
 
-/* A transfer into which the transfer at another zoom position is mixed, output
- * by output. The result is 1 - part of its own output plus part of the other
- * output. part < 0, down to -1, extrapolates away from the other position. */
+/* The polynomials TO of a bundle at one zoom position ("this"), into which
+ * those at another position are mixed, output by output: (1 - part) times the
+ * output of this position plus part times that of the other. part < 0, down to
+ * -1, extrapolates away from the other position. */
 struct glint_zoom_mix {
     struct glint_transfer *to;
     int32_t part_q30;
-    /* Difference between the boxes of both positions (other - this). move[0] is
-     * in half widths and half heights of this position's box, move[1] in those
-     * of the other position's box. along: displacement of the middle along u;
-     * wider, higher: differences in size. All are 0 if one of them exceeds a
-     * few half widths. */
+    /* Difference between the pupil boxes of both positions (other - this).
+     * move[0] is in half widths and half heights of this position's box,
+     * move[1] in those of the other position's box. along: displacement of the
+     * middle along u; wider, higher: differences in size. All are 0 if one of
+     * them exceeds 8 half widths. */
     struct glint_blend_move {
         int32_t along_q24, wider_q24, higher_q24;
     } move[2];
@@ -34,8 +35,8 @@ struct glint_zoom_mix {
         int32_t middle, across, up;
         int32_t x_exponent, y_exponent;
     } stop[2];
-    /* Values of the polynomials of all barrels, _q16. First index: 0 for
-     * barrels of this position, 1 for barrels of the other position. Third
+    /* Values of the polynomials of all barrels (rims of surfaces, which cut
+     * rays), _q16. First index: 0 for this position, 1 for the other one. Third
      * index: 0 at sample points of the barrel's own box, 1 at points of the
      * pupil inside both boxes. n_others: number of barrels of the other
      * position. */
@@ -74,8 +75,8 @@ struct glint_blend_output glint_blend_get_output(struct glint_transfer *t,
 int32_t glint_blend_evaluate_q16(const struct glint_blend_output *o,
                                  int64_t u_q24, int64_t v_q24);
 
-/* Registers output O if it is a barrel. Call for all outputs of the other
- * position, by ascending kind. */
+/* Stores the values of output O if it is a barrel. Call for all outputs of the
+ * other position, by ascending kind. */
 void glint_blend_register_barrel(struct glint_zoom_mix *blend,
                                  const struct glint_blend_output *o);
 

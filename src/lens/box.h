@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Evaluates the pupil box of a system, for drawing and for checking a model.
- * Middle and half sizes of the box are polynomials of angle and wavelength. */
+ * Evaluates the pupil box of a system, the rectangle of the front vertex plane
+ * that contains the rays of a ghost. Its middle and half sizes are polynomials
+ * of angle and wavelength. */
 #ifndef GLINT_LENS_BOX_H
 #define GLINT_LENS_BOX_H
 

@@ -20,7 +20,6 @@ static inline int glint_grid_get_max_cells(int fineness, int folds)
     return (folds ? 4 : 2) * fineness;
 }
 
-/* Returns N rounded up to a multiple of four. */
 static inline int glint_grid_round_up_to_four(int n)
 {
     return (n + 3) / 4 * 4;

@@ -32,13 +32,13 @@ STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
 
-/* The header begins with the members of every baked file's header. Its basis is
- * their member variant. */
+/* The header begins with the members of every baked file's header. The member
+ * basis corresponds to their member variant. */
 GLINT_BLOB_HEADER(struct glint_model_header, basis);
 
 enum {
-    /* Max sum of the magnitudes of an output's coefficients. It is 1 in
-     * _q30. */
+    /* 1 in _q30; also the limit of the sum of magnitudes of an output's
+     * coefficients. */
     LIMIT = 1 << 30,
     MAX_REAL_EXPONENT = 200,
     /* max number of bits by which narrow (16-bit) coefficients are shifted */
@@ -49,8 +49,8 @@ enum {
     MIN_EXPONENT = -80,
     MAX_EXPONENT = 40,
     NEEDED_KINDS = GLINT_OUT_ENERGY + 1,
-    /* Log2 of a number of intervals of angle. At the ends of all intervals the
-     * half sizes of a box must be 0 or more. */
+    /* Log2 of the number of intervals of angle at whose ends the half sizes of
+     * a box are checked not to be negative. */
     BOX_NODES_LOG2 = 5,
     /* Max total size of the tables of all systems, as a multiple of the file
      * size. Systems may share tables. Without a limit, many systems that share
@@ -185,7 +185,7 @@ static const char *check_direction_range(struct check *c,
 }
 
 /* Returns whether P, the polynomial of a box's half size, is negative at any of
- * a series of angles, at either end of the band. */
+ * a series of angles, at either end of the wavelength band. */
 static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 1);
@@ -201,7 +201,8 @@ static int has_negative_size(const int32_t p[GLINT_BOX_TERMS])
 }
 
 /* Returns whether P, the polynomial of a box's half size in the lens basis, is
- * negative at any of a grid of directions, at either end of the band. */
+ * negative at any of a grid of directions, at either end of the wavelength
+ * band. */
 static int has_negative_lens_size(const int32_t p[GLINT_BOX_TERMS])
 {
     const int32_t half = 1 << (BOX_NODES_LOG2 - 2), step = LIMIT / half;
@@ -393,7 +394,7 @@ static const char *check_ghost_system(struct check *check,
 /* ------------------------------------------------------------------- ghosts */
 
 /* Checks that system NEXT may follow system LAST in the list of one ghost: NEXT
- * must not begin before LAST ends, in both angle and wavelength. */
+ * must begin at or after the end of LAST, in angle or in wavelength. */
 static const char *check_system_order(const struct glint_model_system *last,
                                       const struct glint_model_system *next)
 {
@@ -411,7 +412,8 @@ static const char *check_ghost_lists(const struct check *c)
     uint32_t next = 0;
 
     if (h->n_parts > h->n_ghosts)
-        return "damaged model: there are more parts than ghosts";
+        return "damaged model: there are more additional pupil regions than "
+               "ghosts";
     for (uint32_t k = 0; k < h->n_ghosts; k++) {
         const struct glint_model_ghost *g = &c->ghost[k];
 

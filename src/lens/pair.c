@@ -6,14 +6,14 @@
  *   out  for each barrel of the other position, the barrels of this position
  *        with which it is mixed
  *
- * Barrels have no names in a model. Two barrels correspond if their polynomials
- * have nearly the same values in one of two comparisons. The first is at equal
- * points of each position's box, which follows the visible rays. The second is
- * at equal points of the pupil, because boxes may change faster than barrels
- * move. The pair that differs least is matched first. If a barrel has no
- * partner, every ray that it would block at the other position is also blocked
- * by the most similar barrel there. It is therefore paired with a copy of that
- * barrel. */
+ * A model does not state to which surface a barrel (the rim that cuts rays)
+ * belongs. Two barrels correspond if their polynomials have nearly the same
+ * values in one of two comparisons. The first is at equal points of each
+ * position's box, which follows the visible rays. The second is at equal points
+ * of the pupil, because boxes may change faster than barrels move. The pair
+ * that differs least is matched first. A barrel that remains is matched to the
+ * most similar barrel of the other position even if that one is matched
+ * already. */
 #include "base/q.h"
 #include "lens/blend.h"
 #include "lens/terms.h"

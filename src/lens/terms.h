@@ -21,8 +21,8 @@ static inline void compute_powers_q30(int32_t x_q30, int n, int32_t *power_q30)
         power_q30[k] = q_mul(power_q30[k - 1], x_q30, 30);
 }
 
-/* Returns the system of GHOST for this angle and wavelength; NULL if no light
- * of the ghost passes the lens. */
+/* Returns the system (polynomials) of GHOST for this angle and wavelength; NULL
+ * if no light of the ghost passes the lens. */
 const struct glint_model_system *
 glint_transfer_find_system(const struct glint_lens *lens, int ghost,
                            int32_t sine_q30, int32_t wave_q24);

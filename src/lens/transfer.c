@@ -40,8 +40,8 @@ static int32_t normalise_in_range_q30(int32_t x, int32_t lo, int32_t hi)
                              span);
 }
 
-/* Returns whether WAVE_Q24 belongs to the band of system S. The upper end of a
- * band belongs to the next band, if there is one. */
+/* Returns whether WAVE_Q24 is in the wavelength band of system S. The upper end
+ * of a band belongs to the next band, if there is one. */
 static int is_wave_in_band(const struct glint_model_system *s,
                            const struct glint_model_header *h, int32_t wave_q24)
 {
@@ -102,7 +102,7 @@ struct substituted_powers {
     /* 1: the model uses the lens basis (lenses that are not round); 0: auto
      * basis */
     int lens;
-    /* powers of the y component; lens basis only */
+    /* powers of the y component of the direction; lens basis only */
     int32_t p_q30[GLINT_LENS_POWERS];
 };
 
@@ -281,8 +281,8 @@ static void clear_transfer_outputs(struct glint_transfer *t)
  * light's angle, or in the lens basis the x component of its direction. */
 struct system_direction {
     int32_t x_q30, y_q30;
-    /* 1: the light is on the other side of the plane of symmetry, so that it is
-     * mirrored into the range of the model */
+    /* 1: the light is on the side of the plane of symmetry that the model does
+     * not cover, so it is mirrored */
     int mirror_x, mirror_y;
 };
 

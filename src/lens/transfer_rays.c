@@ -12,9 +12,8 @@
 
 enum { RAYS = GLINT_RAYS };
 
-/* Returns whether all terms of output KIND have odd powers of v; if not, all
- * have even powers. Applies to the auto basis; in the lens basis terms have
- * both. */
+/* Returns whether all terms of output KIND have odd powers of v; otherwise all
+ * have even powers. Only for the auto basis. */
 static int is_odd_in_v(int kind)
 {
     return kind & 1 && kind < GLINT_OUT_ENERGY;

@@ -2,18 +2,18 @@
  *
  * Combines the models of several zoom positions into one lens.
  *
- *   in   models of one lens, with the same surfaces, film and band
+ *   in   models of one lens, with the same surfaces, film and wavelengths
  *   out  a header interpolated between those of two positions, a list of the
  *        ghosts of all models, and interpolated bundles
  *
  * All models contain the same pairs of surfaces as ghosts, in the same order. A
- * ghost whose pupil is divided has additional parts. The combined list has as
- * many parts as the model with the largest number of parts. A zoom position
- * lies between two models, one on either SIDE. If both models divide the pupil
- * of a ghost in the same way at an angle, their polynomials are mixed;
- * otherwise the nearer model is drawn. If the ghost has light in only one of
- * them, that model is extrapolated using a third model farther away, or the
- * ghost is faded. */
+ * ghost whose pupil has several separate regions has one additional part per
+ * further region. The combined list has as many parts as the model with the
+ * largest number of parts. A zoom position lies between two models, one on
+ * either SIDE. If both models divide the pupil of a ghost in the same way at an
+ * angle, their polynomials are mixed; otherwise the nearer model is drawn. If
+ * the ghost has light in only one of them, that model is extrapolated using a
+ * third model farther away, or the ghost is faded. */
 #include "glint/model.h"
 
 #include "base/blob.h"
@@ -84,11 +84,12 @@ static const char *list_all_ghosts(struct glint_zoom_lens *z)
         }
     }
     if (end >= GLINT_MAX_ZOOM_GHOSTS)
-        return "the zoom model has too many parts of ghosts";
+        return "the zoom model has too many pupil regions of ghosts";
     z->part_from[n] = (int16_t)end;
     for (int k = 0; k < z->n_models; k++)
         if (next[k] != z->model[k].header->n_ghosts)
-            return "damaged zoom model: parts of ghosts are unsorted";
+            return "damaged zoom model: the pupil regions of ghosts are "
+                   "unsorted";
     return NULL;
 }
 

@@ -214,7 +214,7 @@ static const struct rule auto_rules[] = {
     {HEADER_(n_surfaces), 3, bad_pair},
     {HEADER_(n_ghosts), 1 << 28, outside},
     {HEADER_(n_ghosts), UINT32_MAX, outside},
-    {HEADER_(n_parts), 4, "damaged model: there are more parts than ghosts"},
+    {HEADER_(n_parts), 4, "damaged model: there are more additional pupil regions than ghosts"},
     {HEADER_(n_parts), 3, NULL},
     {HEADER_(ghost_at), 246, outside},
     {HEADER_(ghost_at), 240, outside},
