@@ -8,9 +8,9 @@
 
 enum { ONE_Q30 = 1 << 30 };
 
-/* Returns the box of pixels that a ball may cover: the projection of the box
- * around it. SEEN: its centre in camera coordinates; REACH: its radius,
- * steps. */
+/* Returns the box of pixels that a ball may cover: the projection of its
+ * bounding box. SEEN: centre of the ball in camera coordinates; REACH: its
+ * radius, steps. */
 static struct glint_box compute_ball_box(const struct glint_scene *s,
                                          const int32_t seen[3], int32_t reach)
 {
@@ -72,7 +72,8 @@ int32_t glint_scene_find_object_box(const struct glint_scene *s,
     return p->is_seen ? seen[2] - p->reach : GLINT_FAR;
 }
 
-/* Sets the depth functions of all planes. s->nearest must be set before. */
+/* Sets 1 / z of all planes as functions of the position in the picture.
+ * s->nearest must be set before. */
 static void set_plane_depth_functions(struct glint_scene *s)
 {
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
@@ -88,7 +89,8 @@ static void set_plane_depth_functions(struct glint_scene *s)
     }
 }
 
-/* Rebuilds the shadow grids of all suns if any object has moved. */
+/* Counts the planes that cast shadows, and rebuilds the shadow grids of suns
+ * that are outdated. */
 static void rebuild_shadow_grids(struct glint_scene *s)
 {
     s->n_planes = 0;
@@ -131,7 +133,8 @@ void glint_scene_begin(struct glint_scene *scene,
     if (scene->motion)
         scene->cfg.parts.motions->project(scene);
     else
-        /* A recorded motion needs exact depths for its shells and lines. */
+        /* With a recorded motion, shells and lines need exact depths of
+         * balls. */
         glint_scene_set_single_depths_of_balls(scene);
     scene->has_triangles = scene->is_spread = 0;
     if (scene->bins.start)

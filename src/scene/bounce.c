@@ -4,11 +4,12 @@
  * eight transmitting surfaces in a row.
  *
  * A ray that enters a sphere leaves it at the other end of its chord, at the
- * angle of entry, so total reflection inside does not occur. If the index is 1,
- * rays are not bent. Such rays see the picture itself behind the last object.
- * Bent and reflected rays see the background's colour, the environment, or the
- * camera's picture. The picture is extended to all directions: directions
- * outside the field of view read it mirrored at its edge. */
+ * angle of entry, so total reflection inside does not occur. If the refractive
+ * index is 1, rays are not bent. Behind the last object such rays let the
+ * picture show through unchanged. Bent and reflected rays see the background's
+ * colour, the environment, or the camera's picture. The picture is extended to
+ * all directions: directions outside the field of view read it mirrored at its
+ * edge. */
 #include "scene/parts.h"
 #include "scene/state.h"
 
@@ -74,8 +75,8 @@ static void sample_camera_picture(const struct glint_scene *s,
         (1 << 15) + (y < 0 ? -half_q15[1] : half_q15[1]), rgb_q15);
 }
 
-/* Adds to RGB the background that P sees in its direction, times P's weight: a
- * colour, the environment, or the camera's picture. */
+/* Adds to RGB the background in the direction of P, times P's weight: a colour,
+ * the environment, or the camera's picture. */
 static void add_background_light(const struct glint_scene *s,
                                  const struct passing *p, int32_t rgb_q15[3])
 {
@@ -108,8 +109,8 @@ static int find_next_surface(const struct glint_scene *s,
 static int refract_ray(const struct glint_met_surface *surface,
                        uint32_t index_q16, struct passing *p)
 {
-    /* index in front of the surface / index behind it: 1 / INDEX if the ray
-     * enters the object, INDEX if it leaves */
+    /* refractive index in front of the surface / index behind it: 1 / INDEX if
+     * the ray enters the object, INDEX if it leaves */
     const uint32_t eta_q28 =
         surface->is_inside
             ? index_q16 << 12

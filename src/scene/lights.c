@@ -102,7 +102,7 @@ int glint_scene_lights(const struct glint_scene *scene,
     return n;
 }
 
-/* ------------------------------------------------------------------- cover */
+/* ---------------------------------------------------------------- coverage */
 
 int glint_scene_cover(const struct glint_scene *scene, int32_t x_q8,
                       int32_t y_q8, int32_t radius_q8)

@@ -144,7 +144,7 @@ static int set_triangle_depth_function(const struct glint_scene *s,
         all += evaluate_edge_function(&line[k], c->x, c->y);
     if (all <= 0)
         return 0;
-    for (int k = 1; k < 3; k++) { /* below 2^46 */
+    for (int k = 1; k < 3; k++) { /* sums are below 2^46 */
         across += line[k].across * (depth_q30[k] - depth_q30[0]);
         down += line[k].down * (depth_q30[k] - depth_q30[0]);
     }
@@ -319,7 +319,8 @@ static int transform_ray_to_mesh(const struct glint_scene *s, uint32_t object,
 
 /* --------------------------------------------------------------------- grid */
 
-/* The cell of the grid that a ray is in, and its distance to the next cells. */
+/* The grid cell in which a ray is, and the ray's distances to the next
+ * cells. */
 struct walk {
     int32_t cell[3], step[3];
     int64_t away[3];  /* distance along each axis to the face through which the
@@ -487,8 +488,8 @@ static int intersect_triangle(const struct glint_scene *scene, uint32_t object,
 
 /* ----------------------------------------------------------------- surfaces */
 
-/* Sets TO to the weighted mean of three vertices' rows of N numbers. The
- * weights are the barycentric weights in SPOT. */
+/* Sets TO[N] to the mean of the numbers ROW[3][N] of a triangle's vertices,
+ * weighted by the barycentric weights in SPOT. */
 static void interpolate_vertex_rows(const struct glint_spot_on *spot,
                                     const int32_t *const row[3], int n,
                                     int32_t *to)
@@ -692,8 +693,8 @@ compute_triangle_box(const struct glint_scene *s, uint32_t object,
 
 /* -------------------------------------------------------------------- lists */
 
-/* Returns the number of entries that the triangles of an object need in the
- * tiles' lists (bins). */
+/* Returns the number of entries of an object's triangles in all tiles'
+ * lists. */
 static int64_t count_tile_list_entries_of_object(struct glint_scene *s,
                                                  uint32_t object)
 {
@@ -727,9 +728,9 @@ static int is_triangle_facing_camera(const struct glint_scene *s,
 
 enum { BOTH_SIDES = -1 };
 
-/* Counts the triangles of all meshes in the tiles' lists (bins) if FACING is
- * BOTH_SIDES. Otherwise appends to these lists the triangles that face the
- * camera (FACING 1) or face away from it (0). */
+/* If FACING is BOTH_SIDES, counts for each tile's list (bin) the triangles of
+ * all meshes. Otherwise appends to the lists the triangles that face the camera
+ * (FACING 1) or face away from it (0). */
 static void sort_triangles_into_tile_lists(struct glint_scene *s, int facing)
 {
     for (uint32_t k = 0; k < s->model.header->n_objects; k++) {

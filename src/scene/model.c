@@ -2,7 +2,7 @@
  *
  * Checks a baked scene once, so that drawing need not check anything.
  *
- *    in   bytes that may hold anything
+ *    in   bytes with any contents
  *    out  a model that points into them, or the text of an error
  *
  * Drawing relies on this:
@@ -365,7 +365,7 @@ static const char *check_translucency_map(struct check *c, uint32_t i)
                                 UINT32_C(1) << log2);
 }
 
-/* Returns 0 if object I is translucent but has no map. */
+/* Returns 0 if object I is translucent but has no light map, else 1. */
 static int has_map_if_translucent(const struct glint_scene_model *m, uint32_t i)
 {
     for (uint32_t k = 0; k < m->header->n_stones; k++) {
@@ -414,7 +414,7 @@ STATIC_ASSERT(sizeof(struct glint_scene_skin) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_environment) == 56);
 STATIC_ASSERT(sizeof(struct glint_scene_header) == 268);
 
-/* checks that the members common to all baked files have their common places */
+/* checks that the members that all baked files share have the same offsets */
 GLINT_BLOB_HEADER(struct glint_scene_header, variant);
 
 enum { ONE_Q15 = 1 << 15, ONE_Q30 = 1 << 30, MAX_HIGHLIGHTS = 8 };
@@ -589,7 +589,7 @@ static const char *check_header(const struct glint_scene_header *h)
     return glint_scene_check_camera(&h->camera);
 }
 
-/* ------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------- file */
 
 static const char *locate_tables_in_file(struct check *c)
 {

@@ -84,8 +84,8 @@ struct glint_scene_wards {
     int32_t (*spread)(const struct glint_scene *scene,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface);
-    /* Sets the tangent frame of the brushed metal at SURFACE, but not its
-     * spread. */
+    /* Sets the tangent frame of BRUSHED, the brushed metal at SURFACE, but not
+     * spread_q30. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed);
@@ -123,7 +123,7 @@ struct glint_scene_stones {
     /* Opens the files of all translucent media. Of SCENE only the model is set
      * yet. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Adapts the module's state to a change of environment light. */
+    /* Adapts the module's state to changed environment light. */
     void (*relight)(struct glint_scene *scene);
     /* Recomputes the light maps for the current frame; returns the number of
      * texels computed. */

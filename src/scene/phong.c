@@ -73,8 +73,8 @@ compute_specular_q15(const struct glint_gloss *gloss,
 
 /* ------------------------------------------------------------------ lights */
 
-/* Adds the highlight of light LIT on a metal. T: distance of LIT. SHARE_Q15:
- * fraction of LIT that reaches the surface. */
+/* Adds the highlight of light LIT on a brushed metal. T: distance of LIT,
+ * steps. SHARE_Q15: fraction of LIT's light that reaches the surface. */
 static void add_metal_highlight(
     const struct glint_scene *s, const struct glint_scene_ray *ray,
     const struct glint_met_surface *surface, struct glint_brushed *brushed,
@@ -133,7 +133,7 @@ static WHOLLY_INLINE void add_light_reflection(
                             level_q15, share_q15, rgb_q15);
     if (brushed && !(colour_q15[0] | colour_q15[1] | colour_q15[2]))
         return;
-    /* each factor is below 2^30, and the product below 2^32 */
+    /* both factors are _q15, at most 1; the product is _q30 */
     gloss *= m->specular_q15;
     cosine_q30 = q_mul(m->diffuse_q15, cosine_q30, 15);
     for (int c = 0; c < 3; c++) {
@@ -212,7 +212,7 @@ static int compute_catcher_shadow_q8(const struct glint_scene *s,
         light = q_larger(0, v3_cosine_q30(toward_q30, surface->normal_q30));
         light = light * ((int64_t)level_q15[0] + 2 * (int64_t)level_q15[1] +
                          level_q15[2]) >>
-                6; /* below 2^56, so 32 lights sum to less than 2^61 */
+                6; /* LIGHT is below 2^56, so 32 lights sum to less than 2^61 */
         all += light;
         if (light > 0)
             gone += (light >> 15) *

@@ -161,7 +161,7 @@ static void shear_triangle_vertices(const struct glint_sheared *ray,
 }
 
 /* Returns whether three numbers are all positive or all negative. */
-static int have_three_numbers_same_sign(const int32_t x[3])
+static int have_same_sign(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
@@ -209,7 +209,7 @@ int glint_ray_intersect_triangle(const struct glint_sheared *ray,
     struct seen s;
 
     shear_triangle_vertices(ray, vertex, &s);
-    if (have_three_numbers_same_sign(s.x) || have_three_numbers_same_sign(s.y))
+    if (have_same_sign(s.x) || have_same_sign(s.y))
         return 0;
     set_edge_functions(&s);
     if (((s.edge[0] | s.edge[1] | s.edge[2]) < 0 &&

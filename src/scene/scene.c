@@ -239,7 +239,8 @@ size_t glint_scene_bytes(const struct glint_scene_config *cfg,
     return arena.used;
 }
 
-/* Returns the index of the map (skin) of translucent object I, or -1. */
+/* Returns the index of the light map (skin) of object I, or -1 if it has
+ * none. */
 static int find_translucency_map(const struct glint_scene_model *model,
                                  uint32_t i)
 {

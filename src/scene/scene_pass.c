@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * The drawing pass of a scene. Each object that the samples of a pixel see is
- * shaded only once, in the pixel's middle; reflecting and transparent objects
- * are shaded at each sample. Where objects cover a fraction of a pixel, the
- * picture's light shows through the rest. */
+ * The drawing pass (tile/pass.h) of a scene. Each object that the samples of a
+ * pixel see is shaded only once, in the pixel's middle; reflecting and
+ * transparent objects are shaded at each sample. Where objects cover a fraction
+ * of a pixel, the picture's light shows through the rest. */
 #include "scene/quick.h"
 #include "scene/visible.h"
 #include "scene/parts.h"
 
 enum {
-    /* sums of light and cover are scaled to this number of samples per pixel */
+    /* sums of light and coverage are scaled to this number of samples per
+     * pixel */
     SUMMED = 4
 };
 
@@ -51,9 +52,10 @@ static int32_t get_sample_offset(const struct glint_scene *s, int k, int axis)
     return k >= 0 ? glint_sample_offset_q8(s, k, axis) : k == QUAD ? 128 : 0;
 }
 
-/* Finds the surface of object ID at pixel (X, Y), without the fast path. Tries
- * the ray through the pixel's middle first, then the ray through sample K.
- * Skips the middle if K is QUAD or the object is shaded at each sample. */
+/* Finds the surface of object ID at pixel (X, Y) exactly, without the fast path
+ * of quick.h. Tries the ray through the pixel's middle first, then the ray
+ * through sample K. Skips the middle if K is QUAD or the object is shaded at
+ * each sample. */
 static NEVER_INLINE int find_exact_surface(struct glint_scene_worker *w,
                                            uint32_t id, int x, int y, int k,
                                            struct glint_scene_ray *ray,
@@ -135,7 +137,6 @@ static inline int shade_sample(struct glint_scene_worker *w, uint32_t id, int x,
     return 0;
 }
 
-/* Returns whether all N samples of a pixel see the background. */
 static inline int does_pixel_see_only_background(const uint32_t *id, int n)
 {
     uint32_t all = id[0];
@@ -244,7 +245,6 @@ static NEVER_INLINE void shade_pixel_samples(struct glint_scene_worker *w,
     sum->shadow_q10 = (sum->shadow_q10 + down) >> down;
 }
 
-/* Returns whether all N samples in ID see the object or triangle THING. */
 static inline int do_all_samples_see_object(const uint32_t *id, int n,
                                             uint32_t thing)
 {
@@ -255,8 +255,6 @@ static inline int do_all_samples_see_object(const uint32_t *id, int n,
     return other == 0;
 }
 
-/* Returns whether all N samples in ID can share the shading of object or
- * triangle THING. */
 static int can_all_samples_share_shading(const struct glint_scene *s,
                                          const uint32_t *id, int n,
                                          uint32_t thing)
@@ -336,7 +334,7 @@ static inline void write_pixel_light(const struct glint_scene_worker *w,
 }
 
 /* Sets N pixels of row ROW, from column X to the right, to the same light and
- * cover. */
+ * coverage. */
 static void write_pixel_run(const struct glint_scene_worker *w,
                             const struct glint_pass_rows *rows, int row, int x,
                             int n, const int32_t rgb_q15[3], int cover_q8)
@@ -364,7 +362,7 @@ static void write_pixel_run(const struct glint_scene_worker *w,
     }
 }
 
-/* Adds full cover to the stored cover of pixels X0 .. X1 - 1 of row Y. */
+/* Adds full coverage of pixels X0 .. X1 - 1 of row Y to the stored coverage. */
 static void add_full_cover_of_pixels(const struct glint_scene *s, int y, int x0,
                                      int x1)
 {

@@ -137,7 +137,7 @@ static void set_caster_footprint(const struct glint_shadow *shadow,
     }
 }
 
-/* Appends the triangles of mesh I to the casters THING; returns their
+/* Appends the triangles of mesh I to the shadow casters THING; returns their
  * number. */
 static int list_triangle_casters(const struct glint_scene *s,
                                  const struct glint_shadow *shadow, uint32_t i,
@@ -284,7 +284,8 @@ static int is_ball_unshadowed(const struct glint_scene *s,
     return 1;
 }
 
-/* Sets open_to of the balls that no object can shadow from this sun. */
+/* Sets the bit of this sun in open_to of each ball that no object can
+ * shadow. */
 static void mark_unshadowed_balls(const struct glint_scene *s,
                                   const struct glint_shadow *shadow)
 {
@@ -439,7 +440,7 @@ enum { NONE = -1, BEYOND = -2 };
 /* -------------------------------------------------------------------- rays */
 
 /* Returns whether three numbers are all positive or all negative. */
-static int have_three_numbers_same_sign(const int32_t x[3])
+static int have_same_sign(const int32_t x[3])
 {
     return (x[0] & x[1] & x[2]) < 0 || (-x[0] & -x[1] & -x[2]) < 0;
 }
@@ -463,7 +464,7 @@ static int ray_hits_triangle(const int32_t *const vertex[3],
             y[i] -= (int32_t)q_shift((int64_t)up[i] * lean_q30[1], 30);
         }
     }
-    if (have_three_numbers_same_sign(x) || have_three_numbers_same_sign(y))
+    if (have_same_sign(x) || have_same_sign(y))
         return 0;
     for (int i = 0; i < 3; i++) {
         const int j = (i + 1) % 3, k = (i + 2) % 3;

@@ -27,7 +27,7 @@ enum {
     GLINT_SCENE_SAMPLES = 16, /* max samples per pixel */
     GLINT_SCENE_PASSES = 8,   /* max number of surfaces that transmit a ray */
     GLINT_COVER_LOG2 = 3 /* log2 of the side, pixels, of the squares over which
-                            cover is summed */
+                            coverage is summed */
 };
 
 #define GLINT_NOTHING UINT32_C(0xffffffff)
@@ -44,8 +44,8 @@ struct glint_placed {
     uint32_t material; /* index of the material of surfaces that have no
                           material of their own */
     int is_shown;
-    /* is_split: the object is shaded at each sample. is_catcher: it only
-     * receives shadows. */
+    /* is_split: the object is shaded at each sample of a pixel. is_catcher: it
+     * is a plane that only receives shadows. */
     int is_split, is_catcher;
     int skin;             /* index of the object's map if it is translucent,
                              else -1 */
@@ -68,8 +68,8 @@ struct glint_placed {
      * fraction bits; over_up is 0 if the quotient is out of range (quick.c). */
     int32_t over[3];
     int over_up;
-    /* Sphere: bit mask of lights. Bit i is set if light i is a sun that no
-     * object can hide from the points of the sphere that face it. */
+    /* Sphere: bit i is set if light i is a sun that no object can hide from the
+     * points of the sphere that face this sun. */
     uint32_t open_to;
     /* Sphere: coefficients for the range of pixels in a row that it may cover
      * (quick.c). */
@@ -97,7 +97,7 @@ struct glint_quick_triangle {
     int64_t at[3];
     int up;
     uint32_t one_over;
-    /* for each corner: min depth of all corners / depth of the corner */
+    /* for each corner: min depth of the three corners / depth of this corner */
     int32_t nearer_q30[3];
     /* The first corner's position and normal, and the differences of the second
      * and third corner from them. */
@@ -195,10 +195,11 @@ struct glint_brushed {
     int32_t spread_q30;
 };
 
-/* Light and cover of a pixel, summed over four samples. */
+/* Light and coverage of a pixel, summed over four samples. */
 struct glint_scene_sum {
     int64_t rgb_q17[3];
-    /* cover_q10: cover by all objects; shadow_q10: shadow on catchers. */
+    /* cover_q10: fraction that objects cover; shadow_q10: darkening by shadow
+     * catchers. */
     int cover_q10, shadow_q10;
 };
 
@@ -225,9 +226,9 @@ struct glint_scene_worker {
                                  these have samples */
     const struct glint_scene *scene;
     struct glint_tile_scratch scratch;
-    /* [half a tile]: light and cover of blocks of 2 x 2 pixels that see one
-     * object. They are shaded once, with the block's upper row. NULL: every
-     * pixel is shaded. */
+    /* [half a tile]: light and coverage of blocks of 2 x 2 pixels that see one
+     * object and are shaded once, with the block's upper row. NULL: every pixel
+     * is shaded. */
     struct glint_scene_sum *quad;
     struct glint_quick_triangle *quick; /* [GLINT_QUICK_TRIANGLES]: cache of
                                            prepared triangles */
@@ -260,7 +261,7 @@ struct glint_scene {
     int has_triangles;      /* 1: bins has the triangles of this frame */
     int n_planes;           /* number of planes that cast shadows */
     uint32_t plane;         /* index of the last plane that casts shadows */
-    /* 1: there are objects with is_split set, and with is_catcher set */
+    /* 1: some object has is_split (has_split), or is_catcher (has_catchers) */
     int has_split, has_catchers;
     struct glint_scene_worker *worker; /* [workers] */
     struct glint_blend_rows *rows;     /* [workers] */
@@ -286,14 +287,13 @@ struct glint_scene {
     struct glint_highlight_state *bright;
     struct glint_motion_state *motion; /* NULL: there is no recorded motion */
     int cover_across, cover_down;
-    uint16_t *cover; /* [cover_down][cover_across]: cover, _q8, summed over
+    uint16_t *cover; /* [cover_down][cover_across]: coverage, _q8, summed over
                         squares of 8 x 8 pixels */
     /* number of ray tests, for glint_scene_count_tests(); NULL: not counted */
     int64_t *tests;
 };
 
-/* Adds N to the number of tests of a ray with an object, grid cell or
- * triangle. */
+/* Counts N tests of a ray against an object, grid cell or triangle. */
 static inline void glint_scene_count_ray_tests(const struct glint_scene *scene,
                                                int64_t n)
 {
@@ -332,8 +332,8 @@ int glint_scene_find_ball_span(const struct glint_scene *scene,
 int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile);
 
 /* Sets MET to the nearest intersection of RAY with an object; returns 0 if
- * there is none. Skips catchers, and the OBJECT on which the ray starts, or
- * only its triangle TRIANGLE if it is a mesh. */
+ * there is none. Skips shadow catchers, and the OBJECT on which the ray starts;
+ * if OBJECT is a mesh, only its triangle TRIANGLE. */
 int glint_scene_find_nearest_hit(const struct glint_scene *scene,
                                  const struct glint_scene_ray *ray,
                                  uint32_t object, uint32_t triangle,
@@ -392,7 +392,7 @@ void glint_scene_add_phong_light(const struct glint_scene *scene,
                                  int32_t weight_q15, int32_t rgb_q15[3]);
 
 /* Sets SHADE to the light that SURFACE sends along the primary ray RAY, and to
- * its cover. */
+ * the fraction of the background that SURFACE hides. */
 void glint_scene_shade_surface(const struct glint_scene *scene,
                                const struct glint_scene_ray *ray,
                                const struct glint_met_surface *surface,

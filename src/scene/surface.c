@@ -45,9 +45,9 @@ static int intersect_object(const struct glint_scene *s, uint32_t i,
     return does && met->t < limit;
 }
 
-/* Returns whether rays that start on OBJECT can hit object I, which must be
- * visible and not a catcher. They can hit OBJECT itself only if it is a mesh,
- * as spheres and planes are convex. */
+/* Returns whether rays that start on OBJECT can hit object I: I is shown, is
+ * not a shadow catcher, and is not OBJECT itself, unless OBJECT is a mesh
+ * (spheres and planes are convex). */
 static int can_ray_hit_object(const struct glint_scene *s, uint32_t i,
                               uint32_t object)
 {

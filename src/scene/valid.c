@@ -34,7 +34,7 @@ int glint_scene_is_unit_vector(const int32_t *v_q30, int n)
 
     if (!glint_scene_is_vector_within(v_q30, n, ONE_Q30 + (1 << 12)))
         return 0;
-    for (int k = 0; k < n; k++) /* each square is below 2^57, four in all */
+    for (int k = 0; k < n; k++) /* up to four squares, each below 2^57 */
         square_q56 += q_shift((int64_t)v_q30[k] * v_q30[k], 4);
     return glint_scene_is_number_in_range(
         square_q56 - (INT64_C(1) << 56), -(INT64_C(1) << 37), INT64_C(1) << 37);

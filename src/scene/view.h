@@ -42,8 +42,8 @@ struct glint_depth {
 };
 
 /* Sets VIEW for a picture of WIDTH x HEIGHT. FOCAL_Q16 is the focal length in
- * pixels; used only for cameras of kind GLINT_CAMERA_LENS. Returns 0 if
- * tangents of angles in the picture exceed 64. */
+ * pixels, used only for GLINT_CAMERA_LENS. Returns 0 if tangents of angles in
+ * the picture exceed 64. */
 int glint_view_init(struct glint_scene_view *view,
                     const struct glint_scene_camera *camera, int width,
                     int height, int64_t focal_q16);

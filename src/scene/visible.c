@@ -272,8 +272,8 @@ static int is_object_in_front_of_plane(const struct glint_scene *s,
            q_magnitude(away) > (uint64_t)p->reach + 2;
 }
 
-/* Reduces the box of a catcher to the pixels that may have shadows, or objects
- * that the catcher may hide. */
+/* Reduces the box of a shadow catcher to the pixels that may have shadows, or
+ * objects that the catcher may hide. */
 static void shrink_box_of_catcher(const struct glint_scene *s,
                                   struct glint_placed *plane)
 {

@@ -101,7 +101,7 @@ struct glint_scene_motions {
     enum glint_status (*open)(struct glint_scene *scene);
     /* Projects all overlays to the picture: shells, lines and the box. */
     void (*project)(struct glint_scene *scene);
-    /* Returns the number of overlays of kind KIND in the picture. */
+    /* Returns the number of overlays of type KIND in the picture. */
     int (*count)(const struct glint_scene *scene, enum glint_scene_kind kind);
     /* Returns the box of pixels of TILE that overlays may cover. */
     struct glint_box (*touch)(const struct glint_scene *scene,
@@ -124,7 +124,8 @@ void glint_scene_quaternion_to_rotation(const int32_t q_q30[4],
                                         struct glint_scene_turn *to);
 
 /* Sets the box of pixels that object P may cover; its centre and reach must be
- * set. Returns its min z, steps, or GLINT_FAR if it is not visible. */
+ * set. Returns the object's min z, steps (for a plane, a quarter of its
+ * distance from the camera), or GLINT_FAR if it is not visible. */
 int32_t glint_scene_find_object_box(const struct glint_scene *scene,
                                     struct glint_placed *p);
 

@@ -15,11 +15,10 @@ enum {
                        levels */
     MAP_TEXELS = 4, /* texels read per lookup in the map of a translucent
                        medium */
-    POINTS = 16,    /* number of sample points on a light's disc; one shadow ray
-                       is traced to each */
-    /* Costs, in units of a ray-object test. LIT_TESTS: cost of the light of one
-     * source at one point. BALL_TESTS: cost of the visibility of a ball in one
-     * pixel of its box. */
+    POINTS = 16, /* number of sample points on a light's disc; one ray is traced
+                    from the camera to each */
+    /* Costs, in units of a ray-object test: of the light of one source at one
+     * point; of the visibility of a ball in one pixel of its box. */
     LIT_TESTS = 4,
     BALL_TESTS = 3
 };
@@ -166,7 +165,6 @@ static int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
     return m->reflect_q15 || m->pass_q15;
 }
 
-/* Returns whether A and B belong to the same object. */
 static int do_ids_name_same_object(uint32_t a, uint32_t b)
 {
     return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
@@ -243,7 +241,7 @@ static void count_work_of_tile(const struct account *a,
             count_work_of_pixel(a, w, x, y);
 }
 
-/* ------------------------------------------------------------------- fates */
+/* -------------------------------------------------------------- visibility */
 
 static enum glint_scene_fate
 get_fate_of_unseen_object(const struct glint_placed *p)
@@ -307,7 +305,7 @@ static void set_object_fate(const struct account *a, uint32_t i)
         find_occluder(a, i);
 }
 
-/* ------------------------------------------------------------------- whole */
+/* ------------------------------------------------------------- all objects */
 
 static void clear_object_counts(const struct account *a)
 {
@@ -343,7 +341,7 @@ void glint_scene_account(struct glint_scene *scene,
     }
 }
 
-/* ------------------------------------------------------------------- tests */
+/* --------------------------------------------------------------- ray tests */
 
 /* Finds the surface at the middle of pixel (X, Y), without counting; returns 0
  * if there is none. */
@@ -402,8 +400,7 @@ static int64_t compute_max_map_texels(const struct glint_scene_model *m)
     return n;
 }
 
-/* Returns the cost of finding the visible balls, as a number of ray-object
- * tests. */
+/* Returns the cost of finding the visible balls, in ray-object tests. */
 static int64_t estimate_ball_visibility_cost(const struct glint_scene *s)
 {
     int64_t px = 0;

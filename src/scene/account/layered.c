@@ -2,8 +2,8 @@
 #include "glint/scene/account.h"
 #include "scene/visible.h"
 
-/* Counts, for each kind of overlay, the pixels in row Y of W's tile that
- * overlays of this kind cover. */
+/* Counts, for each type of overlay (shell, line, box), the pixels in row Y of
+ * W's tile that overlays of this type cover. */
 static void
 count_overlay_pixels_in_row(struct glint_scene_worker *w, int y,
                             struct glint_scene_layered of[GLINT_KINDS])

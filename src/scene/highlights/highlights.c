@@ -4,8 +4,8 @@
  * is summed in squares of 8 x 8 pixels. Connected squares with such light form
  * one highlight.
  *
- * The number of workers does not change results: a square belongs to one row of
- * tiles, which one worker draws, and all sums are integers. */
+ * Results do not depend on the number of workers: each square lies in one row
+ * of tiles, which one worker draws, and all sums are integers. */
 #include "glint/scene/highlights.h"
 
 #include "base/divide.h"
@@ -34,7 +34,7 @@ struct glint_highlight_cell {
      * summed over pixels. */
     int64_t square_q35;
     int64_t red_q19, blue_q19;
-    /* Light of the brightest pixel, and the object that this pixel sees. */
+    /* Light of the brightest pixel, and index of the object in this pixel. */
     int32_t peak_q15;
     uint32_t object;
 };
@@ -286,9 +286,8 @@ struct spread {
     int64_t x_q8, y_q8, xy_q8;
 };
 
-/* Returns the variance and covariance of highlight G's light: those of the
- * middles of its squares, plus the mean variance within a square, assumed
- * isotropic. */
+/* Returns variance and covariance of highlight G's light: those of the middles
+ * of its squares, plus the mean isotropic variance within a square. */
 static struct spread
 compute_highlight_variance(const struct glint_highlight_state *b,
                            const struct gathered *g)
@@ -303,7 +302,7 @@ compute_highlight_variance(const struct glint_highlight_state *b,
         int64_t off[2], own;
 
         compute_cell_middle(b, i, middle);
-        for (int k = 0; k < 2; k++) /* below 2^17, q4 */
+        for (int k = 0; k < 2; k++) /* q4, magnitude below 2^17 */
             off[k] = (middle[k] - g->at_q8[k]) / 16;
         own = glint_divide_rounded((uint64_t)c->square_q35,
                                    (uint64_t)c->flux_q19);

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the overlays of a recorded motion. The recording has a body with
- * sensors, and food items that the sensors may see. Overlays are shells around
- * visible food items, lines from food items to the sensors that see them, and
- * the box that encloses the motion of all frames. They are projected to the
- * picture and composited over the pixels of a tile.
+ * sensors, and food items (landmarks that the sensors detect). Overlays are
+ * shells around visible food items, lines from food items to the sensors that
+ * see them, and the box that encloses the motion of all frames. They are
+ * projected to the picture and composited over the pixels of a tile.
  *
  * A line has a width in space, which is projected to pixels at the point of the
- * line nearest to the pixel's middle; it is at least 3/4 of a pixel. The cover
- * of a pixel, in 1/256, is its overlap with a strip of this width. The rims of
- * shells are found by exact rays. Inside the rim, the cover of a shell has an
- * error of 2^-11. */
+ * line nearest to the pixel's middle; it is at least 3/4 of a pixel. The
+ * coverage of a pixel, in 1/256, is its overlap with a strip of this width. The
+ * rims of shells are found by exact rays. Inside the rim, the coverage by a
+ * shell has an error of 2^-11. */
 #include "base/compiler.h"
 #include "base/divide.h"
 #include "scene/motion/play.h"
@@ -74,7 +74,7 @@ static void set_clip_planes(const struct glint_scene_view *v, int k,
     const int64_t step_q56 = v->step_q56[k];
     const int down = q_larger(0, bit_length(q_magnitude(step_q56)) +
                                      bit_length(q_magnitude(far_q8)) - 62);
-    /* with 56 - DOWN fraction bits */
+    /* tangent of the clipping plane, with 56 - DOWN fraction bits */
     const int64_t tan = (step_q56 >> down) * far_q8;
     const int more = q_larger(26 - down, bit_length(q_magnitude(tan)) - 30);
 
@@ -136,13 +136,15 @@ static void set_line_box(const struct glint_scene *s,
                  ((q_larger(end[0].y, end[1].y) + y_q8 + far_q8) >> 8) + 2});
 }
 
-/* Adds a line of kind KIND, WIDTH steps wide, from point A to point B. */
+/* Adds a line of type KIND (enum glint_scene_kind), WIDTH steps wide, from
+ * point A to point B. */
 static void append_line_overlay(struct glint_scene *s, const int32_t a[3],
                                 const int32_t b[3], int32_t width,
                                 enum glint_scene_kind kind)
 {
     struct glint_motion_layer *l = append_overlay(s->motion);
-    /* so that depths, 2^30 nearest / z, are below 2^31 */
+    /* min z of a line, steps, so that depths, 2^30 nearest / z, are below
+     * 2^31 */
     const int32_t near = s->nearest / 2 + 1;
     int32_t v[2][3];
     struct glint_corner end[2];
@@ -296,7 +298,7 @@ static void append_box_edges(struct glint_scene *s)
         }
 }
 
-/* Sorts layers from back to front; a stable sort. */
+/* Sorts the overlays from back to front; a stable sort. */
 static void sort_overlays_back_to_front(struct glint_motion_state *m)
 {
     for (int i = 1; i < m->n_layers; i++) {
@@ -494,9 +496,9 @@ static int64_t compute_shell_cover_q31(const struct glint_scene *s,
     return (int64_t)share_q15 * (2 * GLINT_SCENE_ONE_Q15 - cosine_q15);
 }
 
-/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. Used near
- * the shell's rim, or if the camera is inside the shell, where the fast path
- * does not apply. */
+/* Returns the opacity of a shell times its coverage of pixel (X, Y), q8. Used
+ * near the shell's rim, or if the camera is inside the shell, where the fast
+ * path (quick.h) does not apply. */
 static NEVER_INLINE int
 compute_shell_rim_cover_q8(const struct glint_scene_worker *w,
                            const struct glint_motion_layer *l, int x, int y)
@@ -556,8 +558,8 @@ static int is_pixel_unoccluded(const struct glint_scene_worker *w, int x, int y,
     return !nearer;
 }
 
-/* Returns the opacity of a shell times its cover of pixel (X, Y), q8. Uses the
- * fast path (quick.h) for pixels inside the rim. */
+/* Returns the opacity of a shell times its coverage of pixel (X, Y), q8. Uses
+ * the fast path (quick.h) for pixels inside the rim. */
 static int compute_shell_cover_q8(const struct glint_scene_worker *w,
                                   const struct glint_motion_layer *l, int x,
                                   int y)

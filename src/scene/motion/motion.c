@@ -336,8 +336,8 @@ static const char *check_poses(struct glint_motion *m)
     return NULL;
 }
 
-/* Checks that events are sorted by frame, and that the first events state the
- * position of each food item. */
+/* Checks that the events (replacements of food items) are sorted by frame, and
+ * that the first events state the position of each food item. */
 static const char *check_events(struct glint_motion *m)
 {
     uint32_t last = 0;
@@ -354,7 +354,8 @@ static const char *check_events(struct glint_motion *m)
     return NULL;
 }
 
-/* Checks that the index by frame agrees with the events. */
+/* Checks that the index, which states the food items at the start of each block
+ * of poses, agrees with the events. */
 static const char *check_event_index(struct glint_motion *m)
 {
     const uint32_t each =

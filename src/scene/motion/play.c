@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Plays a recorded motion: moves the objects of a scene to their positions in a
- * frame, and finds which sensors see which food items (balls that the recording
- * places). Each frame is computed from the file alone, so frames can be played
+ * frame, and finds which sensors see which food items (landmarks, shown as
+ * balls). Each frame is computed from the file alone, so frames can be played
  * in any order. */
 #include "scene/motion/play.h"
 
@@ -226,7 +226,7 @@ uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food)
 /* --------------------------------------------------------------------- seek */
 
 /* Sets TURN_Q30 to the unit quaternion of the body's rotation, converted from
- * the motion's handedness to the scene's. */
+ * the motion's right-handed axes to those of the scene. */
 static void set_body_rotation(const struct glint_scene *s, int32_t turn_q30[4])
 {
     const int16_t *q14 = s->motion->frame.pose.turn_q14;
@@ -273,7 +273,6 @@ static void move_sensors(struct glint_scene *s)
     }
 }
 
-/* Moves the camera to the sensor to which it is attached. */
 static enum glint_status move_camera_to_sensor(struct glint_scene *s)
 {
     const struct glint_motion_state *m = s->motion;
@@ -372,8 +371,8 @@ uint32_t glint_scene_frames(const struct glint_scene *scene)
 
 /* -------------------------------------------------------------------- looks */
 
-/* Sets FIRST to the index of the first object of kind KIND; returns the number
- * of objects of this kind. */
+/* Sets FIRST to the index of the first object of type KIND (body, sensors or
+ * food items); returns the number of objects of this type. */
 static uint32_t find_objects_of_kind(const struct glint_motion_state *m,
                                      enum glint_scene_kind kind,
                                      uint32_t *first)

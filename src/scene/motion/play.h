@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Playback of a recorded motion in a scene. play.c moves objects and finds the
- * food items that sensors see; layers.c draws overlays.
+ * food items (landmarks) that sensors see; layers.c draws overlays.
  *
  * Shells and lines are overlays, not objects: rays do not hit them. They are
  * composited from back to front over the shaded objects of a pixel, at samples
@@ -43,8 +43,8 @@ struct glint_motion_state {
     uint32_t now;   /* index of the current frame */
     int sensor;     /* index of the sensor that the camera is
                        attached to, or -1 */
-    uint32_t shown; /* bit mask of the kinds of objects that
-                       are shown */
+    uint32_t shown; /* bit mask of the types (enum glint_scene_kind) that are
+                       shown */
     /* Sizes of the body, shells, lines and edges of the box, steps. */
     int32_t size, shell, line, edge;
     /* Rotation of the body, positions of objects in steps, and for each food

@@ -41,7 +41,7 @@ struct glint_stone_skin {
     int n_list;
     int shift;      /* the light of a texel, q15, is its map value times
                        2^shift */
-    int is_lit;     /* 1: the map has been computed before */
+    int is_lit;     /* 1: the map was computed at least once */
     uint32_t moved; /* value of the scene's counter MOVED when the map was
                        computed */
 };
@@ -79,7 +79,7 @@ enum {
     ONE_Q15 = GLINT_SCENE_ONE_Q15
 };
 
-/* --------------------------------------------------------------------- seen */
+/* ----------------------------------------------------------- visible blocks */
 
 static void mark_all_blocks_visible(struct glint_stone_skin *skin)
 {
@@ -259,7 +259,7 @@ static void mark_visible_blocks(const struct glint_scene *scene,
         mark_visible_mesh_blocks(scene, p, skin);
 }
 
-/* ------------------------------------------------------------------- around */
+/* -------------------------------------------------------------- environment */
 
 /* Adds to RGB_Q15 the environment's irradiance of a white surface of normal
  * NORMAL_Q30, times WEIGHT_Q15. */
@@ -481,7 +481,6 @@ static void compute_light_entering_texel(const struct glint_scene *s,
             rgb_q15);
 }
 
-/* Computes the light that enters the object at the texels of block I. */
 static void compute_light_entering_block(const struct glint_scene *scene,
                                          const struct glint_stone_skin *skin,
                                          int i)
@@ -509,8 +508,9 @@ static const void *get_table_in_scene_file(const struct glint_scene *s,
     return (const unsigned char *)s->model.header + at;
 }
 
-/* Returns the header of the translucent medium of map (skin) I. The scene's
- * checks have verified that the medium has the size that the map needs. */
+/* Returns the header of the translucent medium of light map (skin) I. The
+ * scene's checks have verified that the medium has the size that the map
+ * needs. */
 static const struct glint_translucent_header *
 get_medium_header(const struct glint_scene *s, uint32_t i)
 {
@@ -833,8 +833,8 @@ static int32_t sample_light_map(const int16_t *map, int width,
 {
     const int16_t *upper = map + (ptrdiff_t)y->first * width;
     const int16_t *lower = map + (ptrdiff_t)y->second * width;
-    /* 7 more fraction bits; values are then below 2^22, and products below
-     * 2^38 */
+    /* Values get 7 more fraction bits and are then below 2^22, products below
+     * 2^38. */
     const int64_t a =
         (upper[x->first] << 7) +
         ((int64_t)(upper[x->second] - upper[x->first]) * x->part_q16 >> 9);

@@ -216,8 +216,8 @@ static void add_convolved_columns(const struct glint_spread *s,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Returns whether plane P of the kernel applies to any texel of the strip. With
- * clusters, it applies to the texels of cluster P only. */
+/* Returns whether plane P of the kernel applies to any texel of the strip. In a
+ * clustered medium, plane P applies only to the texels of cluster P. */
 static int does_strip_use_kernel_plane(const struct glint_spread *s, uint32_t p,
                                        int x0, int y0, int y1)
 {

@@ -8,8 +8,9 @@
  *   out light that leaves, 0 .. 32767 in the same unit, saturated
  *
  * A strip is GLINT_STRIP columns of one colour channel. For each plane of the
- * kernel the strip's rows are convolved, two at a time, and then its columns;
- * intermediate values stay in the CPU's cache. */
+ * kernel (a term of its fit, or a cluster of texels) the strip's rows are
+ * convolved, two at a time, and then its columns; intermediate values stay in
+ * the CPU's cache. */
 #ifndef GLINT_SCENE_TRANSLUCENT_SPREAD_H
 #define GLINT_SCENE_TRANSLUCENT_SPREAD_H
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a baked translucent medium once, so that drawing need not check its
- * tables again. */
+ * Checks a baked translucent medium once, so that drawing need not. */
 #include "glint/scene/translucent.h"
 
 #include "base/blob.h"
@@ -11,7 +10,7 @@
 /* The program reads the file in place: this struct is the file's layout. */
 STATIC_ASSERT(sizeof(struct glint_translucent_header) == 172);
 
-/* checks that the members common to all baked files have their common places */
+/* checks that the members that all baked files share have the same offsets */
 GLINT_BLOB_HEADER(struct glint_translucent_header, variant);
 
 enum { CHANNELS = 3, MOST_SHIFT = 16, LEAST_GAIN = -200 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks a baked environment once, so that lookups need not check its tables
- * again. */
+ * Checks a baked environment once, so that lookups need not. */
 #include "glint/scene/environment.h"
 
 #include "base/blob.h"
@@ -15,7 +14,7 @@ STATIC_ASSERT(sizeof(struct glint_environment_header) == 124);
 STATIC_ASSERT(sizeof(struct glint_real) == 8);
 STATIC_ASSERT((int)GLINT_TEXELS_LEVELS == (int)GLINT_ENVIRONMENT_MAX_LEVELS);
 
-/* checks that the members common to all baked files have their common places */
+/* checks that the members that all baked files share have the same offsets */
 GLINT_BLOB_HEADER(struct glint_environment_header, variant);
 
 static const char outside[] =
@@ -69,7 +68,6 @@ static const char *check_mip_level(struct glint_environment *e,
     return e->texel[k] ? NULL : outside;
 }
 
-/* Sets the address of mip level K in E. */
 static void set_level_address(struct glint_environment *e, uint32_t k)
 {
     const struct glint_environment_level *l = &e->level[k];

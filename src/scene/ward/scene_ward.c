@@ -42,7 +42,7 @@ rotate_direction_to_environment(const struct glint_ward_state *w,
     to[2] = (int32_t)q_shift(c * v[2] + s * v[0], 30);
 }
 
-/* ------------------------------------------------------------------- behind */
+/* --------------------------------------------------------------- background */
 
 /* An environment as background, behind objects and in mirrors: its mip levels
  * and the discs of its bright lights, blurred to the size of a pixel. */
@@ -125,7 +125,7 @@ static void look_up_blurred_environment(const struct glint_scene *scene,
         add_light_disc(w, &e->light[i], to_q30, seen_q40, rgb_q15);
 }
 
-/* ------------------------------------------------------------------ shining */
+/* --------------------------------------------------------------- highlights */
 
 /* Highlight of one light on brushed metal: Ward's lobe, whose width depends on
  * the metal's roughness, the size of the light's disc and the curvature of the
@@ -151,10 +151,10 @@ struct half {
 };
 
 /* Returns whether the slope ALONG_Q30 / HN_Q30 is so large that the lobe with
- * squared alpha ALPHA_Q40 is certainly 0. This is a quick test without root or
- * division. ALPHA_Q40 must be below 2^42. The left side of the comparison is
- * rounded down and at most 2^56. The right side is rounded up, at most 2^63,
- * and enlarged by 1/512, which exceeds the error of the ratios. */
+ * squared alpha ALPHA_Q40, below 2^42, is certainly 0, without root or
+ * division. The left side of the comparison is rounded down, at most 2^56; the
+ * right side is rounded up, at most 2^63, and enlarged by 1/512, which exceeds
+ * the error of the ratios. */
 static int is_slope_outside_lobe(uint32_t along_q30, int32_t hn_q30,
                                  int64_t alpha_q40)
 {
@@ -437,7 +437,7 @@ static enum glint_status open_environments_and_lobes(struct glint_scene *scene)
     return GLINT_OK;
 }
 
-/* -------------------------------------------------------------------- lying */
+/* ----------------------------------------------------------- tangent frames */
 
 /* Returns the distance between the rays of neighbouring pixels where they reach
  * SURFACE, steps q8, below 2^32. */
@@ -450,7 +450,7 @@ static int64_t compute_pixel_size_q8(const struct glint_scene *s,
     int64_t t;
 
     v3_subtract(surface->place, ray->at, off);
-    t = v3_dot(off, ray->toward_q30) >> 30; /* below 2^30 */
+    t = v3_dot(off, ray->toward_q30) >> 30; /* the distance T is below 2^30 */
     t = t < 0 ? 0 : t;
     t = t * (step_q30 < ONE_Q30 ? step_q30 : (int64_t)ONE_Q30) >> 22;
     return t < UINT32_MAX ? t : (int64_t)UINT32_MAX;
@@ -536,9 +536,8 @@ compute_normal_spread_q30(const struct glint_scene *s,
 {
     const int32_t no_q30 = q_larger(
         -v3_cosine_q30(surface->normal_q30, ray->toward_q30), LEAST_COSINE_Q30);
-    const int64_t lean_q16 =
-        glint_divide_rounded(UINT64_C(1) << 46, (uint64_t)no_q30); /* up to
-                                                                      2^20 */
+    const int64_t lean_q16 = glint_divide_rounded(
+        UINT64_C(1) << 46, (uint64_t)no_q30); /* 1 / n.o, up to 2^20 */
     const int64_t turn_q30 =
         q_clamp_sat((compute_curvature_q30(s, ray, surface) * lean_q16 >> 16) +
                         (s->view.step_q56[0] >> 18),

@@ -51,7 +51,8 @@ void glint_ward_compute_light(const struct glint_ward_lobe *lobe,
         set_inverse_root_of_cosine(place);
     lobe->sum(lobe, &environment->texels, place, sum_q12);
     for (int k = 0; k < 3; k++) {
-        /* The mean, below 2^45, times a colour of 2^15. */
+        /* The mean is below 2^45 and is multiplied by a colour of at most
+         * 2^15. */
         const uint64_t mean_q12 =
             (sum_q12[k] >> 16) * (uint32_t)lobe->share_q16 +
             ((sum_q12[k] & 0xffff) * (uint32_t)lobe->share_q16 >> 16);

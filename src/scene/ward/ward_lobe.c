@@ -54,7 +54,8 @@ static void compute_sample_slopes(int n,
         const int32_t log2_q16 =
             q_log2_q16(2 * (uint64_t)n) - q_log2_q16(2 * (uint64_t)k + 1);
         const int32_t length_q16 = (int32_t)glint_compute_square_root(
-            (uint64_t)(uint32_t)log2_q16 * LN2_Q16); /* of a q32 */
+            (uint64_t)(uint32_t)log2_q16 *
+            LN2_Q16); /* square root of a _q32 number */
         const unsigned turn = reverse_bits((unsigned)k);
 
         slope_q16[k][0] = q_mul(length_q16, compute_sine((turn + 8) & 31), 30);
