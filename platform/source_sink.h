@@ -64,9 +64,9 @@ struct glint_source {
     bool has_signal;
 
     /* Starts the delivery of frames, after SOURCE was opened and after each
-     * restart. The caller should prepare for the format before this call, as
-     * frames that arrive meanwhile are lost. After GLINT_E_DEVICE, the caller
-     * must close SOURCE. */
+     * restart. The caller should set itself up for the format before this call,
+     * because frames that arrive during a later set-up are lost. After
+     * GLINT_E_DEVICE, the caller must close SOURCE. */
     enum glint_status (*start)(struct glint_source *source,
                                struct glint_error *error);
     /* Sets FRAME to the latest frame and returns older frames to the device;

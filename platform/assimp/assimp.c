@@ -18,8 +18,8 @@
 struct writer {
     FILE *to;
     int is_flat; /* 1: all faces are flat, so normals are not written */
-    /* Indices, counted from 1, of the first vertex, texture coordinate and
-     * normal of the next mesh. */
+    /* OBJ indices, from 1, of the first vertex, texture coordinate and normal
+     * of the next mesh. */
     unsigned place, uv, normal;
 };
 
@@ -150,8 +150,7 @@ static const char *check_mesh(const struct aiMesh *mesh, size_t *n)
     return NULL;
 }
 
-/* Returns the reason why glint rejects SCENE, or NULL if it is a mesh that
- * glint accepts. */
+/* Returns the reason why glint rejects SCENE, or NULL if glint accepts it. */
 static const char *check_scene(const struct aiScene *scene,
                                unsigned max_triangles)
 {

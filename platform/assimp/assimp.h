@@ -6,10 +6,10 @@
  *     if (!glint_assimp_read_mesh(&data, &bytes, "cup.ply", most, &error))
  *         ... the OBJ text data[bytes] ...; free(data);
  *
- * Assimp lives in a plug-in, glint-assimp.so, which is loaded when a mesh first
- * needs it. Assimp reads some fifty formats and crashes on some damaged files,
- * so it runs in a child process. The child returns each mesh as an OBJ text,
- * which glint's own reader of meshes parses and checks. */
+ * Assimp is linked only to a plug-in, glint-assimp.so, which is loaded when a
+ * mesh first needs it. Assimp reads some fifty formats and crashes on some
+ * damaged files, so it runs in a child process. The child returns each mesh as
+ * an OBJ text, which glint's own reader of meshes parses and checks. */
 #ifndef GLINT_PLATFORM_ASSIMP_ASSIMP_H
 #define GLINT_PLATFORM_ASSIMP_ASSIMP_H
 

@@ -55,8 +55,8 @@ static const struct glint_assimp *load_assimp_plugin(struct glint_error *error)
     return face;
 }
 
-/* Returns the bytes of address space that this process has mapped; 0 if
- * unknown. */
+/* Returns the bytes of address space that this process has mapped, or 0 if the
+ * number is unknown. */
 static rlim_t read_mapped_bytes(void)
 {
     char text[32] = "";
@@ -116,8 +116,8 @@ static pid_t start_import_process(const struct glint_assimp *face,
     return child;
 }
 
-/* Waits until CHILD has ended; kills it first if IS_WANTED is 0. Returns the
- * reason why CHILD failed, or NULL. */
+/* Waits until CHILD has ended; kills it first if its result is no longer needed
+ * (IS_WANTED 0). Returns the reason why CHILD failed, or NULL. */
 static const char *wait_for_import_process(pid_t child, int is_wanted)
 {
     int status = 0;

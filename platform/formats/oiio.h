@@ -19,8 +19,8 @@
 /* Version of this interface. glint rejects plug-ins of other versions. */
 #define GLINT_OIIO_VERSION 6
 
-/* A picture as R G B, rows without padding, the top row first, rotated upright
- * if the file states an orientation. Colours are multiplied by alpha, and alpha
+/* A picture as R G B, rows without padding, the top row first, rotated by the
+ * orientation that the file states. Colours are multiplied by alpha, and alpha
  * is dropped; grey is stored as R = G = B. */
 struct glint_oiio_pixels {
     int width, height; /* 1 .. GLINT_MAX_SIDE */
@@ -30,7 +30,8 @@ struct glint_oiio_pixels {
 };
 
 /* A picture file in memory with all of its content: every channel in the type
- * in which the file stores it, all parts, windows and metadata. */
+ * in which the file stores it, all parts (pictures of the file), display
+ * windows and metadata. */
 struct glint_oiio_file;
 
 /* Colour space, quality and metadata of a file. Pointers are valid until the
@@ -47,8 +48,7 @@ struct glint_oiio_facts {
                     tables; 0: unknown */
     const char *metadata; /* metadata that the file has: "Exif", "XMP", "Exif
                              and XMP" or "" */
-    /* Text that lists the content that glint cannot preserve; "" if there is
-     * none. */
+    /* Text that lists content that glint cannot preserve, or "". */
     char note[160];
 };
 
@@ -58,8 +58,8 @@ struct glint_oiio_options {
     /* true: ICC profile and cICP are not written, because they no longer
      * describe the pixels */
     int drop_colours;
-    /* Result: a text that lists the content of the input file that the output's
-     * file type cannot hold; "" if it can hold everything. */
+    /* Result: a text that lists content of the input file that the output's
+     * file type cannot hold, or "". */
     char said[160];
 };
 
@@ -69,7 +69,7 @@ struct glint_oiio_layer {
     float *rgb;
 };
 
-/* Layers of equal size; the file gets one part per layer. */
+/* Layers of equal size; each becomes a part (picture) of the file. */
 struct glint_oiio_layers {
     int width, height, n;
     int is_half; /* true: samples are written as half, else as float */
@@ -107,16 +107,16 @@ struct glint_oiio {
     /* Returns whether OpenImageIO writes files of PATH's extension. */
     int (*can_write)(const char *path);
 
-    /* Returns whether PATH's extension stands for FILE's type. FILE's type is
-     * determined by its content, not its name. */
+    /* Returns whether PATH's extension is that of FILE's type, which glint
+     * detects by content, not by name. */
     int (*is_same_type)(const struct glint_oiio_file *file, const char *path);
 
     /* If PIXELS is NULL, encodes FILE in its own type with all of its content;
      * the caller may have changed its samples in place. Otherwise encodes
      * PIXELS in the type of PATH's extension, with the metadata of FILE that
-     * this type can hold. PIXELS must be upright, without a window, with
-     * interleaved R G B A samples of one type; FILE may then be NULL. Returns
-     * the errors of encode(). */
+     * this type can hold. PIXELS must be upright, without a display window,
+     * with interleaved R G B A samples of one type; FILE may then be NULL.
+     * Returns the errors of encode(). */
     enum glint_status (*encode_file)(void **data, size_t *bytes,
                                      const char *path,
                                      struct glint_oiio_file *file,

@@ -76,7 +76,7 @@ int glint_gif_count_frames(const char *name)
 
 enum type_alpha { ALPHA_NONE, ALPHA_STRAIGHT, ALPHA_PREMULTIPLIED };
 
-/* Bits for the content, besides pixels, that a file type can hold. */
+/* Bits: content besides pixels that a file type can hold. */
 enum type_holds { HOLDS_METADATA = 1, HOLDS_ICC = 2, HOLDS_CICP = 4 };
 
 struct file_type {
@@ -188,7 +188,7 @@ static enum glint_status load_picture_by_plugin(struct loaded *loaded,
 }
 
 /* Reads all of IN if it is a PNM or PFM, else its first 12 bytes, into *DATA,
- * which the caller frees also on failure. NAME is for errors. Returns
+ * which the caller frees also on failure. Errors name the file NAME. Returns
  * GLINT_E_FORMAT if IN is empty, GLINT_E_UNSUPPORTED if it is a video or too
  * large, GLINT_E_IO or GLINT_E_MEMORY. */
 static enum glint_status read_picture_file(struct glint_input *in,
@@ -259,7 +259,7 @@ static enum glint_status load_picture(struct loaded *loaded, const char *path,
     glint_input_close(&in);
     free(data);
     if (!status && !loaded->floats.rgb && !loaded->image.plane[0]) {
-        /* The plug-in reported success, but gave no pixels. */
+        /* the plug-in returned GLINT_OK without pixels */
         (void)glint_error_report(error, GLINT_E_FORMAT, path, "has no pixels");
         status = GLINT_E_FORMAT;
     }
@@ -397,8 +397,8 @@ static const struct file_type *find_type_of_extension(const char *path)
     return NULL;
 }
 
-/* Returns the file type of PATH's extension, or NULL if it is unknown. For the
- * pipe "-", returns PPM for pictures of KIND 8 bits and PFM for floats. */
+/* Returns the file type of PATH's extension, or NULL if it is unknown. For "-",
+ * a pipe, returns PPM if KIND is 8 bits, and PFM if KIND is floats. */
 static const struct file_type *find_output_type(const char *path,
                                                 enum glint_picture_kind kind)
 {
@@ -619,8 +619,8 @@ static enum glint_status open_native_file(struct glint_kept *k,
 }
 
 /* Copies the samples of K back into the bytes of its PNM or PFM file, in the
- * file's byte order. Does nothing if k->own is NULL, because the samples are
- * then in these bytes. */
+ * file's byte order. Does nothing if k->own is NULL: the samples are these
+ * bytes. */
 static void update_native_file(struct glint_kept *k)
 {
     uint8_t *const at = k->native + k->header_bytes;
@@ -632,8 +632,7 @@ static void update_native_file(struct glint_kept *k)
                                      count_sample_bytes(&k->samples));
 }
 
-/* -----------------------------------------------------------------
- * get_gif_colour_table_bytes */
+/* ------------------------------------------------------------------ colours */
 
 /* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
 static void append_to_notes(char notes[GLINT_KEPT_NOTES], const char *text)
@@ -939,8 +938,8 @@ static bool can_type_hold_colours(const struct glint_kept *k,
 }
 
 /* Converts the samples FROM to samples TO, of a type that files of TYPE can
- * hold; the caller frees to->mem. Sets *KEEPS if FROM has the colours of K and
- * TYPE can describe these colours; then TO has them, too. */
+ * hold; the caller frees to->mem. If FROM has the colours of K and files of
+ * TYPE can describe them, TO gets these colours and *KEEPS is set. */
 static enum glint_status
 convert_samples_for_type(const struct glint_kept *k, struct glint_samples *to,
                          const struct glint_samples *from,

@@ -12,8 +12,8 @@
  * of the file, saving by the extension. "-" is a pipe: loading reads PPM, PGM
  * or PFM; saving writes PPM, or PFM for floats.
  *
- * There are two kinds of picture. Loading converts between them by the sRGB
- * curve if needed; saving never does:
+ * A picture has 8-bit codes or floats. Loading converts between them by the
+ * sRGB curve if needed; saving never does:
  *   8 bits sRGB, struct glint_image, for .ppm .png .jpg .tif .bmp .tga .webp
  *   floats linear light, struct glint_float_image, for .pfm .exr .hdr .tif
  *
@@ -25,10 +25,11 @@
  *     glint_kept_save(&kept, "out.png", NULL, &options, &error);
  *     glint_kept_close(&kept);
  *
- * If the output has the type of the input, it preserves depth, alpha, other
- * channels, parts, windows, profile and metadata. An output of another type is
- * upright. It has the colours, those of depth, alpha and profile that the type
- * can hold, Exif and XMP, and other metadata that OpenImageIO translates. */
+ * If the output has the type of the input, it preserves bit depth, alpha, other
+ * channels, parts (pictures), display windows, ICC profile and metadata. An
+ * output of another type is upright. It has the colours; bit depth, alpha and
+ * profile as far as the type can hold them; Exif and XMP; and other metadata
+ * that OpenImageIO translates. */
 #ifndef GLINT_PLATFORM_FORMATS_PICTURE_H
 #define GLINT_PLATFORM_FORMATS_PICTURE_H
 
@@ -44,7 +45,7 @@ struct glint_kept {
     /* true: the file stores floats, so light above white is not clipped */
     bool is_float;
     /* Text that lists content of the file that glint does not know or cannot
-     * preserve; "" if there is none. */
+     * preserve, or "". */
     char note[GLINT_KEPT_NOTES];
 
     /* Private. */
@@ -56,7 +57,7 @@ struct glint_kept {
     const char *metadata; /* metadata of the file, as in
                              glint_oiio_facts; NULL: none */
     struct glint_oiio_file *file;
-    /* all bytes of a PNM or PFM; of other files the first 12 */
+    /* all bytes of a PNM or PFM file; of other files the first 12 bytes */
     uint8_t *native;
     size_t native_bytes, header_bytes;
     bool is_pfm, is_little;
@@ -66,8 +67,7 @@ struct glint_kept {
 struct glint_kept_options {
     int quality; /* quality of JPEG and WebP, 1 .. 100; 0: the quality of the
                     input file, or 95 */
-    /* Result: a text that lists the content that was lost when saving; "" if
-     * nothing was lost. */
+    /* Result: a text that lists the content lost when saving, or "". */
     char said[GLINT_KEPT_NOTES];
 };
 
@@ -98,8 +98,8 @@ enum glint_status glint_picture_load_float(const char *path,
                                            struct glint_error *error);
 
 /* Checks, before a picture of KIND is drawn, whether PATH's file type can hold
- * it. Returns GLINT_E_UNSUPPORTED if the extension is unknown or of the other
- * kind, or its plug-in is missing. */
+ * it. Returns GLINT_E_UNSUPPORTED if the extension is unknown or that of files
+ * that cannot hold KIND, or its plug-in is missing. */
 enum glint_status glint_picture_check(const char *path,
                                       enum glint_picture_kind kind,
                                       struct glint_error *error);

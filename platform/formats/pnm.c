@@ -114,7 +114,7 @@ static int read_header_number(struct cursor *c)
     return value;
 }
 
-/* Skips the single white space that ends the header, and a comment before it.
+/* Skips a comment, and then the single white space that ends the header.
  * Returns false if there is no white space. */
 static bool skip_header_end(struct cursor *c)
 {

@@ -66,7 +66,7 @@ bool glint_sample_is_float(enum glint_sample sample)
     return sample >= GLINT_SAMPLE_HALF;
 }
 
-/* ------------------------------------------------------------------- places */
+/* ---------------------------------------------------------------- positions */
 
 static bool does_orientation_swap_sides(const struct glint_samples *s)
 {
@@ -206,7 +206,7 @@ static uint32_t get_max_sample_code(enum glint_sample sample)
                                         : UINT32_MAX;
 }
 
-/* Returns the sample of PIXEL at the place C. Integers are divided by MAXIMUM,
+/* Returns sample C (type and offset) of PIXEL. Integers are divided by MAXIMUM,
  * floats are unchanged. */
 static double read_scaled_sample(const struct glint_sample_place *c,
                                  uint32_t maximum, const uint8_t *pixel)
@@ -495,7 +495,8 @@ void glint_samples_add_light(struct glint_samples *samples, const float *layer)
     close_sample_decoder(&d);
 }
 
-/* Sets the colours of PIXEL to RGB, linear light, divided by SHARE. */
+/* Sets the colours of PIXEL to RGB / SHARE, linear light. SHARE: alpha of
+ * straight colours, else 1. */
 static void write_light_to_pixel(const struct glint_samples *s, uint8_t *pixel,
                                  const double rgb[3], double share)
 {

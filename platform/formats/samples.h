@@ -37,7 +37,7 @@ struct glint_sample_place {
 struct glint_samples {
     int width, height; /* size of the stored picture, pixels */
     int x, y;          /* position of the first pixel in the display window */
-    /* size of the display window, before orientation is applied */
+    /* size of the display window, pixels, before orientation is applied */
     int window_width, window_height;
     int orientation;    /* EXIF orientation, 1 .. 8 */
     size_t pixel_bytes; /* bytes of one pixel with all channels */

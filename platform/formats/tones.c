@@ -76,7 +76,7 @@ static double interpolate_tone_table(const struct glint_tone_curve *t,
                                      double code)
 {
     const double at = code * (t->n_entries - 1);
-    /* A NaN uses the last interval, too. */
+    /* Codes of 1 and more, and NaN, use the last interval. */
     const int i = code < 1 ? (int)at : t->n_entries - 2;
 
     return (t->entry[i] + (at - i) * (t->entry[i + 1] - t->entry[i])) / 65535;

@@ -90,7 +90,7 @@ void glint_mjpeg_close(struct glint_mjpeg *decoder)
     free(decoder);
 }
 
-/* ----------------------------------------------- what libjpeg complains of */
+/* ----------------------------------------------------- errors and warnings */
 
 /* Leaves libjpeg with STATUS, by a jump to d->escape. The caller must have set
  * d->error. */
@@ -154,7 +154,7 @@ static void on_libjpeg_output(j_common_ptr jpeg)
     (void)jpeg;
 }
 
-/* ------------------------------------------------------- what libjpeg reads */
+/* --------------------------------------------------------- input of libjpeg */
 
 static void on_source_start(j_decompress_ptr jpeg)
 {
@@ -191,7 +191,6 @@ static void on_skip_bytes(j_decompress_ptr jpeg, long bytes)
     d->source.bytes_in_buffer -= n;
 }
 
-/* Returns whether MARKER is a JPEG marker without length and data. */
 static bool is_marker_without_data(int marker)
 {
     return marker == TEM || (marker >= RST_FIRST && marker <= EOI);

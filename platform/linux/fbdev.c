@@ -17,7 +17,7 @@
 #include "posix/error.h"
 
 /* File descriptor of the console in graphics mode, or -1. restore_console()
- * reads these variables when the process dies, so they are atomic. */
+ * reads it, held_mode and holder when the process dies, so all are atomic. */
 static int held_fd = -1;
 static int held_mode; /* mode of the console before glint set it to graphics
                          mode */
@@ -46,8 +46,8 @@ static void register_console_restore(void)
     glint_at_death_register(restore_console);
 }
 
-/* Opens the console PATH and sets *FD to its descriptor. Returns the mode to
- * restore later, or -1 with errno set. */
+/* Opens the console PATH and sets *FD to its descriptor. Returns the console's
+ * mode, or -1 with errno set. */
 static int open_console(const char *path, int *fd)
 {
     struct vt_mode switching;
@@ -279,7 +279,6 @@ static enum glint_status map_panel(struct glint_fbdev *fb,
     return GLINT_OK;
 }
 
-/* Returns row Y of the mapped memory. */
 static uint8_t *get_mapped_row(const struct glint_fbdev *fb, uint32_t y)
 {
     return fb->map + fb->skip_bytes + y * fb->stride_bytes;
@@ -294,8 +293,9 @@ static bool pan_to_page(struct glint_fbdev *fb, int page)
     return glint_ioctl(fb->fd, FBIOPAN_DISPLAY, &to) == 0;
 }
 
-/* Returns whether the panel can pan between two screens of its memory. Clears
- * both first, so that old contents of the second screen are not visible. */
+/* Returns whether the panel can pan between two screens (pages) of its memory.
+ * Clears both first, so that old contents of the second screen are not
+ * visible. */
 static bool can_flip_pages(struct glint_fbdev *fb,
                            const struct fb_fix_screeninfo *fix)
 {

@@ -64,8 +64,8 @@ struct glint_fbdev {
     size_t map_bytes, skip_bytes; /* Size of the mapped memory, and offset of
                                      the first pixel in it, bytes. */
     size_t stride_bytes, mem_bytes;
-    const uint8_t *cleared[2]; /* address of each screen whose area around the
-                                  picture is black already */
+    const uint8_t *cleared[2]; /* addresses of the screens whose borders around
+                                  the picture are black already */
     bool has_vsync;
     struct glint_panel panel;
     int console_fd; /* descriptor of the console; -1: the console's mode is not

@@ -158,8 +158,8 @@ read_frame_into_buffer(struct glint_v4l2 *v, struct glint_v4l2_taken *t)
     return GLINT_V4L2_TAKEN;
 }
 
-/* Dequeues a filled buffer from the driver, or reads a frame with read(2), and
- * describes it in T. */
+/* Dequeues a filled buffer from the driver, or reads a frame with read(2). Sets
+ * T to its index, data size, sequence number and time. */
 static enum glint_v4l2_outcome take_filled_buffer(struct glint_v4l2 *v,
                                                   struct glint_v4l2_taken *t)
 {
@@ -179,7 +179,7 @@ static uint32_t request_buffers(struct glint_v4l2 *v, enum v4l2_memory memory,
 
     if (glint_ioctl(v->device.fd, VIDIOC_REQBUFS, &r) < 0)
         return 0;
-    errno = ENOMEM; /* the driver granted none */
+    errno = ENOMEM; /* used if the driver granted no buffers */
     return r.count < GLINT_V4L2_MAX_BUFFERS ? r.count : GLINT_V4L2_MAX_BUFFERS;
 }
 
@@ -195,9 +195,9 @@ static void release_buffers(struct glint_v4l2 *v)
                 free(mem);
         }
     memset(v->buffer, 0, sizeof v->buffer);
-    /* The driver's buffers are freed even if n_buffers is 0. An earlier attempt
-     * to free them may have failed, and no format can be set until it
-     * succeeds. */
+    /* The driver's buffers are freed even if n_buffers is 0: an earlier attempt
+     * to free them may have failed, and the driver accepts no format while it
+     * has buffers. */
     if (v->io == GLINT_V4L2_MMAP || v->io == GLINT_V4L2_USERPTR)
         request_buffers(v,
                         v->io == GLINT_V4L2_MMAP ? V4L2_MEMORY_MMAP

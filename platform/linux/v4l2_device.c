@@ -16,9 +16,8 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* Formats in order of preference: two bytes per pixel, because flares are drawn
- * in place; then planes; then RGB; then JPEG, which must be decoded; then grey,
- * which has no colours. */
+/* Formats in order of preference: packed Y'CbCr; planes; RGB; JPEG, which must
+ * be decoded; grey, which has no colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,
@@ -48,7 +47,7 @@ static bool is_multiplanar(const struct glint_v4l2_device *d)
     return V4L2_TYPE_IS_MULTIPLANAR(d->type);
 }
 
-/* ----------------------------------------------------- the cheapest format */
+/* ---------------------------------------------------- choice of the format */
 
 static bool has_device_frame_size(const struct glint_v4l2_device *d,
                                   uint32_t fourcc, uint32_t w, uint32_t h)
@@ -56,7 +55,7 @@ static bool has_device_frame_size(const struct glint_v4l2_device *d,
     struct v4l2_frmsizeenum size = {.pixel_format = fourcc};
 
     if (glint_ioctl(d->fd, VIDIOC_ENUM_FRAMESIZES, &size) < 0)
-        /* The device does not list its sizes, so it may have this one. */
+        /* The device does not list its frame sizes, so it may support W x H. */
         return true;
     if (size.type != V4L2_FRMSIZE_TYPE_DISCRETE)
         return w >= size.stepwise.min_width && w <= size.stepwise.max_width &&
@@ -100,8 +99,8 @@ static bool does_size_have_requested_rate(const struct glint_v4l2_device *d,
     return false;
 }
 
-/* Returns a bit mask of the formats that the device has and glint can read; bit
- * i stands for preferred[i]. */
+/* Returns the formats that the device has and glint can read, as a bit mask:
+ * bit i stands for preferred[i]. */
 static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 {
     struct v4l2_fmtdesc f = {.type = d->type};
@@ -115,8 +114,9 @@ static uint32_t find_offered_formats(const struct glint_v4l2_device *d)
 }
 
 /* Returns the first format of preferred[] that the device has in size W x H at
- * the requested rate. If there is none, returns the first one that the device
- * has in any size. Returns 0 if glint can read none of the device's formats. */
+ * the requested rate. If there is none, returns the first format of preferred[]
+ * that the device has in any size. Returns 0 if glint can read none of the
+ * device's formats. */
 static uint32_t choose_offered_format(const struct glint_v4l2_device *d,
                                       uint32_t w, uint32_t h)
 {
@@ -376,7 +376,7 @@ static enum glint_status open_device_node(struct glint_v4l2_device *d,
 }
 
 /* Opens the device NAME and reads its capabilities and name, without changing
- * settings. On failure returns GLINT_E_DEVICE, and D is closed. */
+ * settings. On failure D is closed. */
 static enum glint_status open_device_by_name(struct glint_v4l2_device *d,
                                              const char *name,
                                              struct glint_error *error)

@@ -173,7 +173,6 @@ static uintptr_t compute_plane_offset(const struct glint_image *image,
     return (uintptr_t)image->plane[plane] - (uintptr_t)image->plane[0];
 }
 
-/* Returns whether IMAGE has the memory layout that the device requires. */
 static bool has_device_layout(const struct glint_v4l2_sink *out,
                               const struct glint_image *image)
 {

@@ -27,7 +27,7 @@ struct glint_v4l2_sink {
     int fd;           /* -1: closed */
     /* frame in the device's format and layout, in mem */
     struct glint_image frame;
-    uint8_t *mem; /* memory of the frame */
+    uint8_t *mem;
     size_t bytes;
 };
 

@@ -65,9 +65,9 @@ inline std::string make_printable(const std::string &text)
     return line;
 }
 
-/* Returns CAUSE, a message of OpenImageIO, in which "the file" replaces the
- * file's NAME, because glint prints NAME before the message. Returns UNLESS if
- * CAUSE is empty. */
+/* Returns CAUSE, a message of OpenImageIO, with NAME replaced by "the file",
+ * because glint prints NAME before the message. Returns UNLESS if CAUSE is
+ * empty. */
 inline std::string remove_file_name(std::string cause, const std::string &name,
                                     const char *unless)
 {
@@ -197,8 +197,8 @@ try {
             make_printable(remove_file_name(what.cause, name,
                                             unknown == GLINT_E_OUTPUT
                                                 ? "cannot be written"
-                                                : "cannot be read: damaged, "
-                                                  "or not of its name's type"))
+                                                : "cannot be read: damaged, or "
+                                                  "not of its name's type"))
                 .c_str());
     return what.status;
 } catch (...) {
@@ -215,8 +215,8 @@ inline void reject_video_reader(const OIIO::ImageInput *in)
         throw failure{GLINT_E_UNSUPPORTED, "is a video, not a picture"};
 }
 
-/* Returns ERROR, OpenImageIO's reason for not opening a file, or what is wrong
- * in words of glint if the file is not an image. */
+/* Returns ERROR, OpenImageIO's reason for not opening a file, or a message of
+ * glint if the file is not an image. */
 inline std::string describe_open_error(const std::string &error)
 {
     const bool is_image = !OIIO::Strutil::contains(error, "format reader") &&

@@ -30,17 +30,17 @@ struct code_layout {
     size_t sample_bytes;
 };
 
-/* The RGB of links that can encode. wide_gamma: its gamma. wide_primaries: the
- * primaries of BT.2020, which include most colours of inks, as chromaticities
- * x, y of red, green, blue and white. */
+/* The RGB of conversions that can encode. wide_gamma: its gamma.
+ * wide_primaries: the primaries of BT.2020, which include most colours of inks,
+ * as chromaticities x, y of red, green, blue and white. */
 constexpr double wide_gamma = 2.2;
 constexpr double wide_primaries[4][2] = {
     {0.708, 0.292}, {0.17, 0.797}, {0.131, 0.046}, {0.3127, 0.329}};
 
 struct icc_link {
     code_layout codes;
-    /* Layout of RGB: 16 bits with wide primaries if the link can encode; else
-     * sRGB in the depth of the codes. */
+    /* Layout of RGB: 16 bits with wide primaries if can_encode is set; else
+     * sRGB with the bit depth of the codes. */
     code_layout rgb;
     bool can_encode;
 
@@ -53,10 +53,11 @@ struct icc_link {
     virtual void encode(const bytes &rgb, bytes &codes) const = 0;
 };
 
-/* Returns the link of PROFILE, which can encode if MAY_ENCODE is set and
- * PROFILE has a table for encoding. Returns NULL if PROFILE is malformed,
- * larger than 16 MiB, consists of curves and a matrix, or is not for the
- * colours of LAYOUT, or if this plug-in was built without lcms2. */
+/* Returns the conversion by PROFILE between codes and RGB. can_encode is set if
+ * MAY_ENCODE is set and PROFILE has a table for encoding. Returns NULL if
+ * PROFILE is malformed, larger than 16 MiB, consists of curves and a matrix, or
+ * is not for the colours of LAYOUT, or if this plug-in was built without
+ * lcms2. */
 std::unique_ptr<icc_link>
 open_icc_link(const bytes &profile, const code_layout &layout, bool may_encode);
 

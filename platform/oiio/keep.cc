@@ -71,8 +71,8 @@ struct glint_oiio_file {
     bool is_avif;
     std::string lost;
     /* link: conversion by the profile of parts[0]; only set if this profile
-     * consists of tables and can encode. rgb: the pixels converted to RGB, to
-     * which light is added. */
+     * consists of tables and can also convert RGB back to codes. rgb: the
+     * pixels converted to RGB, to which light is added. */
     std::unique_ptr<glint::icc_link> link;
     glint::kept_part rgb;
     bool drops_icc; /* true: the pixels of parts[0] are no longer in the file's
@@ -370,8 +370,8 @@ void open_icc_link_of_part(struct glint_oiio_file &file, const kept_part &part)
         (alpha && (spec.alpha_channel != spec.nchannels - 1 ||
                    !spec.get_int_attribute("oiio:UnassociatedAlpha", 0))))
         return;
-    /* OpenImageIO cannot write CMYK JPEGs, so the link of a JPEG need not
-     * encode. */
+    /* OpenImageIO cannot write CMYK JPEGs, so for these the conversion from RGB
+     * back to codes is not needed. */
     file.link =
         glint::open_icc_link(get_icc_profile(file, spec), layout,
                              file.type != "jpeg" || layout.n_colours != 4);
@@ -399,9 +399,8 @@ void request_cmyk_reading(struct glint_oiio_file &file,
         file.link.reset();
 }
 
-/* If FILE has a conversion by its profile, converts its pixels to RGB and adds
- * this RGB to FILE. If the conversion cannot encode, the RGB replaces the
- * pixels. */
+/* If FILE has a conversion by its profile, converts its pixels to RGB. The RGB
+ * becomes FILE.rgb or, if it cannot be converted back, replaces the pixels. */
 void add_rgb_by_profile(struct glint_oiio_file &file)
 {
     kept_part &part = file.parts.at(0);
@@ -587,7 +586,6 @@ void describe_png_in_facts(struct glint_oiio_facts &facts, const bytes &whole)
         facts.primaries[(i / 2 + 3) % 4][i % 2] = read_big32(primaries, 4 * i);
 }
 
-/* Appends TEXT to the text NOTES. */
 void append_note(char (&notes)[160], const char *text)
 {
     const size_t used = std::strlen(notes);

@@ -32,9 +32,9 @@ void append_bytes(bytes &to, const unsigned char *at, size_t n);
 
 bool is_one_of(const std::string &name, std::initializer_list<const char *> of);
 
-/* Return the chunks or segments of FILE; none if it is malformed. The last
- * segment of a JPEG has the name "" and all bytes from the first scan to the
- * end. */
+/* Return the chunks or segments of FILE; an empty list if FILE is malformed.
+ * The last segment of a JPEG has the name "" and all bytes from the first scan
+ * to the end. */
 std::vector<file_piece> split_png_chunks(const bytes &file);
 std::vector<file_piece> split_jpeg_segments(const bytes &file);
 std::vector<file_piece> split_webp_chunks(const bytes &file);

@@ -12,9 +12,9 @@
  * Drawing does not write to the panel outside the picture.
  *
  * Each row is computed in cached memory and then copied to the panel. The
- * panel's memory, which may be write-combining, is only written, in order of
- * addresses. If several panel rows show the same row of the picture, this row
- * is computed once.
+ * panel's memory may be write-combining (slow to read): it is never read, and
+ * is written in order of addresses. If several panel rows show the same row of
+ * the picture, this row is computed once.
  *
  * Packed pixels of any true-colour layout (glint_row_pack):
  *
@@ -101,7 +101,7 @@ struct glint_panel {
     struct glint_row_pack pack;
     /* Picture column for each column of the shown area; NULL: not scaled. */
     uint16_t *from_x;
-    uint8_t *line;   /* a row of the visible picture area, packed */
+    uint8_t *line;   /* a row of the picture area that is shown, packed */
     uint8_t *scaled; /* the same row, scaled to the panel */
     void *mem;       /* memory of all private arrays; NULL: closed */
 };

@@ -57,8 +57,8 @@ static void run_handlers_at_exit(void)
     report_library_abort();
 }
 
-/* Returns whether SIGNAL_NUMBER is a signal that libraries raise when they
- * crash on a malformed file. */
+/* Returns whether SIGNAL_NUMBER is a signal by which a library that crashes on
+ * a malformed file ends the process. */
 static bool is_library_fault(int signal_number)
 {
     return signal_number == SIGABRT || signal_number == SIGSEGV ||
@@ -67,9 +67,8 @@ static bool is_library_fault(int signal_number)
 
 /* Signal handler. Runs all registered functions, then lets the signal kill the
  * process. After a fault in a library, exits with status 1 instead.
- * SA_RESETHAND has restored the default action, so the signal is raised again;
- * when the handler returns, it kills the process with the status that the
- * parent expects. */
+ * SA_RESETHAND has restored the default action, so the signal raised here kills
+ * the process when the handler returns. */
 static void handle_signal(int signal_number)
 {
     run_all_handlers();

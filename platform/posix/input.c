@@ -41,8 +41,8 @@ enum glint_status glint_input_open(struct glint_input *in, const char *path,
     return open_with_flags(in, path, 0, error);
 }
 
-/* Returns the reason why glint does not accept PATH, of status ST, as a file,
- * or NULL if it does. */
+/* Returns the reason why glint does not accept PATH, with the stat data ST, as
+ * a file; NULL if glint accepts it. */
 static const char *get_rejection_reason(const char *path, const struct stat *st)
 {
     struct stat null;

@@ -46,11 +46,11 @@ static void copy_folder_of_path(char *folder, const char *path)
         snprintf(folder, PATH_BYTES, "%.*s", (int)n, path);
 }
 
-/* Returns whether the kernel would follow the symbolic link at PATH, whose
- * status is LINK. In a folder that everybody may write to, the kernel follows
- * only links of this user and of the folder's owner. The check is needed
- * because the kernel itself reports a refusal only if the file at the end of
- * the link exists. */
+/* Returns whether the kernel would follow the symbolic link at PATH, which has
+ * the stat data LINK. In a folder that everybody may write to, the kernel
+ * follows only links of this user and of the folder's owner. The check is
+ * needed because the kernel itself reports a refusal only if the file at the
+ * end of the link exists. */
 static bool may_follow_link(const char *path, const struct stat *link)
 {
     char folder[PATH_BYTES];
@@ -107,8 +107,8 @@ static char *follow_dangling_links(const char *path)
     return NULL;
 }
 
-/* Returns the path of the file that PATH leads to after all links; the caller
- * frees it. ST is the status of this file, or NULL if it does not exist yet,
+/* Returns the path of the file to which PATH leads after all links; the caller
+ * frees it. ST is the stat data of this file, or NULL if it does not exist yet,
  * for example behind a dangling link. On failure returns NULL with errno set:
  * EACCES for a dangling link that the kernel would not follow, ESTALE if PATH
  * now leads to another file than ST, or a system error. */
@@ -122,9 +122,9 @@ static char *resolve_links_of_target(const char *path, const struct stat *st)
     target = realpath(path, NULL);
     if (!target)
         return NULL;
-    /* If TARGET is another file than the one with status ST, another process
-     * has changed a link meanwhile, and the kernel might refuse to follow the
-     * new link. */
+    /* If TARGET is not the file with the stat data ST, another process has
+     * changed a link meanwhile, and the kernel might refuse to follow the new
+     * link. */
     if (lstat(target, &now) == 0 && now.st_dev == st->st_dev &&
         now.st_ino == st->st_ino)
         return target;
@@ -227,9 +227,9 @@ static void remove_if_abandoned(int folder, const char *name)
     close(fd);
 }
 
-/* Removes temporary files that killed runs have left in TARGET's folder. These
- * are files of this user whose process has ended and that no process on any
- * machine has locked. Does nothing if the last call cleaned the same folder. */
+/* Removes temporary files of killed runs from TARGET's folder: files of this
+ * user whose process has ended and that no process on any machine has locked.
+ * Does nothing if the last call cleaned the same folder. */
 static void remove_abandoned_files(const char *target)
 {
     /* hash of inode and device of the folder that was cleaned last */
@@ -405,8 +405,8 @@ static enum glint_status open_temporary_file(struct glint_output *out,
 
 /* Resolves the links of OUT's name and sets OUT's target, unless the file
  * exists and is not regular. Sets IS_THERE to whether the file exists, and ST
- * to its status. Tries again if another process replaces the file at the same
- * time, which happens if several jobs finish together. Returns 0 or an
+ * to its stat data. Tries again if another process replaces the file at the
+ * same time, which happens if several jobs finish together. Returns 0 or an
  * errno. */
 static int find_output_target(struct glint_output *out, struct stat *st,
                               bool *is_there)

@@ -27,9 +27,9 @@ struct pool {
     pthread_cond_t idle;  /* signals that busy became 0 */
     unsigned round;       /* number of rounds opened so far; a round runs one
                              set of jobs */
-    bool open;            /* true: more helpers may join the round */
+    bool open;            /* true: more helper threads may join the round */
     bool quit;
-    int busy; /* number of helpers that are working in the round */
+    int busy; /* number of helper threads that run jobs of the round */
 
     /* The members below are constant while a round is open or a helper is
      * busy. */
@@ -100,7 +100,7 @@ static void run_jobs(struct glint_workers *workers, int n_jobs,
     run_remaining_jobs(p, 0);
 
     pthread_mutex_lock(&p->lock);
-    /* Helpers that have not woken up yet may not join, because no job is
+    /* Helper threads that have not woken up yet must not join: no job is
      * left. */
     p->open = false;
     while (p->busy > 0)

@@ -7,8 +7,8 @@
  *     window.sink.put(&window.sink, &image, &error); first: opens it
  *     window.sink.close(&window.sink);
  *
- * SDL2 lives in a plug-in, glint-sdl.so, which is loaded when a window is
- * requested, from $GLINT_SDL or the folders that posix/plugin.h lists. The
+ * SDL2 is linked only to a plug-in, glint-sdl.so, which is loaded when a window
+ * is requested, from $GLINT_SDL or the folders that posix/plugin.h lists. The
  * picture keeps its aspect ratio in a window of any size. After the user has
  * closed the window or pressed Escape or q, put returns GLINT_E_CLOSED. */
 #ifndef GLINT_PLATFORM_SDL_SDL_H

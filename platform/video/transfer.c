@@ -214,7 +214,9 @@ static int32_t decode_power_q24(const struct power *p, int64_t step,
 static int32_t decode_pq_q24(int step, int steps)
 {
     const int64_t c1_q30 = INT64_C(3424) << 18, c2_q30 = INT64_C(2413) << 23;
-    const int64_t white_q32 = INT64_C(24147923032); /* log2(10000 / 203) */
+    const int64_t white_q32 =
+        INT64_C(24147923032); /* log2 of the peak of PQ relative to white, 10000
+                                 / 203 */
     int64_t p_q30, d_q30, log_q32;
 
     if (step == 0)

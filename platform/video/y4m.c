@@ -24,8 +24,8 @@ static const struct colour {
     enum glint_pixel_format format;
     bool has_alpha, is_411, may_be_deep;
 } colours[] = {
-    /* Formats by the value of the tag C. find_layout_tag() returns the first
-     * entry of each format. */
+    /* Formats by the value of the tag C. glint writes the first tag of each
+     * format (find_layout_tag()). */
     {"420jpeg", GLINT_I420, false, false, false},
     {"420mpeg2", GLINT_I420, false, false, false},
     {"420paldv", GLINT_I420, false, false, false},
@@ -598,7 +598,6 @@ static ptrdiff_t read_padded_rows(struct glint_y4m_reader *r)
     return to - r->planes;
 }
 
-/* Returns whether transfer or primaries of H differ from BT.709. */
 static bool differs_from_bt709(const struct glint_y4m_header *h)
 {
     return h->transfer != GLINT_TRANSFER_BT709 ||
@@ -943,7 +942,7 @@ static int32_t clamp_to_code_range(int64_t v, int32_t most)
 }
 
 /* Converts YCC to RGB. YCC: the code of Y', and the codes of Cb and Cr minus
- * their codes of zero. RGB: R', G', B', clamped to 0 .. 1. */
+ * the code of neutral chroma. RGB: R', G', B', clamped to 0 .. 1. */
 static void convert_to_rgb(const struct glint_y4m_light *l,
                            const int32_t ycc[3], int32_t rgb_q20[3])
 {
@@ -985,9 +984,9 @@ static void convert_to_ycc(const struct glint_y4m_light *l,
     ycc_q20[2] = y4m_scaled_quotient((int32_t)(rgb_q20[0] - y), l->cr_factor);
 }
 
-/* Computes the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC. They
- * occur if the fraction COVER_Q8 of its light is hidden and the light of LAYER
- * is added. */
+/* Computes the changes of Y', Cb and Cr, _q20, of a pixel with codes YCC when
+ * the fraction COVER_Q8 of its light is hidden and the light of LAYER is
+ * added. */
 static void compute_code_change(const struct glint_y4m_light *l,
                                 const int32_t ycc[3], const float *layer,
                                 int cover_q8, int64_t change_q20[3])
@@ -1082,7 +1081,7 @@ static void add_light_to_block(const struct glint_y4m_light *l,
                 l->most));
 }
 
-static int min_of_ints(int a, int b)
+static int get_min_int(int a, int b)
 {
     return a < b ? a : b;
 }
@@ -1173,8 +1172,8 @@ static void fill_bt709_copy(const struct glint_y4m_reader *r)
                                         y / down,
                                         x,
                                         y,
-                                        min_of_ints(x + across, f->width),
-                                        min_of_ints(y + down, f->height)};
+                                        get_min_int(x + across, f->width),
+                                        get_min_int(y + down, f->height)};
 
             convert_block_to_bt709(r->seen, from, to, &block);
         }
@@ -1201,8 +1200,8 @@ void glint_y4m_light_cover(const struct glint_y4m_light *light, uint8_t *planes,
                                         y / down,
                                         x,
                                         y,
-                                        min_of_ints(x + across, l->width),
-                                        min_of_ints(y + down, l->height)};
+                                        get_min_int(x + across, l->width),
+                                        get_min_int(y + down, l->height)};
 
             add_light_to_block(l, plane, &block, layer, cover_q8);
         }

@@ -86,8 +86,8 @@ struct glint_y4m_header {
                                    stated */
     bool range_stated;          /* the stream has the tag XCOLORRANGE */
     char extra[GLINT_Y4M_LINE]; /* all other tags, each after a space */
-    /* The header line that was read, or "". It is printed again unchanged if
-     * range still equals line_range. */
+    /* The header line that was read, or "". glint_y4m_header_print() prints it
+     * unchanged if range still equals line_range. */
     char line[GLINT_Y4M_LINE];
     enum glint_range line_range;
 };
@@ -121,8 +121,8 @@ struct glint_y4m_reader {
      * already. */
     struct glint_y4m_seen *seen;
     uint8_t ahead[4096];
-    /* Bytes ahead_at .. ahead_end - 1 of ahead were read from the input, but
-     * not parsed yet. */
+    /* Bytes ahead_at .. ahead_end - 1 of the array ahead were read from the
+     * input, but not parsed yet. */
     size_t ahead_at, ahead_end;
 };
 
