@@ -66,7 +66,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     d = calloc(1, sizeof *d);
     if (!d)
         return glint_error_report(error, GLINT_E_MEMORY, name,
-                                  "no memory for MJPEG");
+                                  "no memory for the MJPEG decoder");
     d->name = name;
     d->max_width = max_width;
     d->max_height = max_height;
@@ -76,7 +76,7 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     if (posix_memalign(&mem, ALIGN, N_PLANES * d->plane_bytes)) {
         free(d);
         return glint_error_report(error, GLINT_E_MEMORY, name,
-                                  "no memory for MJPEG");
+                                  "no memory for the MJPEG decoder");
     }
     d->mem = mem;
     *decoder = d;

@@ -98,7 +98,7 @@ static bool acquire_console(int *fd, struct glint_error *note)
         return explain_console_refusal(fd, note,
                                        errno == ENOENT || errno == ENXIO ||
                                                errno == ENODEV
-                                           ? "there is none"
+                                           ? "there is no console"
                                            : strerror(errno));
     if (mode == KD_GRAPHICS)
         return explain_console_refusal(fd, note,

@@ -258,8 +258,10 @@ static enum glint_status adopt_device_format(struct glint_v4l2_device *d,
     if (pix->width < 1 || pix->width > GLINT_PANEL_SIDE || pix->height < 1 ||
         pix->height > GLINT_PANEL_SIDE || pix->n_blocks < 1 ||
         pix->n_blocks > 3)
-        return glint_error_report(error, GLINT_E_UNSUPPORTED, d->path,
-                                  "pictures of %ux%u", pix->width, pix->height);
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, d->path,
+            "delivers pictures of %ux%u, which glint does not support",
+            pix->width, pix->height);
     for (int i = 0; i < f->n_blocks; i++)
         f->block_bytes[i] = pix->bytes[i];
     if (!f->is_jpeg && !glint_fourcc_to_format(pix->fourcc, &f->pixels))

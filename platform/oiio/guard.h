@@ -194,11 +194,12 @@ try {
         std::snprintf(
             error->text, sizeof error->text, "%s: %s",
             call::shorten(name).c_str(),
-            make_printable(remove_file_name(what.cause, name,
-                                            unknown == GLINT_E_OUTPUT
-                                                ? "cannot be written"
-                                                : "cannot be read: damaged, or "
-                                                  "not of its name's type"))
+            make_printable(remove_file_name(
+                               what.cause, name,
+                               unknown == GLINT_E_OUTPUT
+                                   ? "cannot be written"
+                                   : "cannot be read: it is damaged, or not of "
+                                     "the type that its extension states"))
                 .c_str());
     return what.status;
 } catch (...) {

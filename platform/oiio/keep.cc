@@ -980,7 +980,7 @@ bytes encode_by_oiio(ImageOutput &out, const char *path,
         write_parts(out, path, specs, parts);
     }
     if (encoded.empty())
-        throw failure{GLINT_E_OUTPUT, "OpenImageIO wrote nothing"};
+        throw failure{GLINT_E_OUTPUT, "OpenImageIO returned no encoded data"};
     return encoded;
 }
 

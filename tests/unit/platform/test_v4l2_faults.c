@@ -371,7 +371,7 @@ TEST(missing_frames_cause_a_restart)
     assert_int_equal(get_frames_during_ms(10000, &failed_ms), GLINT_E_DEVICE);
     /* The second restart has no effect, so the stream ends. */
     assert_in_range(failed_ms, 4200, 4400);
-    assert_string_equal(said.text, FAKE_PATH ": no frames come; restarting "
+    assert_string_equal(said.text, FAKE_PATH ": no frames arrive; restarting "
                                              "the stream failed");
     must_close_camera();
 }
