@@ -30,9 +30,9 @@ struct glint_vertex {
      * above 1. This function of r is used because it is smooth at r = 0 and has
      * the slope of r at r = 1. */
     int32_t barrel_q16[2];
-    /* energy of the ray, 0 .. 65536; 65536 stands for an energy of 1 in
-     * flux_q31 of the bundle. Below 0: the ray is invalid, and its other
-     * members are undefined. */
+    /* energy of the ray, 0 .. 65536; 65536 is the energy 1 to which flux_q31 of
+     * the bundle refers. Below 0: the ray is invalid, and its other members are
+     * undefined. */
     int32_t energy_q16;
 };
 

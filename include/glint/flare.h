@@ -372,8 +372,8 @@ struct glint_planned {
     int contrast_q4;
 };
 
-/* Sets PLANNED to planned bundle I, from 0. Returns 0 if there is no bundle
- * I. */
+/* Sets PLANNED to planned bundle I, from 0. Returns 1, or 0 if there is no
+ * bundle I. */
 int glint_flare_planned(const struct glint_flare *flare, int i,
                         struct glint_planned *planned);
 

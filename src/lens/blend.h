@@ -80,8 +80,8 @@ int32_t glint_blend_evaluate_q16(const struct glint_blend_output *o,
 void glint_blend_register_barrel(struct glint_zoom_mix *blend,
                                  const struct glint_blend_output *o);
 
-/* Finds the partners of each registered barrel among the barrels of this
- * position. */
+/* Finds the barrels of this position that correspond to each registered barrel
+ * of the other position. */
 void glint_blend_pair_barrels(struct glint_zoom_mix *blend);
 
 /* Adds barrel O to T as an output whose kind is unused. Returns the barrel's

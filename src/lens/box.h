@@ -34,8 +34,8 @@ static inline int32_t evaluate_box_polynomial(const int32_t p[GLINT_BOX_TERMS],
     return sum + q_mul(q_mul(of_w[1], s_q30, 30) + of_w[0], w_q30, 30);
 }
 
-/* Returns the value of the box polynomial P of the lens basis at direction
- * (S_Q30, Y_Q30) and wavelength W_Q30. */
+/* Like evaluate_box_polynomial(), in the lens basis (for lenses that are not
+ * round): at direction (S_Q30, Y_Q30) and wavelength W_Q30. */
 static inline int32_t
 evaluate_lens_box_polynomial(const int32_t p[GLINT_BOX_TERMS], int32_t s_q30,
                              int32_t y_q30, int32_t w_q30)

@@ -173,8 +173,8 @@ static void write_block_vertices(const struct block *b,
 
 /* --------------------------------------------------------------------- rows */
 
-/* Returns the coordinate of node K in a row of N_CELLS cells that spans
- * MIDDLE_Q30 +- HALF_Q30. */
+/* Returns the coordinate of vertex K, 0 .. N_CELLS, of a row of N_CELLS cells
+ * that spans MIDDLE_Q30 +- HALF_Q30. */
 static int32_t compute_node_position_q30(int32_t middle_q30, int32_t half_q30,
                                          int k, int n_cells)
 {

@@ -251,8 +251,8 @@ static int32_t compute_mix_fraction_q30(const struct glint_zoom_lens *z,
     return compute_zoom_position_q30(z, z->side[0][g], z->side[1][g]);
 }
 
-/* Returns the annulus (ring of the pupil) of the system of ghost or part E in
- * the model on SIDE at this angle and wavelength; -1 if no light passes
+/* Returns the annulus (pupil ring, struct glint_model_system) of ghost or part
+ * E in the model on SIDE at this angle and wavelength; -1 if no light passes
  * there. */
 static int find_system_annulus(const struct glint_zoom_lens *z, int e, int side,
                                int32_t sine_q30, int32_t wave_q24)

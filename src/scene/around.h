@@ -18,7 +18,7 @@ struct glint_around {
     int cell_log2, n_x, n_y;
     int has_picture;
     int has_curve;
-    /* transfer function that the table curve decodes, if has_curve is set */
+    /* transfer function that the table CURVE decodes, if has_curve is set */
     enum glint_tone transfer;
     struct glint_light_curve *curve;
     uint16_t *light_q15; /* mean light of the cells, [n_y][n_x][3]; display

@@ -89,8 +89,8 @@ static void set_plane_depth_functions(struct glint_scene *s)
     }
 }
 
-/* Counts the planes that cast shadows, and rebuilds the shadow grids of suns
- * that are outdated. */
+/* Counts the planes that cast shadows, and rebuilds outdated shadow grids of
+ * suns. */
 static void rebuild_shadow_grids(struct glint_scene *s)
 {
     s->n_planes = 0;

@@ -15,7 +15,8 @@ struct glint_scene_ray {
 };
 
 /* Sets TO to the point at distance T, steps, along RAY. T must be within
- * +-GLINT_FAR. Returns 0 if the point is not within +-2^29 of the origin. */
+ * +-GLINT_FAR. Returns 1, or 0 if the point is not within +-2^29 of the
+ * origin. */
 int glint_ray_point_at_distance(const struct glint_scene_ray *ray, int32_t t,
                                 int32_t to[3]);
 
@@ -32,8 +33,8 @@ struct glint_chord {
     int32_t t[2];
 };
 
-/* Finds the chord of RAY in the sphere around CENTRE; returns 0 if the ray
- * misses the sphere. RADIUS must be 1 .. 2^27. The ray's distance from the
+/* Finds the chord of RAY in the sphere around CENTRE; returns 1, or 0 if the
+ * ray misses the sphere. RADIUS must be 1 .. 2^27. The ray's distance from the
  * centre is |L x D|, where L is the vector from the ray's start to the centre
  * and D the ray's direction. Products are exact, so precision is the same at
  * any distance. */
@@ -86,10 +87,10 @@ struct glint_spot_on {
 void glint_ray_shear_to_axis(const struct glint_scene_ray *ray,
                              struct glint_sheared *to);
 
-/* Finds the intersection of RAY with the triangle, edges included. Returns 0 if
- * RAY misses the triangle. A vertex is sheared and rounded in the same way in
- * every triangle that has it, and all other steps are exact. So no ray passes
- * between two triangles that share an edge. */
+/* Finds the intersection of RAY with the triangle, edges included. Returns 1,
+ * or 0 if RAY misses the triangle. A vertex is sheared and rounded in the same
+ * way in every triangle that has it, and all other steps are exact. So no ray
+ * passes between two triangles that share an edge. */
 int glint_ray_intersect_triangle(const struct glint_sheared *ray,
                                  const int32_t *const vertex[3],
                                  struct glint_spot_on *spot);
@@ -121,8 +122,8 @@ void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
 
 /* Refracts direction D_Q30 by Snell's law at a surface of normal N_Q30; D.N
  * must be negative. ETA_Q28 is the refractive index in front of the surface
- * divided by that behind it, at most 16. At total reflection returns 0 and sets
- * nothing. */
+ * divided by that behind it, at most 16. Returns 1; at total reflection returns
+ * 0 and sets nothing. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3]);
 

@@ -82,9 +82,9 @@ static int find_caster_bounds(const struct glint_scene *s,
     return shadow->lo[0] <= shadow->hi[0];
 }
 
-/* Enlarges the grid for slanted rays. It becomes valid for points down to a
- * height below the objects. This height equals the longer side of the objects'
- * bounding box across the rays. */
+/* Enlarges the grid for slanted rays. The grid becomes valid for points down to
+ * SIDE steps below the objects; SIDE is the longer side of their bounding box
+ * across the rays. */
 static void enlarge_grid_for_slant(struct glint_shadow *shadow)
 {
     const int32_t side =

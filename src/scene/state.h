@@ -142,8 +142,8 @@ struct glint_shadow {
     struct glint_shadow_point point[GLINT_SHADOW_POINTS];
     int32_t (*vertex)[3];   /* vertices of all meshes, rotated by turn to u, v,
                                h */
-    struct glint_bins bins; /* per cell: indices of the objects, elements of
-                               thing */
+    struct glint_bins bins; /* per cell: indices into THING of the objects that
+                               the cell lists */
     struct glint_shadow_thing *thing; /* [n_things]: objects that cast
                                          shadows */
     int n_things;
@@ -322,13 +322,14 @@ void glint_scene_set_single_depths_of_balls(struct glint_scene *scene);
 void glint_scene_shrink_catcher_boxes(struct glint_scene *scene);
 
 /* Narrows the range X0 .. X1 - 1 to the pixels of row Y that ball P may cover;
- * returns 0 if there are none. */
+ * returns 1, or 0 if there are none. */
 int glint_scene_find_ball_span(const struct glint_scene *scene,
                                const struct glint_placed *p, int y, int32_t *x0,
                                int32_t *x1);
 
-/* Finds the visible object at each sample of TILE; returns 0 if no object is
- * visible in the tile. */
+/* Finds the visible object at each sample of TILE. Returns whether the tile
+ * must be drawn: objects or overlays may be visible in it, or the background is
+ * not the camera's picture. */
 int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile);
 
 /* Sets MET to the nearest intersection of RAY with an object; returns 0 if
@@ -369,7 +370,8 @@ int glint_scene_ray_hits_id(const struct glint_scene *scene,
                             struct glint_met *met);
 
 /* Sets SURFACE to position, normals and material at the intersection MET of
- * RAY. Returns 0 if the point is out of range or the triangle has no area. */
+ * RAY. Returns 1, or 0 if the point is out of range or the triangle has no
+ * area. */
 int glint_scene_find_surface_at_hit(const struct glint_scene *scene,
                                     const struct glint_scene_ray *ray,
                                     const struct glint_met *met,

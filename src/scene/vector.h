@@ -88,7 +88,7 @@ uint32_t glint_compute_square_root(uint64_t x);
 
 /* Sets UNIT_Q30 to V / |V|. The error per component is at most 1 unit of _q30;
  * 1.1 units if a component of V is 2^30 or more. Components of V must be within
- * +-2^62. Returns 0, and sets nothing, if V is 0. */
+ * +-2^62. Returns 1; if V is 0, returns 0 and sets nothing. */
 int glint_normalise_vector(const int64_t v[3], int32_t unit_q30[3]);
 
 /* Returns N / D, rounded, with a relative error of at most 2^-29; GLINT_FAR if

@@ -42,8 +42,8 @@ struct glint_depth {
 };
 
 /* Sets VIEW for a picture of WIDTH x HEIGHT. FOCAL_Q16 is the focal length in
- * pixels, used only for GLINT_CAMERA_LENS. Returns 0 if tangents of angles in
- * the picture exceed 64. */
+ * pixels, used only for GLINT_CAMERA_LENS. Returns 1, or 0 if tangents of
+ * angles in the picture exceed 64. */
 int glint_view_init(struct glint_scene_view *view,
                     const struct glint_scene_camera *camera, int width,
                     int height, int64_t focal_q16);
@@ -70,7 +70,7 @@ glint_view_find_box_of_points(const struct glint_scene_view *view,
                               const int32_t (*v)[3], int n);
 
 /* Sets DEPTH to the depth function of the plane with normal NORMAL_Q30 through
- * V, both in camera coordinates. Returns 0 if the camera is in the plane.
+ * V, both in camera coordinates. Returns 1, or 0 if the camera is in the plane.
  * NEAREST is the min z of the frame. */
 int glint_view_set_plane_depth(const struct glint_scene_view *view,
                                const int32_t v[3], const int32_t normal_q30[3],

@@ -67,7 +67,7 @@ void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
 /* Sets COSINE_Q30 to the cosine between RAY and the normal of ball P. Sets
  * ACROSS_Q30 to the shortest vector from the ball's middle to the ray, in
  * radii, rotated by a right angle about the ray. P->over_up must not be 0.
- * Returns 0 if the ray misses P or passes near its rim. */
+ * Returns 1, or 0 if the ray misses P or passes near its rim. */
 int glint_quick_intersect_ball(const struct glint_placed *p,
                                const struct glint_scene_ray *ray,
                                int32_t across_q30[3], int32_t *cosine_q30);

@@ -112,7 +112,7 @@ struct glint_motion_header {
 };
 
 /* Reads blocks of a file. READ copies the GLINT_MOTION_BLOCK bytes of block
- * BLOCK to TO and returns 0 on failure. */
+ * BLOCK to TO. It returns 0 on failure, else not 0. */
 struct glint_motion_blocks {
     void *ctx;
     int (*read)(void *ctx, uint32_t block, uint8_t *to);
