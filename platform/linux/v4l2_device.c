@@ -16,8 +16,9 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* Formats in order of preference: packed Y'CbCr; planes; RGB; JPEG, which must
- * be decoded; grey, which has no colours. */
+/* Formats in order of preference, by the cost of drawing: packed Y'CbCr;
+ * planes; RGB; JPEG, which must be decoded. Grey is last, because it has no
+ * colours. */
 static const uint32_t preferred[] = {
     V4L2_PIX_FMT_YUYV,   V4L2_PIX_FMT_UYVY,    V4L2_PIX_FMT_NV12,
     V4L2_PIX_FMT_NV21,   V4L2_PIX_FMT_YUV420,  V4L2_PIX_FMT_NV12M,

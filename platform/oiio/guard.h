@@ -66,8 +66,8 @@ inline std::string make_printable(const std::string &text)
 }
 
 /* Returns CAUSE, a message of OpenImageIO, with NAME replaced by "the file",
- * because glint prints NAME before the message. Returns UNLESS if CAUSE is
- * empty. */
+ * because glint prints NAME before the message. Returns the text UNLESS if
+ * CAUSE is empty. */
 inline std::string remove_file_name(std::string cause, const std::string &name,
                                     const char *unless)
 {
@@ -91,8 +91,7 @@ struct calls {
     std::atomic<int> n{0};
     std::atomic<int> err{-1}; /* duplicate of standard error while calls are
                                  running */
-    /* message that is printed on an abort; contains the name of the file of the
-     * latest call */
+    /* message that report_abort() prints; names the file of the latest call */
     char text[256] = "";
 };
 
@@ -155,8 +154,9 @@ class call
     }
 };
 
-/* If a call is running, prints to glint's standard error that OpenImageIO has
- * aborted, and returns 1. Otherwise returns 0. Async-signal-safe. */
+/* If a call of the plug-in is running, prints to glint's standard error that
+ * OpenImageIO has aborted, and returns 1. Otherwise returns 0.
+ * Async-signal-safe. */
 inline int report_abort()
 {
     const int err = under_way.err;

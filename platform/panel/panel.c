@@ -403,7 +403,7 @@ static void pack_byte_channels(const struct glint_row_pack *p, uint8_t *dst,
 }
 
 /* Returns (CODE * MOST + 127) / 255. Uses no division; the result is exact if
- * the sum is below 65535. */
+ * CODE * MOST + 127 is below 65535. */
 static inline uint16_t scale_code_to_max(uint8_t code, uint16_t most)
 {
     const uint16_t sum = (uint16_t)(code * most + 127);
