@@ -24,8 +24,8 @@ struct glint_v4l2_config {
     int width, height; /* requested size; 0, 0: the device's current size */
     /* requested frames per second; 0: the device's current rate */
     int fps_num, fps_den;
-    /* requested format; 0: the first of a list of preferred formats that the
-     * device has in this size and rate */
+    /* requested format; 0: of the formats with this size and rate, the one in
+     * which drawing costs the least */
     uint32_t fourcc;
     int input; /* index of the input; -1: the input that is
                   selected */

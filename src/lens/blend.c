@@ -3,13 +3,14 @@
  * Interpolates the polynomials of a ghost between two neighbouring positions of
  * a zoom lens.
  *
- *   in   two transfers of the same ghost, angle and wavelength
- *   out  one transfer: each coefficient and the box interpolated linearly
+ *   in   two transfers (polynomials of u and v) of the same ghost, angle and
+ *        wavelength
+ *   out  one transfer: each coefficient and the pupil box interpolated linearly
  *
  * In the coordinates of its pupil box a ghost changes slowly with the zoom.
  * Between both positions the weights are 0 or more and sum to 1. The sum of
  * magnitudes of each mixed output is then at most the larger of the two sums,
- * so the bounds on which the transfer relies hold. In extrapolation the weights
+ * so it stays below 2^30, as transfer.c requires. In extrapolation the weights
  * are up to 2 and -1, so sums may triple; two bits are reserved for this. Each
  * coefficient is rounded once. The unit of the result is the coarser of the two
  * units.
@@ -70,8 +71,8 @@ static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
 }
 
 /* Returns (B - A) / SIZE, where B, A and SIZE are in units of 2^EB, 2^EA and
- * 2^ES. Sets *FAR and returns 0 if the magnitude of the quotient exceeds
- * MOST_MOVE. */
+ * 2^ES. Sets *FAR and returns 0 if SIZE is not above 0, or the magnitude of the
+ * quotient exceeds MOST_MOVE. */
 static int32_t compute_box_move_q24(int64_t b, int32_t eb, int64_t a,
                                     int32_t ea, int64_t size, int32_t es,
                                     int *far)
@@ -188,10 +189,10 @@ static int64_t compute_coefficient_change(int32_t (*row)[GLINT_TABLE_WIDTH],
     return q_shift(sum, 24);
 }
 
-/* Sets TO to changes of the coefficients of output O, in units of 2^E. With
- * them, O and output KIND of the transfer (unit 2^EXPONENT) refer to the same
- * points of the pupil. Returns whether the sums of the changes are small enough
- * for the transfer. */
+/* Sets TO to changes of the mixed coefficients of O and output KIND of the
+ * transfer (unit 2^EXPONENT), in units of 2^E. With them, both outputs refer to
+ * the same points of the pupil. Returns whether the magnitudes of all
+ * coefficients and changes sum to less than 2^30. */
 static int compute_coefficient_changes(const struct glint_zoom_mix *blend,
                                        int kind, int32_t exponent,
                                        const struct glint_blend_output *o,
@@ -231,7 +232,7 @@ static int32_t mix_polynomial(const struct glint_zoom_mix *blend, int kind,
                               const struct glint_blend_output *o)
 {
     struct glint_transfer *const t = blend->to;
-    /* One bit is reserved for the moves, or BEYOND bits for extrapolation. */
+    /* One bit is reserved for the changes, or BEYOND bits for extrapolation. */
     const int32_t e = (exponent > o->exponent ? exponent : o->exponent) +
                       (blend->part_q30 < 0 ? BEYOND : 1);
     int32_t more[ROWS][GLINT_TABLE_WIDTH];
@@ -378,8 +379,8 @@ static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
 
 /* Moves barrel KIND so that it keeps its position in the stop. Only zoom
  * position SIDE (0: this one, 1: the other one) has the barrel. Does nothing if
- * the barrel would then block more, or sums would be too large for the
- * transfer. */
+ * the barrel would then block more, or the magnitudes of its coefficients would
+ * sum to 2^30 or more. */
 static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
                                              int side, int kind)
 {

@@ -29,9 +29,10 @@ glint_transfer_find_system(const struct glint_lens *lens, int ghost,
 
 /* Mixes GHOST of LENS into TRANSFER, which must be set to the same ghost, angle
  * and wavelength at another zoom position. The weight of LENS is PART_Q30, that
- * of TRANSFER 1 - PART_Q30. Returns 0 and does nothing if GHOST has no system
- * for this angle and wavelength in LENS, or if the two energies have different
- * representations. */
+ * of TRANSFER 1 - PART_Q30. Returns 1 on success. Returns 0 and does nothing if
+ * GHOST has no system for this angle and wavelength in LENS, or the two
+ * energies have different numbers of roots. Returns 0 and leaves TRANSFER
+ * undefined if the boxes are too far apart to extrapolate. */
 int glint_transfer_mix_position(struct glint_transfer *transfer,
                                 const struct glint_lens *lens, int ghost,
                                 int32_t sine_q30, int32_t wave_q24,

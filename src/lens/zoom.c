@@ -241,8 +241,8 @@ get_neighbour_model(const struct glint_zoom_lens *z, int e, int side)
     return &z->model[z->side[side][z->whole[e]]];
 }
 
-/* Returns the zoom position between the two models that contain GHOST, 0 ..
- * 1. */
+/* Returns the zoom position between the two nearest models that contain GHOST,
+ * 0 .. 1. */
 static int32_t compute_mix_fraction_q30(const struct glint_zoom_lens *z,
                                         int ghost)
 {
@@ -447,8 +447,8 @@ enum glint_status glint_zoom_join(struct glint_zoom_lens *zoom,
     return GLINT_OK;
 }
 
-/* Records which ghosts each model of the file contains. M: table of models in
- * the file. */
+/* Records which ghosts each model of the file contains, and sets the first
+ * position. M: table of models in the file. */
 static enum glint_status record_missing_ghosts(struct glint_zoom_lens *zoom,
                                                struct glint_blob *blob,
                                                const struct glint_zoom_model *m,
