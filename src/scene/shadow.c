@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * Shadow grid of a sun [Haines86]: a grid of cells perpendicular to its rays. A
- * cell lists all objects that may lie between the sun and a point in the cell.
- * A point outside the grid, or in an empty cell, is lit.
+ * cell lists all balls and triangles that may lie between the sun and a point
+ * in the cell; planes are tested separately. A point outside the grid, or in an
+ * empty cell, is lit.
  *
  *   in positions of objects; the directions to the points of a sun's disc
  *   out whether a point of the scene sees a point of the disc
@@ -61,8 +62,8 @@ static void extend_grid_bounds_to_sphere(struct glint_shadow *shadow,
     }
 }
 
-/* Sets the grid's bounding box to the box around all objects that cast shadows;
- * returns 0 if there are none. */
+/* Sets the grid's bounding box to the box around all balls and meshes that cast
+ * shadows; returns 0 if there are none. */
 static int find_caster_bounds(const struct glint_scene *s,
                               struct glint_shadow *shadow)
 {
@@ -163,8 +164,8 @@ static int list_triangle_casters(const struct glint_scene *s,
     return (int)mesh->n_triangles;
 }
 
-/* Lists all objects that cast shadows. Returns the total number of entries in
- * the lists of all cells. */
+/* Lists all balls and triangles that cast shadows. Returns the total number of
+ * entries in the lists of all cells. */
 static int64_t list_shadow_casters(const struct glint_scene *s,
                                    struct glint_shadow *shadow)
 {
@@ -259,8 +260,8 @@ static int can_objects_in_cell_shadow_box(const struct glint_shadow *shadow,
     return 0;
 }
 
-/* Returns whether no other object can shadow ball I. Points on the ball are
- * accurate to 2^-20 of its radius (quick.c). */
+/* Returns whether no other ball and no mesh can shadow ball I. Points on the
+ * ball are accurate to 2^-20 of its radius (quick.c). */
 static int is_ball_unshadowed(const struct glint_scene *s,
                               const struct glint_shadow *shadow, uint32_t i)
 {
@@ -284,7 +285,7 @@ static int is_ball_unshadowed(const struct glint_scene *s,
     return 1;
 }
 
-/* Sets the bit of this sun in open_to of each ball that no object can
+/* Sets the bit of this sun in open_to of each ball that no ball or mesh can
  * shadow. */
 static void mark_unshadowed_balls(const struct glint_scene *s,
                                   const struct glint_shadow *shadow)

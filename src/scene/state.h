@@ -68,8 +68,8 @@ struct glint_placed {
      * fraction bits; over_up is 0 if the quotient is out of range (quick.c). */
     int32_t over[3];
     int over_up;
-    /* Sphere: bit i is set if light i is a sun that no object can hide from the
-     * points of the sphere that face this sun. */
+    /* Sphere: bit i is set if light i is a sun that no ball or mesh can hide
+     * from the points of the sphere that face this sun. */
     uint32_t open_to;
     /* Sphere: coefficients for the range of pixels in a row that it may cover
      * (quick.c). */
@@ -128,7 +128,7 @@ struct glint_shadow {
     int light;    /* index of the sun among the lights */
     int is_ready; /* 1: the grid is up to date, as nothing has moved since it
                      was built */
-    int is_empty; /* 1: no object casts shadows */
+    int is_empty; /* 1: no ball or mesh casts shadows */
     struct glint_scene_turn turn; /* rotation to coordinates u and v across the
                                      rays and h along them */
     int32_t lo[3], hi[3];         /* bounds of the objects in the grid, in
