@@ -55,7 +55,7 @@ static void set_lamp_flux(const struct glint_scene *s,
 }
 
 /* Sets LAMP to the position, size and flux of light LIT in the picture. Returns
- * 0 if LIT is behind the camera. */
+ * 1, or 0 if LIT is at or behind the camera, or too far off-screen. */
 static int project_light_to_picture(const struct glint_scene *s,
                                     const struct glint_lit *lit,
                                     struct glint_scene_lamp *lamp)

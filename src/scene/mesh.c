@@ -655,8 +655,9 @@ static int find_end_pixel_left_of(int32_t x_q8, int side, int32_t off_q8)
  * such a triangle its edge functions, and the sum of any two, are below 2^30 */
 enum { SMALL_Q8 = 48 << 8 };
 
-/* Returns the box of pixels that a triangle may cover. It is the whole picture
- * if a corner is behind the camera or far off-screen. */
+/* Returns the box of pixels that a triangle may cover: the whole picture if a
+ * corner is behind the camera or far off-screen, an empty box if all are behind
+ * it. Sets *IS_SMALL to whether the triangle is small (SMALL_Q8). */
 static struct glint_box
 compute_triangle_box(const struct glint_scene *s, uint32_t object,
                      const struct glint_scene_triangle *t, int *is_small)

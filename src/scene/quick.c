@@ -29,8 +29,8 @@ void glint_quick_compute_ray(const struct glint_scene_view *view, int32_t x_q8,
 /* ------------------------------------------------------------------- balls */
 
 /* Prepares ball P for the fast path, which computes in units of the ball's
- * radius. Balls with the camera inside, or more than 2^13 radii away, do not
- * use it. */
+ * radius. Balls do not use it if the camera is inside, within 1/16 radius of
+ * the surface, or 2^12 radii or more away. */
 static void prepare_ball_for_fast_path(const struct glint_scene *s,
                                        struct glint_placed *p)
 {

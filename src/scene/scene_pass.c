@@ -52,10 +52,10 @@ static int32_t get_sample_offset(const struct glint_scene *s, int k, int axis)
     return k >= 0 ? glint_sample_offset_q8(s, k, axis) : k == QUAD ? 128 : 0;
 }
 
-/* Finds the surface of object ID at pixel (X, Y) exactly, without the fast path
- * of quick.h. Tries the ray through the pixel's middle first, then the ray
- * through sample K. Skips the middle if K is QUAD or the object is shaded at
- * each sample. */
+/* Finds the surface of object ID at pixel (X, Y) where the fast path (quick.h)
+ * fails at the pixel's middle. Tries the exact ray through the middle first,
+ * unless K is QUAD or the object is shaded at each sample; then the fast path
+ * and the exact ray at sample K. */
 static NEVER_INLINE int find_exact_surface(struct glint_scene_worker *w,
                                            uint32_t id, int x, int y, int k,
                                            struct glint_scene_ray *ray,

@@ -236,7 +236,8 @@ static void append_lines_from_food_to_sensors(struct glint_scene *s, uint32_t f)
 }
 
 /* Returns the cosine between the normal of ball P and a ray through a pixel's
- * middle above which the rays through all samples of the pixel hit P. */
+ * middle above which the rays through all samples of the pixel hit P; INT32_MAX
+ * if P is smaller than a pixel. */
 static int32_t compute_min_cosine_inside_rim_q30(const struct glint_placed *p)
 {
     const int64_t within = (int64_t)p->radius - p->margin;

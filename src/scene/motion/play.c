@@ -284,7 +284,7 @@ static enum glint_status move_camera_to_sensor(struct glint_scene *s)
     int axis = 1;
 
     /* the camera's up is the body's y axis, or its z axis if the sensor looks
-     * along y */
+     * within 8 degrees of the y axis */
     for (int k = 0; k < 3; k++)
         body_up_q30[k] = m->turn.row_q30[k][axis];
     if (q_magnitude(v3_cosine_q30(body_up_q30, ahead)) > 1063004405)

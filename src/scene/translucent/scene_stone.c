@@ -127,7 +127,8 @@ static int does_texel_face_camera(const struct glint_placed *p,
 /* Marks the blocks with points that face the camera. A point faces the camera
  * if n.d > R / D. n is its normal, R the ball's radius, d the unit vector from
  * the ball's centre to the camera and D the distance between them. Marks all
- * blocks if the camera is inside the ball. */
+ * blocks if the camera is inside the ball, or the map is less than 128 texels
+ * wide. */
 static void mark_visible_ball_blocks(const struct glint_scene *s,
                                      const struct glint_placed *p,
                                      struct glint_stone_skin *skin)
@@ -164,8 +165,8 @@ static void mark_visible_ball_blocks(const struct glint_scene *s,
 /* -------------------------------------------------------------------- meshes
  */
 
-/* Returns whether triangle T may be visible: it overlaps the picture and does
- * not face away from the camera. */
+/* Returns whether triangle T may be visible: it may overlap the picture and, if
+ * the mesh is closed, does not face away from the camera. */
 static int is_triangle_visible(const struct glint_scene *s,
                                const struct glint_placed *p,
                                const struct glint_stone_skin *skin,
@@ -644,8 +645,8 @@ static enum glint_status open_translucent_media(struct glint_scene *scene)
 /* ------------------------------------------------------------------ updating
  */
 
-/* Clears the states of all blocks if objects have moved since the map was
- * computed. */
+/* If objects or lights have changed since the map was computed, clears the
+ * states of all blocks and sets the exponent of map values again. */
 static void clear_stale_blocks(const struct glint_scene *s,
                                struct glint_stone_skin *skin)
 {
