@@ -756,8 +756,9 @@ static enum glint_status take_next_frame(struct glint_v4l2 *v,
             return GLINT_OK;
         break;
     case GLINT_V4L2_NOTHING:
-        return is_stream_stalled(v) ? restart_stream(v, "no frames arrive", error)
-                                    : GLINT_OK;
+        return is_stream_stalled(v)
+                   ? restart_stream(v, "no frames arrive", error)
+                   : GLINT_OK;
     case GLINT_V4L2_GONE:
         return report_device_removed(v, error);
     case GLINT_V4L2_BROKEN:
