@@ -12,8 +12,7 @@
 #include "model/model_summary.h"
 #include "model/table_file.h"
 
-#define ROW_BAKE \
-    "bake_s,model_kib,mean_terms,barrel_rms,f_number,focal_mm,table_ghosts"
+#define ROW_BAKE "bake_s,model_kib,mean_terms,barrel_rms,f_number,table_ghosts"
 #define ROW_PICTURE "psnr_db,ssim,flux"
 #define ROW_FRAME                                                           \
     "edges,refs,bundles,ghosts,arena_kib,arena_mib,plan_ms,bin_ms,draw_ms," \
@@ -228,8 +227,7 @@ static void write_model_metrics(struct figure_row *r)
     const struct model_file *const model = &r->opened.model;
     struct model_summary sum;
 
-    json_write(&r->json, "f_number: %g, focal_mm: %.2f", r->table.f_number,
-               r->opened.setup.optics.focal_mm);
+    json_write(&r->json, "f_number: %g", r->table.f_number);
     if (!model->data)
         return;
     sum =
