@@ -38,8 +38,8 @@ static inline uint64_t kinds_hash_number(uint64_t h, int64_t x)
     return h;
 }
 
-/* Sets IMAGE to MEM[BYTES], with a random range, matrix and transfer curve,
- * and fills it with a fixed pattern. */
+/* Sets IMAGE to the memory MEM[BYTES], with a random code range, YCbCr matrix
+ * and transfer curve, and fills it with a fixed pattern. */
 static inline void kinds_fill_image(struct glint_image *image, uint8_t *mem,
                                     size_t bytes, uint32_t *seed)
 {

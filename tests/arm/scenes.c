@@ -45,7 +45,7 @@ static int random_number(int below)
     return (int)(rng_xorshift(&seed) % (uint32_t)below);
 }
 
-/* ----------------------------------------------------------------- a scene */
+/* ----------------------------------------------------------- random scenes */
 
 /* Sets *SINE and *COSINE, Q30, to sine and cosine of the angle 2 atan(T /
  * 2^15), by integers only. */
@@ -62,7 +62,7 @@ static void make_random_beam(struct glint_light *b)
     int32_t sine, cosine;
     int exponent;
 
-    b->apart_q30 = 0; /* a single light */
+    b->apart_q30 = 0; /* a single light, not one point of a lamp */
     set_sine_and_cosine(random_number(7000), &b->sine_q30,
                         /* The light is at most 24 degrees off the axis. */
                         &b->cosine_q30);
@@ -231,7 +231,7 @@ static int hash_random_frame(uint64_t *h)
     return before != after;
 }
 
-/* ------------------------------------------------------------------- start */
+/* ------------------------------------------------------------ command line */
 
 static void open_model(const char *path)
 {

@@ -61,7 +61,7 @@ static enum video_format find_format_by_name(const char *name)
     exit(2);
 }
 
-/* -------------------------------------------------------------------- probe */
+/* ----------------------------------------------- source and capture filter */
 
 /* The last frame that the filter output; its rows have no padding. */
 static struct {
@@ -122,7 +122,7 @@ static struct obs_source_info probe = {.id = "host_probe",
                                        .destroy = do_nothing_with_source,
                                        .filter_video = record_output_frame};
 
-/* ---------------------------------------------------------------------- run */
+/* ---------------------------------------------- start, settings, filtering */
 
 struct run {
     enum video_format format;

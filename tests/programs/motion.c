@@ -43,8 +43,8 @@ struct sweep {
     struct sample bound;
     struct stage test, finest;
     float linear[SAMPLES];
-    /* errors of the current and the previous frame, [frame & 1][0: dithered, 1:
-     * not dithered] */
+    /* code errors of the current and the previous frame; first index: frame &
+     * 1; second index: 0 dithered, 1 not dithered */
     float error[2][2][SAMPLES];
     uint8_t codes[SAMPLES];
     double power;
@@ -84,7 +84,7 @@ static bool measure_frame_errors(struct sweep *s, double theta,
            measure_code_errors(s, &lamp, 0, error[1]);
 }
 
-/* ---------------------------------------------------------------- measures */
+/* ------------------------------------------------------ measures of change */
 
 static double compute_max_block_mean_change(const float *a, const float *b)
 {
@@ -168,7 +168,7 @@ static bool measure_light_sweep(struct sweep *s)
     return ok && steps > 0;
 }
 
-/* ----------------------------------------------------------------- the run */
+/* ------------------------------------------------------------ command line */
 
 static bool open_light_sweep(struct sweep *s)
 {

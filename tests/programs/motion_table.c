@@ -131,8 +131,8 @@ static void localise_all_tracks(const struct track_options *options,
     }
 }
 
-/* Returns the root mean square position error over the bins FIRST .. END - 1;
- * bins are equal spans of the track. */
+/* Returns the RMS position error over the bins FIRST .. END - 1; a bin is a
+ * fixed fraction of the track. */
 static double compute_rms(const struct result *r, int first, int end)
 {
     double square = 0;

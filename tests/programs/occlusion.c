@@ -100,7 +100,6 @@ static double draw_occluded_lamp(const struct scene *s, double x0, double x1)
     return (double)n / POINTS;
 }
 
-/* Returns the total power of N lamps. */
 static double sum_lamp_powers(const struct glint_lamp *lamp, int n)
 {
     double sum = 0;

@@ -30,7 +30,7 @@ enum {
     MAX_SPOTS = 64
 };
 
-/* ------------------------------------------------------------------ measure */
+/* -------------------------------------------------------- simulated camera */
 
 struct camera {
     /* image: the camera's image as RGB24; coarse: the same image as RGB565 */
@@ -85,7 +85,7 @@ static int is_bright_pixel(const struct camera *c, int i)
     return px[0] >= 240 || px[1] >= 240 || px[2] >= 240;
 }
 
-/* Measures the bright region of SCENE times GAIN that is connected to pixel
+/* Multiplies SCENE by GAIN and measures the bright region connected to pixel
  * (CX, CY). Returns the sum of its luminance; sets SPOT to the values that an
  * ideal lamp finder would report. */
 static double measure_bright_region(struct camera *c,
@@ -171,8 +171,9 @@ static void print_spot_features(struct camera *c, int id, double power,
     printf("\n");
 }
 
-/* Renders the camera's image of SCENE times GAIN, with noise of standard
- * deviation SIGMA codes. Every fourth image, by its number K, is RGB565. */
+/* Renders SCENE, multiplied by GAIN, as the camera's image, with noise of
+ * standard deviation SIGMA codes. If the image number K is a multiple of 4, the
+ * image is RGB565. */
 static void render_camera_image(struct camera *c,
                                 const struct power_picture *scene, double gain,
                                 double sigma, int k, uint32_t *seed)
@@ -193,7 +194,7 @@ static void render_camera_image(struct camera *c,
     }
 }
 
-/* ----------------------------------------------------------------- rendered */
+/* ---------------------------------------------------------- rendered lamps */
 
 static double random_number_between(double low, double high, uint32_t *seed)
 {

@@ -34,7 +34,8 @@ static struct glint_lamp make_random_lamp(const struct stage *s, uint64_t seed,
     return stage_make_lamp(theta, stage_random_uniform(&r, -180, 180), 1);
 }
 
-/* Prints the output line of lens NUMBER of S, with the result WHAT. */
+/* Prints the output line of lens NUMBER of S; WHAT is the result of the
+ * comparison. */
 static int print_lens_result(const struct stage *s, int number,
                              const char *what, int tries, double theta_deg,
                              const struct glint_measure *m, int grid)

@@ -42,7 +42,7 @@ struct steady {
     double truth[WINDOW + 1];
     /* worst: largest own step; largest: largest step of any cause */
     double worst, largest;
-    /* largest part of a step that the true lamps do not explain */
+    /* largest part of a step that exceeds the change of the true lamps */
     double unmade;
     int worst_frame, unmade_frame, cuts, frames, most_lights;
 };
@@ -65,7 +65,7 @@ static double sum_flare_light(struct steady *s)
 }
 
 /* Returns how far STEP lies outside the interval between 0 and OWN. Both are
- * logarithms of ratios of light. */
+ * logarithms of the ratio of the light in two frames. */
 static double compute_step_outside_interval(double step, double own)
 {
     const double low = fmin(own, 0), high = fmax(own, 0);

@@ -100,8 +100,8 @@ static void fit_and_bake(struct glint_scatter_rows *rows, int stone, int model,
 
     if (glint_scatter_fit(rows, &o, NULL, &fit) != GLINT_OK)
         exit_with_error("no fit");
-    /* Only factored fits have a rank; the bake separates the kernels of other
-     * fits into this number of products. */
+    /* o.rank is the rank of factored fits. For other fits it is the number of
+     * products into which the bake separates each kernel. */
     fit.rank = o.rank;
     bake_and_measure_fit(&fit, light, room, stone ? NULL : dir,
                          model_of[model].name, &db);

@@ -320,7 +320,7 @@ static void print_logarithm_errors(struct table *t)
 }
 
 /* Prints table C11: CPU seconds for the sums of all rows of a fit of five
- * terms, computed from all entries and from stored sums of h. */
+ * terms, computed from all entries and from stored sums of the kernels. */
 static void print_row_sum_times(struct table *t)
 {
     const struct glint_scatter_options options = {GLINT_SCATTER_FACTORED, 5, 3};

@@ -26,9 +26,8 @@ int finder_find_at_most_n_lamps(const struct glint_lamp_finder_config *cfg,
 int finder_find_lamps(const struct glint_lamp_finder_config *cfg,
                       const struct glint_image *image);
 
-/* Returns the threshold between the sRGB codes CODE - 1 and CODE, stops
- * relative to white, Q8. The threshold is the mean of the light of both
- * codes. */
+/* Returns the threshold between the sRGB codes CODE - 1 and CODE, the mean of
+ * their light: log2 of its ratio to white, Q8. */
 int32_t finder_threshold_stops_q8(int code);
 
 /* Returns a finder configuration that accepts regions of every size and merges

@@ -17,8 +17,8 @@ struct ghost {
     int size;   /* pixels per stop radius of the ghost's image */
     int bend;   /* quadratic distortion, 1/1000 of size */
     int mirror; /* -1: mirrored */
-    /* offset of the barrel's centre from the stop's centre, 1/1000 of the stop
-     * radius */
+    /* offset of the barrel aperture from the centre of the stop, 1/1000 of the
+     * stop radius */
     int barrel_shift;
     int32_t flux_exponent;
     int32_t rgb_q14[3];

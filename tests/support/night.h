@@ -69,8 +69,8 @@ double night_sum_track_energies(const struct night *n);
 
 double night_spot_power(const struct glint_spot *s);
 
-/* Return the index of the track or spot nearest to (X, Y); -1 if there is
- * none. */
+/* Return the index of the track or spot (lamp found in one frame) nearest to
+ * (X, Y), or -1 if there is none. */
 int night_find_track(const struct night *n, double x, double y);
 
 int night_find_spot(const struct night *n, double x, double y);

@@ -95,8 +95,7 @@ static void blur_image(double *light, int width, int height, double sigma)
 }
 
 /* Adds the glare of the lit pixels of SHAPE to LIGHT. If more than SOURCES
- * pixels are lit, only every k-th pixel is a source of glare, with k times its
- * light. */
+ * pixels are lit, only every k-th pixel is a source, with k times its light. */
 static void add_glare(double *light, const double *shape, int width, int height,
                       const struct power_lamp *l)
 {

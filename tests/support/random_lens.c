@@ -65,7 +65,7 @@ static void choose_glasses_and_radii(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);
     double semi = stage_random_uniform(r, 0.1, 0.5);
-    /* number of surfaces that the present cemented group still gets */
+    /* number of surfaces still missing in the cemented group */
     int left = 0;
 
     for (int k = 0; k < l->n_surfaces; k++) {

@@ -34,8 +34,7 @@ int make_frame_from_settings(const struct tool *tool,
     frame->dials = settings->dials;
     frame->only_ghost = settings_get_selected_ghost(settings);
     frame->tints = lens->tints;
-    /* If the grid is set by an option, there is no work limit, as a limit could
-     * make the grid coarser than requested. */
+    /* A work limit could make the grid coarser than the option requests. */
     frame->limits.most_minsn =
         settings_has_grid_option(settings) && !GLINT_OPTION_GIVEN(o, work)
             ? 0

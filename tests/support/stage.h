@@ -50,8 +50,8 @@ bool stage_bake_model(struct stage *stage, double tolerance, double max_deg);
 bool stage_bake_or_load_model(struct stage *stage, double tolerance,
                               double max_deg);
 
-/* Stops the lens down to F_NUMBER. The model, which was baked for a wider stop,
- * and the view do not change. */
+/* Stops the lens down to F_NUMBER. The view does not change, nor the model,
+ * which was baked for a wider stop. */
 bool stage_stop_down(struct stage *stage, double f_number);
 
 /* Sets the image size, WIDTH x HEIGHT pixels; the width of the image on the
@@ -89,8 +89,8 @@ struct glint_measure stage_compare_images(const struct stage *stage,
                                           const float *reference,
                                           const float *test);
 
-/* Returns the power of LAMP at which the brightest part of its flare is white
- * (see glint_measure_exposure() in measure.h). */
+/* Returns the power of LAMP at which the brightest part of its flare is white,
+ * by glint_measure_exposure(). */
 double stage_find_exposed_power(struct stage *stage,
                                 const struct glint_lamp *lamp);
 

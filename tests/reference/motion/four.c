@@ -19,9 +19,10 @@ void four_init_localiser(struct four *four, enum four_fit fit,
         four->chain[k][k] = 1;
 }
 
-/* Four points that are not coplanar, as a base: three edges from the last
- * point, and their normals. The barycentric weights of a point with respect to
- * the base sum to 1. They do not change when all points move rigidly. */
+/* Four points that are not coplanar, as a base for barycentric weights: the
+ * edges from the last point to the other three, and their normals. The four
+ * weights of a point sum to 1, and do not change when all points move
+ * rigidly. */
 struct base {
     enum four_arithmetic arithmetic;
     /* normal[i]: cross product of the other two edges */
@@ -101,9 +102,9 @@ static double four_span_volume(const double (*const from[4])[3])
     return bound > 0 ? fabs(b.det) / bound : 0;
 }
 
-/* Sets MAP, 3 x 4 by columns, to the affine map that moves FROM[4] to TO[4]:
- * first the images of the three axes, then the image of the origin. Returns
- * false if four_span_volume() is below 2^-20. */
+/* Sets MAP to the affine map that moves FROM[4] to TO[4]. The columns of MAP
+ * are the images of the three axes and of the origin. Returns false if
+ * four_span_volume() is below 2^-20. */
 static bool four_solve_affine_map(enum four_arithmetic arithmetic,
                                   const double (*const from[4])[3],
                                   const double (*const to[4])[3],

@@ -31,7 +31,8 @@ struct four {
     double place[GLINT_MOTION_MAX_FOODS][3];
     /* positions of the foods in the previous frame */
     double last[GLINT_MOTION_MAX_FOODS][3];
-    /* product of the motions of all frames so far, 3 x 4 by columns */
+    /* product of the motions of all frames so far: an affine map, 3 x 4 by
+     * columns */
     double chain[4][3];
 };
 

@@ -45,7 +45,7 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
     const double line = sqrt(entries);
 
     switch (candidate->kind) {
-    /* plus one byte per texel for the cluster index */
+    /* `texels` bytes: one cluster index per texel */
     case GLINT_CANDIDATE_CLUSTERED:
         return 8 * 3 * (2 * texels + candidate->terms * entries) + texels;
     case GLINT_CANDIDATE_FACTORED:
@@ -87,7 +87,8 @@ glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
         return kept ? 3 * (texels + entries) : 3 * texels * entries;
     case GLINT_CANDIDATE_CLUSTERED:
         return 3 * texels * entries;
-    /* if KEPT, uses stored sums of (mean row G) * (kernel h_j), per cluster */
+    /* KEPT: uses, per cluster, the stored sum of mean row G times each
+     * kernel */
     case GLINT_CANDIDATE_PEERS:
         return kept ? terms * (texels + candidate->clusters * entries)
                     : (terms + 3) * texels * entries;
@@ -177,8 +178,8 @@ static int compare_doubles(const void *a, const void *b)
 }
 
 /* Returns the squared error of the row of texel X. Counts the row's negative
- * entries and updates the max row sum in J. Adds the squared asymmetry of its
- * entries to ONE_WAY. */
+ * entries and updates the max row sum in J. Adds the squared asymmetry of the
+ * row's entries to ONE_WAY. */
 static double measure_row_errors(const struct glint_scatter_rows *rows,
                                  const struct glint_scatter_rows *rebuilt,
                                  int x, struct glint_scatter_judgement *j,

@@ -15,7 +15,7 @@ enum {
     CLUSTER_ROUNDS = 20 /* rounds of k-means */
 };
 
-/* Sets ROW to row X as the factorisation models it: the sum of its terms. */
+/* Sets ROW to the sum of the terms that model row X. */
 static void sum_row_terms(const struct glint_positive *p, int x, double *row)
 {
     memset(row, 0, (size_t)p->m * sizeof *row);
@@ -29,8 +29,8 @@ static void sum_row_terms(const struct glint_positive *p, int x, double *row)
 }
 
 /* Memory for one update of the kernels h. up: [terms][m] sums of weighted
- * values; gram: [terms][terms][m] sums of weights; value, weight and left:
- * scratch rows. */
+ * values; gram: [terms][terms][m] sums of weights; value, weight and left
+ * (residual): scratch rows. */
 struct sums {
     double *up, *gram, *value, *weight, *left;
 };
@@ -103,8 +103,8 @@ static void fit_kernels_h(const struct glint_positive *p, const struct sums *s)
     }
 }
 
-/* Sets the initial f and h from two different pseudo-random sequences. Terms
- * with equal initial values would stay equal. */
+/* Sets the initial weights f and kernels h from two different pseudo-random
+ * sequences. Terms with equal initial values would stay equal. */
 static void set_initial_factors(const struct glint_positive *p)
 {
     for (int i = 0; i < p->terms * p->n; i++)
@@ -140,8 +140,8 @@ enum glint_status glint_fit_nonnegative_factors(const struct glint_positive *p,
     return status;
 }
 
-/* The matrix to factorise: rows divided by the mean row of their cluster; if
- * PLAIN, the unchanged rows. */
+/* The matrix to factorise: rows divided by the mean row of their cluster;
+ * PLAIN: the unchanged rows. */
 struct over {
     const struct glint_scatter_rows *rows;
     int c, clusters;

@@ -32,9 +32,9 @@ double glint_scatter_largest_entry(const struct glint_scatter_rows *rows);
 void glint_store_rebuilt_row(const struct glint_scatter_rows *rebuilt, int x,
                              int c, const double *row);
 
-/* Fits one Tucker(1, 1) term f h' to the matrix LEFT[n][k2], sets F[n] and
- * H[k2], and subtracts the term from LEFT. Returns the square of its singular
- * value. */
+/* Fits one rank-1 term, weights F[n] times kernel H[k2], to the matrix
+ * LEFT[n][k2], and subtracts the term from LEFT. Returns the square of its
+ * singular value. */
 double glint_fit_tucker_term(float *left, int n, int k2, double *f, double *h);
 
 /* Factorises V, n rows of m entries, into non-negative F[terms][n] and

@@ -52,9 +52,9 @@ static void set_entry_radii(const struct subedit *p)
     }
 }
 
-/* Solves the next profile of texel X. Each entry of the row of X requires a
- * value of the profile at its radius, given the profile of the entry's texel.
- * The value at a radius is the mean of the required ones. ALONE: ignores the
+/* Solves the next profile of texel X. Given the profile of its own texel, each
+ * entry of the row of X requires a value of the profile of X at the entry's
+ * radius. The new value at a radius is the mean of these. ALONE: ignores the
  * profiles of other texels. */
 static void solve_radial_profile(const struct subedit *p, int x, bool alone)
 {

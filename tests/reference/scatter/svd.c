@@ -11,8 +11,7 @@
 #include "bake/translucent/linear.h"
 
 enum {
-    /* number of rows on which the search for the parameters a and b measures
-     * errors */
+    /* number of rows that the search for the parameters a and b uses */
     SEARCHED = 256
 };
 
@@ -134,7 +133,8 @@ static bool measure_log_fit_error(const struct channel *p, int n,
     return true;
 }
 
-/* Sets a and b of O to the values of a search grid with the smallest error. */
+/* Searches a grid of values for the a and b with the smallest error, and stores
+ * them in O. */
 static enum glint_status
 search_parameters(const struct glint_scatter_rows *rows,
                   struct glint_scatter_candidate *o,

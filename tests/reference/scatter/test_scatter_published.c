@@ -97,9 +97,9 @@ TEST(c1_physics)
         }
 }
 
-/* C3: if 30 % of the rows are shifted by a texel, one term fits far better
- * after rotation, where rows begin with their maximum. Rotation hardly changes
- * the error of unshifted rows. */
+/* C3: if 30 % of the rows are shifted by a texel, a model of one term fits far
+ * better when each row is rotated to begin with its maximum. Rotation hardly
+ * changes the error of unshifted rows. */
 TEST(c3_turned)
 {
     struct glint_scatter_rows off;
@@ -191,10 +191,11 @@ TEST(c5_polynomials)
                 0.6 * compute_row_rmse(&stone[0], GLINT_CANDIDATE_TUCKER, 1));
 }
 
-/* C6: for large a the logarithm is nearly linear, so its fit is as good as the
- * linear fit, which is optimal. With a = 0.01 and b = 1 there are negative
- * entries: the published claim "never negative" is wrong. The parameters found
- * by search fit better than these and almost as well as the linear model. */
+/* C6: for large a, ln(R' / a + b) is nearly linear in R', so its fit is as good
+ * as the linear fit, which is optimal. With a = 0.01 and b = 1 there are
+ * negative entries: the published claim "never negative" is wrong. The
+ * parameters found by search fit better than these and almost as well as the
+ * linear model. */
 TEST(c6_logarithms)
 {
     const double linear = compute_row_rmse(&stone[0], GLINT_CANDIDATE_SVD, 3);
@@ -213,9 +214,9 @@ TEST(c6_logarithms)
     assert_true(found.rmse < 1.05 * linear && found.rmse < j.rmse);
 }
 
-/* C7: models with entries clamped to 0, and models of logarithms, do not fit
+/* C7: neither models with entries clamped to 0 nor models of logarithms fit
  * better than the linear model. A tolerance of 2 % is needed, as the linear
- * model also fits entries outside the square. */
+ * model also fits entries outside the square of the medium. */
 TEST(c7_held)
 {
     for (int i = 0; i < 2; i++)
@@ -232,9 +233,9 @@ TEST(c7_held)
         }
 }
 
-/* C8: checks that model sizes equal the sizes printed in the source, MiB. Media
- * of 110 x 110 and 260 x 260 texels match two printed sizes each; 3.60 MiB
- * corresponds to 39 numbers per texel. */
+/* C8: checks that model sizes equal the published sizes, MiB. Media of 110 x
+ * 110 and 260 x 260 texels match two published sizes each; 3.60 MiB corresponds
+ * to 39 numbers per texel. */
 TEST(c8_sizes)
 {
     static const struct {
@@ -261,8 +262,8 @@ TEST(c8_sizes)
     assert_string_equal(text, "3.60");
 }
 
-/* C9: checks that the decomposition with ten terms has a smaller error than
- * radial profiles and needs less memory. */
+/* C9: checks that ten terms of the decomposition have a smaller error than
+ * radial profiles and need less memory. */
 TEST(c9_profiles)
 {
     for (int i = 0; i < 2; i++)
@@ -289,8 +290,8 @@ TEST(c10_clusters)
     }
 }
 
-/* C11: the sums of rows that are computed from stored sums of h equal the sums
- * of all entries. They need 800 times fewer multiplications. */
+/* C11: sums of rows computed from stored sums of the kernels equal the sums of
+ * all entries, with 800 times fewer multiplications. */
 TEST(c11_albedo)
 {
     const struct glint_scatter_candidate o =

@@ -67,8 +67,8 @@ glint_scatter_candidate_bytes(const struct glint_scatter_candidate *candidate,
                               double texels, double entries);
 
 /* Returns the number of multiplications (or roots and exponentials) that the
- * sums of all rows need. KEPT: linear models use stored sums of their kernels
- * h. */
+ * sums of all rows need. KEPT: linear models use stored sums of their
+ * kernels. */
 double
 glint_scatter_candidate_sums(const struct glint_scatter_candidate *candidate,
                              double texels, double entries, bool kept);

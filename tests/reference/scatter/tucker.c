@@ -28,8 +28,7 @@ struct tucker {
     double *f, *h; /* [n] and [k2]: weights f and kernel h of one term */
     float *model;  /* [n][k2]: sum of the terms so far */
     int *first;    /* [n]: index of the largest entry of each row */
-    /* [n]: divisor of each row: its largest entry, or 1 if rows are not
-     * rotated */
+    /* [n]: divisor of each row: its largest entry; 1 if rows are not rotated */
     double *most;
 };
 

@@ -90,8 +90,8 @@ TEST(a1_length)
     assert_vec_near(a, 0, .6, .8, 1e-15);
 }
 
-/* A2, A3: checks the normal of the tutorial's triangle, and where a ray hits
- * it. */
+/* A2, A3: checks the normal of the tutorial's triangle, and the point where a
+ * ray hits the triangle. */
 TEST(a2_a3_triangle)
 {
     struct stage *s = open_reference_for_text(
@@ -106,10 +106,9 @@ TEST(a2_a3_triangle)
     close_reference(s);
 }
 
-/* A4: a ray through a point in the plane of the tutorial's triangle hits it if
- * and only if the point is inside. This is true for triangles of any size. A
- * test by comparing areas fails for most small triangles (baseline in
- * test_scene_rays). */
+/* A4: a ray through a point in the plane of the tutorial's triangle hits the
+ * triangle if and only if the point is inside it, at any size. A test by
+ * comparing areas fails for most small triangles (see test_scene_rays). */
 TEST(a4_inside)
 {
     static const double corner[3][3] = {
@@ -242,8 +241,8 @@ TEST(a8_phong)
 
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 0),
                      .1 + .15 + .075, .05 + .075 + .075, .15);
-    /* at 45 degrees, the squared cosine between mirrored light and view is
-     * 1/2 */
+    /* at 45 degrees, the squared cosine between mirrored light and view
+     * direction is 1/2 */
     assert_rgb_light(trace_ray_in_text(text, 0, 1, 0, 0, -1, 1),
                      .1 + .15 + .0375, .05 + .075 + .0375, .075);
     /* from below only ambient light is visible */
@@ -321,9 +320,9 @@ TEST(a10_acne)
     "material w phong 1 0 0 colour .2 .4 .8\n"                \
     "sphere b at 0 0 0 radius 1 material g\n"
 
-/* A11: an object behind a transparent ball of index 1 is visible straight
- * through the ball, scaled by the transmitted fraction. Where there is no
- * object, the background picture is visible. The image is bit-identical with
+/* A11: an object behind a transparent ball of refractive index 1 is visible
+ * straight through the ball, scaled by the transmitted fraction. Where there is
+ * no object, the background picture is visible. The image is bit-identical with
  * and without "refract 1". */
 TEST(a11_pass)
 {
@@ -351,10 +350,10 @@ TEST(a11_pass)
     assert_true(seen > 10 && seen < 35);
 }
 
-/* A12: refraction of a ray half a radius off the centre of a ball of index 1.5.
- * It enters at 30 degrees to the normal and continues at asin(1/3) = 19.4712
- * degrees. It is deflected by twice the difference, and crosses the axis .8949
- * behind the ball. */
+/* A12: refraction of a ray half a radius off the centre of a ball of refractive
+ * index 1.5. The ray enters at 30 degrees to the normal and continues at
+ * asin(1/3) = 19.4712 degrees. It is deflected by twice the difference, and
+ * crosses the axis .8949 behind the ball. */
 TEST(a12_refract)
 {
     struct stage *s = open_reference_for_text(
@@ -367,8 +366,8 @@ TEST(a12_refract)
     const double cross = cos(round) + sin(round) / tan(turn);
     struct glint_described_object *w = &s->scene.object[1];
 
-    /* A small ball at the crossing of ray and axis is visible, but not a ball
-     * beside it. */
+    /* A small ball where ray and axis cross is visible; a ball next to this
+     * point is not. */
     w->kind = GLINT_DESCRIBED_SPHERE;
     w->radius = 1e-6;
     w->at[0] = 0;
@@ -393,8 +392,8 @@ TEST(a12_refract)
         .1, .2, .4);
 }
 
-/* A12: a ball of lower index than its surroundings reflects all light whose
- * angle of incidence exceeds 14.48 degrees. */
+/* A12: a ball of lower refractive index than its surroundings reflects all
+ * light whose angle of incidence exceeds 14.48 degrees. */
 TEST(a12_outside)
 {
     static const char text[] =

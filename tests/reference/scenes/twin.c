@@ -68,9 +68,9 @@ void reference_close(struct twin *twin)
 
 /* ------------------------------------------------------------------ lights */
 
-/* Computes the light of LIGHT at PLACE. Sets TOWARD to the direction of LIGHT,
- * and RGB to the light that a white surface facing LIGHT reflects. Returns the
- * distance of LIGHT. */
+/* Computes the light of LIGHT at PLACE. Sets TOWARD to the direction towards
+ * LIGHT, and RGB to the light that a white surface facing LIGHT reflects.
+ * Returns the distance to LIGHT. */
 static double compute_light_at_place(const struct glint_described_light *light,
                                      const double place[3], double toward[3],
                                      double rgb[3])
@@ -105,8 +105,8 @@ compute_light_sine_radius(const struct glint_described_light *light,
                : fmin(light->radius / vec_normalise(off), .5);
 }
 
-/* points on the unit disc, which shadow rays to a light aim at; the same as in
- * the run time */
+/* points on the unit disc, at which shadow rays to a light aim; the run time
+ * uses the same */
 static const double four[4][2] = {
     {.66446, .24185}, {-.24185, .66446}, {-.66446, -.24185}, {.24185, -.66446}};
 static const double sixteen[16][2] = {
@@ -117,9 +117,9 @@ static const double sixteen[16][2] = {
     {-.76474, -.44318}, {.89713, -.19724},  {-.54752, .77878},
     {-.12650, -.97610}};
 
-/* Changes TOWARD from the direction of the centre of a light to that of point I
- * of N points on its disc. The light is at DISTANCE. The axes of the disc are
- * those of the run time, whose z axis points into the picture. */
+/* Changes TOWARD from the direction of a light's centre to that of point I of N
+ * points on the light's disc, at DISTANCE. As in the run time, the axes of the
+ * disc have z into the picture. */
 static void aim_at_light_disc(const struct glint_description *scene,
                               const struct glint_described_light *light,
                               double toward[3], double distance, int i, int n)
@@ -258,8 +258,8 @@ static void compute_phong_terms(const struct twin *twin,
 /* -------------------------------------------- transmitted and mirrored rays */
 
 /* Refracts direction D at a surface by Snell's law (A12). The normal N points
- * to the ray's origin; ETA is the index before the surface divided by the index
- * behind it. Returns false at total reflection. */
+ * to the ray's origin; ETA is the refractive index before the surface divided
+ * by that behind it. Returns false at total reflection. */
 static bool refract_direction(const double d[3], const double n[3], double eta,
                               double to[3])
 {
@@ -320,8 +320,8 @@ static void move_to_ball_exit(const struct twin *twin,
         refract_or_reflect(&p->ray, back, index);
 }
 
-/* Moves P through the surface at HIT: if the object is a ball, to the point
- * where it leaves the ball (A11), else just behind the surface. */
+/* Moves P through the surface at HIT: for a ball, to the point where P leaves
+ * it (A11); otherwise just behind the surface. */
 static void pass_through_surface(const struct twin *twin,
                                  const struct twin_hit *hit, struct passing *p)
 {

@@ -41,10 +41,10 @@ struct twin {
     const struct glint_description *scene;
     /* shadow rays per light: 1, 4 or 16; reference_open() sets 1 */
     int shadow_points;
-    /* Number of samples of a Ward lobe. 1 to 32: the same samples as in the run
-     * time; reference_open() sets 8. More than 32: the samples cover the lobe
-     * without blur by mip levels; they read the finest level and differ from
-     * ray to ray. */
+    /* Number of samples of a Ward lobe; reference_open() sets 8. 1 to 32: the
+     * same samples as in the run time. More than 32: samples read the finest
+     * mipmap level, so they cover the lobe without blur, and differ from ray to
+     * ray. */
     int ward_samples;
     /* tangent of the angle that a pixel subtends; set by
      * reference_render_image() */

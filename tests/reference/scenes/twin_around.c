@@ -51,7 +51,7 @@ static void compute_octahedron_position(const double toward[3], double place[2])
 }
 
 /* Returns the index of texel (X, Y) in the octahedron map of SIDE x SIDE
- * texels. A texel outside the map is replaced by its neighbour on the
+ * texels. For a texel outside the map, returns its neighbour on the
  * octahedron. */
 static int wrap_texel_index(int x, int y, int side)
 {
@@ -93,8 +93,8 @@ static void interpolate_within_mipmap_level(const struct glint_environment *e,
 }
 
 /* Sets RGB to the light at a fractional mipmap LEVEL, blended from the two
- * nearest levels. The weights interpolate the variance of their blur, which is
- * 4 times as large in the coarser level. */
+ * nearest levels. The blur's variance, which is 4 times as large in the coarser
+ * level, is interpolated. */
 static void interpolate_between_mipmap_levels(const struct glint_environment *e,
                                               const double toward[3],
                                               double level, double rgb[3])
@@ -128,8 +128,8 @@ static void rotate_to_environment(const struct twin *twin, const double v[3],
 
 /* -------------------------------------------------------------------- metal */
 
-/* Returns the curvature of the surface at HIT: change of its normal per unit of
- * the scene, radians. */
+/* Returns the curvature of the surface at HIT: change of the normal, radians,
+ * per unit of the scene. */
 static double compute_normal_curvature(const struct twin *twin,
                                        const struct twin_hit *hit)
 {
@@ -197,8 +197,8 @@ void reference_make_metal_frame(const struct twin *twin,
     vec_cross(frame[2], frame[0], frame[1]);
 }
 
-/* Returns the weight of a lobe sample, which is the lobe times the cosine of
- * incidence, divided by the sampling density. The lobe is normalised as the
+/* Returns the weight of a lobe sample: the lobe times the cosine of incidence,
+ * divided by the sampling density. The lobe has the normalisation that the
  * material states (1992 or later). */
 static double compute_lobe_weight(const struct glint_described_material *m,
                                   double ho, double hn, double ni, double no)
@@ -272,8 +272,8 @@ static double radical_inverse(unsigned i, int n)
     return v;
 }
 
-/* Computes the slopes of N half vectors, which sample the lobe of alpha 1. Then
- * scales them such that their mean square along each axis is SPREAD / 2. */
+/* Computes the slopes of N half vectors that sample Ward's lobe of alpha 1, and
+ * scales them so that their mean square along each axis is SPREAD / 2. */
 static void compute_lobe_sample_slopes(int n, const double spread[2],
                                        double slope[GLINT_WARD_SAMPLES][2])
 {
@@ -298,9 +298,9 @@ static void compute_lobe_sample_slopes(int n, const double spread[2],
     }
 }
 
-/* Adds the light of one lobe sample to RGB. SLOPE: slopes of its half vector
- * for alpha 1. LEVEL: mipmap level of a half vector in view direction, which is
- * corrected by the angle between half vector and view. */
+/* Adds the light of one lobe sample to RGB. SLOPE: slopes of the sample's half
+ * vector for alpha 1. LEVEL: mipmap level if the half vector is the view
+ * direction; other half vectors use a finer level. */
 static void add_lobe_sample(const struct twin *twin, const double slope[2],
                             const struct glint_described_material *m,
                             const double frame[3][3], const double out[3],
@@ -324,9 +324,9 @@ static void add_lobe_sample(const struct twin *twin, const double slope[2],
         rgb[c] += weight * light[c];
 }
 
-/* Adds N samples of the complete lobe from the finest mipmap level. The samples
- * have an offset that depends on TOWARD, so that the rays of a pixel use
- * different ones. */
+/* Adds N samples of the complete lobe from the finest mipmap level. The offset
+ * of the samples depends on TOWARD, so that the rays of a pixel use different
+ * samples. */
 static void add_lobe_by_samples(const struct twin *twin, const double toward[3],
                                 const struct glint_described_material *m,
                                 const double frame[3][3], const double out[3],
@@ -388,7 +388,7 @@ static void add_metal_reflection(const struct twin *twin,
         rgb[c] += s->environment[0].scale * m->metal[c] * sum[c] / n;
 }
 
-/* -------------------------------------------------------------------- whole */
+/* ------------------------------------------------------- environment light */
 
 void reference_add_irradiance(const struct twin *twin, const double shading[3],
                               double rgb[3])

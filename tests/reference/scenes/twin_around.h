@@ -8,8 +8,8 @@
 #include "reference/scenes/twin.h"
 #include "reference/scenes/vec.h"
 
-/* Adds the irradiance of a white surface with normal SHADING in the environment
- * to RGB. */
+/* Adds to RGB the irradiance that a white surface with normal SHADING gets from
+ * the environment. */
 void reference_add_irradiance(const struct twin *twin, const double shading[3],
                               double rgb[3]);
 
@@ -29,8 +29,8 @@ double reference_compute_metal_reflection(const struct twin *twin,
                                           const double to_light[3],
                                           double radius);
 
-/* Returns the value to add to the squared alphas of Ward's lobe so that it
- * covers the change of the normal within a pixel. */
+/* Returns the value to add to the squared alphas of Ward's lobe to account for
+ * the change of the normal within a pixel. */
 double reference_compute_alpha_widening(const struct twin *twin,
                                         const struct twin_hit *hit,
                                         const double toward[3]);
@@ -40,8 +40,8 @@ double reference_compute_alpha_widening(const struct twin *twin,
 void reference_make_metal_frame(const struct twin *twin,
                                 const struct twin_hit *hit, double frame[3][3]);
 
-/* Sets RGB to the background light around direction TOWARD, averaged over a
- * spot with the angular variance SPREAD. */
+/* Sets RGB to the background light in direction TOWARD, averaged over
+ * directions with the angular variance SPREAD. */
 void reference_compute_background_light(const struct twin *twin,
                                         const double toward[3], double spread,
                                         double rgb[3]);

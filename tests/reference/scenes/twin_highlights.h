@@ -19,8 +19,8 @@ struct twin_highlight {
     int n; /* number of squares of 8 x 8 pixels in the highlight */
 };
 
-/* Sets FOUND[TWIN_HIGHLIGHTS] to the highlights in VIEW, sorted by
- * descending brightness. Returns their number; -1 if there is no memory. */
+/* Sets FOUND[TWIN_HIGHLIGHTS] to the highlights in VIEW, sorted by descending
+ * brightness. Returns their number, or -1 without memory. */
 int reference_find_highlights(const struct twin *twin,
                               const struct twin_view *view,
                               struct twin_highlight *found);

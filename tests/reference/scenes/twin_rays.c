@@ -7,9 +7,9 @@
 #include "glint/view.h"
 #include "reference/scenes/vec.h"
 
-/* A ray that starts on a mesh is first moved forward by this fraction of 1 +
- * its distance from the mesh's origin. So it does not hit a neighbouring
- * triangle at a shared corner. */
+/* A ray that starts on a mesh first moves ahead by this fraction of 1 + the
+ * distance between its start and the mesh's origin, so that it does not hit a
+ * neighbouring triangle at a shared corner. */
 #define ACNE 1e-9
 
 /* ------------------------------------------------------ spheres and planes */
@@ -147,7 +147,7 @@ static bool intersect_mesh_object(const struct twin *twin, int object,
     return true;
 }
 
-/* --------------------------------------------------------------------- all */
+/* -------------------------------------------------------------- any object */
 
 bool reference_intersect_object(const struct twin *twin, int object,
                                 const struct twin_ray *ray, double most,

@@ -25,7 +25,7 @@ struct twin_map {
     double *work; /* [3][height][width]: scratch */
 };
 
-/* ------------------------------------------------------------------ opening */
+/* --------------------------------------------------- opening of light maps */
 
 static int find_medium_material(const struct glint_description *s,
                                 const struct glint_described_object *o)
@@ -40,8 +40,8 @@ static int find_medium_material(const struct glint_description *s,
     return -1;
 }
 
-/* Returns twice the signed area of the triangle between the texture point (U,
- * V) and the corners I and J of T. */
+/* Returns twice the signed area of the triangle of texture point (U, V) and the
+ * corners I and J of T. */
 static double compute_edge_area(const struct glint_described_triangle *t, int i,
                                 int j, double u, double v)
 {
@@ -164,7 +164,7 @@ void reference_free_media_maps(struct twin *twin)
     twin->map = NULL;
 }
 
-/* -------------------------------------------------------------------- light */
+/* ---------------------------------------------------------- incident light */
 
 /* Returns the fraction of light that the surface transmits at an angle of
  * incidence of COSINE (Fresnel); 1 if the material has no Fresnel
@@ -270,7 +270,7 @@ static void compute_incident_light_map(const struct twin *twin, int object)
     }
 }
 
-/* ------------------------------------------------------------------- spread */
+/* -------------------------------------------------------------- scattering */
 
 static double read_texel_weight(const struct twin_map *m, int table, int x)
 {
@@ -284,8 +284,8 @@ static double read_texel_weight(const struct twin_map *m, int table, int x)
     return is_signed ? (int8_t)code / 128. : code / 256.;
 }
 
-/* Returns the index of the texel that is ACROSS columns right of and DOWN rows
- * below texel FROM; -1 outside the map. */
+/* Returns the index of the texel ACROSS columns to the right of texel FROM and
+ * DOWN rows below it, or -1 outside the map. */
 static int find_neighbour_texel(const struct twin_map *m, int from, int across,
                                 int down)
 {
@@ -302,8 +302,8 @@ static int find_neighbour_texel(const struct twin_map *m, int from, int across,
                                                              : y * m->width + x;
 }
 
-/* Convolves FROM with the taps TAP along rows or columns, and adds SCALE times
- * the result to TO. */
+/* Convolves FROM with the kernel TAP along rows or columns, and adds the result
+ * times SCALE to TO. */
 static void convolve_map_along_axis(const struct twin_map *m,
                                     const double *from, const int16_t *tap,
                                     bool down, double scale, double *to)
@@ -397,12 +397,11 @@ void reference_compute_media_maps(const struct twin *twin)
     }
 }
 
-/* ------------------------------------------------------------------- showing
- */
+/* ------------------------------------------------------- light that leaves */
 
 /* Returns the reflectance of the coat divided by its reflectance at normal
- * incidence. PASSED: transmittance of the coat; all other light is reflected.
- * The ratio is limited such that no channel reflects more than 1. */
+ * incidence. PASSED: transmittance of the coat; the coat reflects the rest. The
+ * ratio is limited so that no channel reflects more than 1. */
 static double compute_coat_reflectance(const struct glint_described_material *m,
                                        const struct twin_map *map,
                                        double passed)

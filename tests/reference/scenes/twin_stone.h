@@ -17,8 +17,8 @@ void reference_free_media_maps(struct twin *twin);
 void reference_compute_media_maps(const struct twin *twin);
 
 /* Completes the light RGB of a translucent object. On entry RGB is the light
- * that the coat at HIT would mirror with its reflectance at normal incidence.
- * Scales it to the reflectance for direction TOWARD, and adds the light that
+ * that the coat at HIT would mirror at its reflectance for normal incidence.
+ * Scales RGB to the reflectance for direction TOWARD, and adds the light that
  * leaves the medium. */
 void reference_add_medium_light(const struct twin *twin,
                                 const struct twin_hit *hit,

@@ -80,7 +80,7 @@ static bool is_request_refused(unsigned long request, const void *arg)
     return true;
 }
 
-/* -------------------------------------------------------------------- scene */
+/* ---------------------------------------------------- settings of the fake */
 
 void fake_camera_reset(void)
 {

@@ -33,8 +33,8 @@ struct fake_frame {
     /* image data, bytesused[0] bytes; NULL: all bytes are `code` */
     const void *data;
     uint32_t flags;
-    /* bytes used in each block; 0 means the whole frame, or no bytes if is_odd
-     * is set */
+    /* bytes used in each block; 0: the whole frame (is_odd false) or no bytes
+     * (is_odd true) */
     uint32_t bytesused[3];
     uint32_t data_offset[3];
     int64_t time_us;
@@ -97,11 +97,10 @@ struct fake_camera {
     void (*on_dequeue)(void);
     /* called at the start of each STREAMON request, unless NULL */
     void (*on_stream)(void);
-    /* 1 + the wrong buffer index that DQBUF returns; 0: returns the true
-     * index */
+    /* 1 + the wrong buffer index that DQBUF returns; 0: DQBUF is right */
     int returned_index;
 
-    /* Counts of calls, and of violations (breaches): */
+    /* Numbers of calls, and of violated driver rules (breaches): */
     int n_maps, n_exports, breaches, n_streamons, n_reqbufs;
     int n_s_dv_timings;
 };

@@ -30,8 +30,8 @@ void drawn_draw_image(struct drawn *d, int width, int height,
 
 /* Returns the PSNR, dB, of TEXT drawn by the integer renderer against the
  * reference renderer, one sample per pixel, light clamped to 1. Compares only
- * pixels whose neighbours show the same object; checks that these are at least
- * a third of the 160 x 90 pixels. */
+ * pixels whose neighbours show the same object, and checks that at least a
+ * third of the 160 x 90 pixels are such. */
 double drawn_psnr_to_reference(const char *text,
                                const struct glint_description_files *files);
 

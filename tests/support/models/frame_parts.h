@@ -23,7 +23,7 @@ struct glint_flare_frame make_frame_rays(const struct glint_lens *lens,
                                          int fineness);
 
 /* Returns a flare configuration for images of WIDTH x HEIGHT. Its capacities
- * for bundles, primitives and cells are 0; the caller sets them. */
+ * for ray bundles, primitives and cells are 0; the caller sets them. */
 struct glint_flare_config make_frame_config(int width, int height,
                                             int tile_log2);
 

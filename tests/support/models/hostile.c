@@ -114,8 +114,8 @@ static uint32_t append_polynomials_as_outputs(struct model_image *m,
 
 /* ------------------------------------------------------------------- ghosts */
 
-/* Sets P to the outputs of a ghost as large as the frame; its pupil box is as
- * large as the stop. */
+/* Sets P to the output polynomials of a ghost as large as the frame, whose
+ * pupil box is as large as the stop. */
 static void set_frame_filling_ghost(struct polynomial p[GLINT_OUT_KINDS],
                                     uint32_t *seed)
 {
@@ -130,8 +130,8 @@ static void set_frame_filling_ghost(struct polynomial p[GLINT_OUT_KINDS],
     p[GLINT_OUT_ENERGY].u[0] = 0.5;
 }
 
-/* Sets P to the outputs of a ghost that folds back and forth across the frame
- * up to nine times in x and in y, and is clipped by barrels. */
+/* Sets P to the output polynomials of a ghost that is clipped by barrel
+ * apertures and folds across the frame up to nine times in x and in y. */
 static void set_folded_ghost(struct polynomial p[GLINT_OUT_KINDS],
                              uint32_t *seed)
 {
@@ -289,9 +289,9 @@ append_largest_output(struct model_image *m, int kind, int exponent, int v)
     return o;
 }
 
-/* Writes a ghost whose outputs have the max number of terms. NUMBER sets the
- * exponents of the outputs. For even NUMBER, barrels get the exponent -47, with
- * which a shift by 31 bits rounds 2^30 to 1. */
+/* Writes a ghost whose outputs have the max number of terms. NUMBER sets their
+ * exponents. For even NUMBER, barrel outputs get the exponent -47, with which a
+ * shift by 31 bits rounds 2^30 to 1. */
 static void append_ghost_with_largest_outputs(struct model_image *m, int number)
 {
     static const struct glint_model_ghost ghost[] = {{0, 1, 0, 1}};
@@ -316,7 +316,7 @@ static void append_ghost_with_largest_outputs(struct model_image *m, int number)
     model_append_ghosts(m, ghost, 1, &s, 1);
 }
 
-/* ------------------------------------------------------------------ editing */
+/* ------------------------------------------------------- editing of models */
 
 /* Returns the address of OFFSET in M, for editing a baked model in place. */
 static void *address_in_model(const struct model_image *m, uint32_t offset)
@@ -610,7 +610,7 @@ bool hostile_draw_scene(const struct hostile_scene *scene,
     return drawn;
 }
 
-/* -------------------------------------------------------------------- scene */
+/* ----------------------------------------------------------- hostile scene */
 
 void hostile_make_scene(struct hostile_scene *scene, enum hostile_family family,
                         int number, const struct glint_lens *baked)

@@ -17,8 +17,8 @@
 
 enum hostile_family {
     HOSTILE_WHOLE, /* 2016 ghosts, each as large as the frame */
-    /* 2016 ghosts that fold across the frame up to nine times in x and y,
-     * clipped by barrels */
+    /* 2016 ghosts that are clipped by barrel apertures and fold across the
+     * frame up to nine times in x and y */
     HOSTILE_FOLDS,
     /* models whose rays are invalid, either all rays or stripes of them; or
      * models with more grid cells than an int can count */
@@ -29,7 +29,7 @@ enum hostile_family {
     HOSTILE_NUMBERS,
     HOSTILE_POINTS,  /* pupil boxes of size 0 */
     HOSTILE_HUGE,    /* pupil boxes of the largest size, with any exponents */
-    HOSTILE_WINDOWS, /* stop positions whose pupil window is empty or tiny */
+    HOSTILE_WINDOWS, /* stop positions: empty or tiny pupil windows */
     HOSTILE_HEADERS, /* header fields at the ends of their ranges */
     /* ghost outlines whose position differs much between wavelengths */
     HOSTILE_COLOURS,
@@ -53,7 +53,7 @@ struct hostile_scene {
     double opening; /* stop radius divided by the stop radius of the model */
     struct glint_lamp lamp[HOSTILE_LAMPS];
     int n_lamps;
-    bool linear; /* true: draws in linear light; false: in codes */
+    bool linear; /* true: draws linear light; false: pixel codes */
 };
 
 /* Outcome of drawing a hostile scene. */

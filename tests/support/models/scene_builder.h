@@ -49,7 +49,7 @@ uint32_t scene_add_sphere(struct scene_file *s, const char *name,
 uint32_t scene_add_plane(struct scene_file *s, const char *name,
                          uint32_t material, int32_t y);
 
-/* Add a light of RGB 1. A lamp has this light at the distance DISTANCE,
+/* Add a light of RGB 1: a sun, or a lamp, whose light is 1 at DISTANCE
  * steps. */
 uint32_t scene_add_sun(struct scene_file *s, const int32_t toward_q30[3]);
 uint32_t scene_add_lamp(struct scene_file *s, const int32_t at[3],

@@ -60,8 +60,7 @@ double ward_evaluate_lobe(const double frame[3][3], const double view[3],
     hn /= square;
     weight = norm == GLINT_WARD_BOUNDED ? ni / (ho * hn)
                                         : ho * hn * hn * hn * sqrt(ni / no);
-    /* WEIGHT, the lobe divided by the sampling density of IN, is limited to
-     * 8. */
+    /* The lobe is limited to 8 times the sampling density of IN. */
     return fmin(weight, 8) * exp(-slope) /
            (4 * GLINT_PI * alpha[0] * alpha[1] * ho * hn * hn * hn);
 }

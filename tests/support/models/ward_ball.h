@@ -20,9 +20,9 @@ typedef double ward_picture[WARD_PIXELS][3];
  * of perpendicular to the view. */
 int ward_build_frame(int i, double frame[3][3]);
 
-/* Returns Ward's lobe for light from IN seen from VIEW, times the cosine n .
- * in. NORM: the bounded normalisation or that of 1992. As in the run time, the
- * lobe is limited to 8 times its sampling density. */
+/* Returns Ward's lobe for light from IN seen from VIEW, times the cosine of
+ * incidence. NORM: the bounded normalisation or that of 1992. As in the run
+ * time, the lobe is limited to 8 times its sampling density. */
 double ward_evaluate_lobe(const double frame[3][3], const double view[3],
                           const double alpha[2], int norm, const double in[3]);
 

@@ -22,15 +22,15 @@ static int32_t clamp_line_weight_q30(int64_t x)
     return (int32_t)(x > most ? most : x < -most ? -most : x);
 }
 
-/* Sets LINE, one of N lines of a starburst, to the direction with the cosine C
- * and the sine S. The border between LINE and the next line is 90 / N degrees
- * further. Returns whether this border is at 180 degrees or more. */
+/* Sets LINE, one of N lines of a starburst, to the direction with cosine C and
+ * sine S. The border to the next line is 90 / N degrees further. Returns
+ * whether this border is at 180 degrees or more. */
 static int set_line_direction(struct glint_star_line *line, int32_t c_q30,
                               int32_t s_q30, int n)
 {
     const int64_t sine = s_q30 > 1 << 18 ? s_q30 : 1 << 18;
-    /* Lines are 180 / N degrees apart. The border is at half of this step: as
-     * complex numbers, 1 + the step's direction points there. */
+    /* Lines are 180 / N degrees apart. 1 + the unit step between them, as
+     * complex numbers, points to the border at half of this angle. */
     const int64_t hc = ((int64_t)1 << 30) + step_q30[n - 1][0];
     const int64_t hs = step_q30[n - 1][1];
     const int64_t c = n > 1 ? (hc * c_q30 - hs * s_q30) >> 31 : -s_q30 / 2;
@@ -49,7 +49,7 @@ static int set_line_direction(struct glint_star_line *line, int32_t c_q30,
 static void set_random_star_lines(struct star_any *to, uint32_t *seed)
 {
     const int n = to->tables.n_lines;
-    /* Cosine and sine of twice the angle whose tangent is t / 2^15. */
+    /* Cosine and sine of 2 atan(t / 2^15). */
     const int64_t one = INT64_C(1) << 30, t = rng_int_below(seed, 5000);
     int64_t c = ((one - t * t) << 30) / (one + t * t);
     int64_t s = (t << 46) / (one + t * t);

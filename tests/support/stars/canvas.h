@@ -39,8 +39,8 @@ int64_t star_canvas_draw_light(struct star_canvas *canvas,
 struct glint_star_tables *
 star_canvas_make_tables(int n_blades, double rotation_deg, double airy_px);
 
-/* Returns a white light of power 2^POWER_LOG2 at (X, Y), pixels; the power
- * includes its core. */
+/* Returns a white light at (X, Y), pixels. Its power, 2^POWER_LOG2, includes
+ * the core of the light. */
 struct glint_star_light star_canvas_make_light(double x, double y,
                                                double power_log2);
 

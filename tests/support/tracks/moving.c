@@ -10,12 +10,11 @@
 #include "support/test.h"
 #include "support/tracks/tracks.h"
 
-/* The recorded motion that scene texts of tests use. It contains the track
- * of a moving body, or only resting foods. Foods are the landmarks of a
- * recording. */
+/* The recorded motion that scene texts of tests use: the track of a moving
+ * body, or only stationary foods (landmarks). */
 static struct {
     struct track_options track;
-    /* positions of the n_foods resting foods; NULL: `track` is used */
+    /* positions of the n_foods stationary foods; NULL: `track` is used */
     double (*food)[3];
     int n_foods;
     double angle_deg;

@@ -29,9 +29,9 @@ struct moving {
     int32_t light_q20[3 * MOVING_WIDTH * MOVING_HEIGHT];
 };
 
-/* Set the motion that the line "motion run" of a scene text loads. It is a
- * track of type MOTION (see tracks.h), or N resting foods (landmarks). Sensors
- * detect a food within ANGLE_DEG degrees of their axis. */
+/* Set the motion that the line "motion run" of a scene text loads: a track of
+ * type MOTION (see tracks.h), or N stationary foods (landmarks). Sensors detect
+ * a food within ANGLE_DEG degrees of their axis. */
 void moving_bake_track(int motion, int n_frames, double angle_deg);
 void moving_bake_foods(double (*food)[3], int n, double angle_deg);
 double moving_angle_to_food_deg(void);

@@ -26,7 +26,7 @@ struct track_options {
     int motion;
     int n_frames, n_foods;
     /* number of frames from the end of one food (landmark) to the start of the
-     * next; 0: foods never end */
+     * next; 0: foods exist in all frames */
     int reset_every;
     /* significant digits to which observed positions are rounded; 0: not
      * rounded */
