@@ -75,7 +75,7 @@ static bool count_work_up_to_limit(void *ctx, int more)
 }
 
 /* Bakes on N workers with a limit of MOST polynomial fits, and checks that the
- * status is WANT. Returns the number of fits. */
+ * status is WANT. Returns the number of fits done. */
 static int bake_with_work_limit(int most, int n, enum glint_status want)
 {
     struct glint_bake_options o = options;
@@ -96,8 +96,9 @@ static int bake_with_work_limit(int most, int n, enum glint_status want)
     return work.sum;
 }
 
-/* Checks that the number of fits of a bake does not depend on the number of
- * workers, and that the bake fails if it needs one fit more than its limit. */
+/* Checks that the number of polynomial fits of a bake does not depend on the
+ * number of workers, and that the bake fails if its limit is one fit too
+ * low. */
 TEST(work_is_limited)
 {
     const int all = bake_with_work_limit(1 << 30, 1, GLINT_OK);
@@ -165,7 +166,7 @@ static void parse_doublet(struct glint_prescription *lens)
                      "stop 93 10\n");
 }
 
-/* -------------------------------------------------------------------- bytes */
+/* ------------------------------------------------------ bytes of the model */
 
 static void check_models_are_identical(const struct glint_prescription *lens,
                                        const struct glint_bake_options *o,
@@ -203,7 +204,7 @@ TEST(repeated_bake_is_identical)
     free(b.data);
 }
 
-/* ------------------------------------------------------------------- header */
+/* ------------------------------------------------------------ model header */
 
 TEST(header_describes_the_lens)
 {
@@ -251,7 +252,7 @@ TEST(flux_polynomial_matches_traced_flux)
     }
 }
 
-/* ------------------------------------------------------------------- ghosts */
+/* ---------------------------------------------------------- visible ghosts */
 
 static bool is_ghost_covered_by_model(const struct glint_lens *lens, int ghost,
                                       double theta_deg, double nm)
@@ -291,9 +292,9 @@ TEST(every_found_ghost_is_in_the_model)
         is_ghost_covered_by_model(&model.lens, 0, MAX_DEG + 0.01, 532));
 }
 
-/* -------------------------------------------------------------------- parts */
+/* ------------------------------------------------------------- pupil parts */
 
-/* Sets UV to the coordinates of a ray in the box of pupil part T. Returns
+/* Sets UV to the ray's coordinates in the pupil box of pupil part T. Returns
  * whether the part contains the ray. */
 static bool is_ray_in_pupil_part(const struct glint_transfer *t, double x_mm,
                                  double y_mm, double uv[2])
@@ -307,8 +308,8 @@ static bool is_ray_in_pupil_part(const struct glint_transfer *t, double x_mm,
 }
 
 /* Returns how many of the N parts of a pupil contain the ray that starts at (X,
- * Y), mm. Sets *OFF to the distance, mm, between the position of RAY on the
- * sensor and the position that the last of these parts gives. */
+ * Y), mm. Sets *OFF to the distance on the sensor, mm, between RAY and the
+ * position by the last of these parts. */
 static int count_pupil_parts_with_ray(const struct glint_transfer *part, int n,
                                       double x_mm, double y_mm,
                                       const struct glint_ray *ray, double *off)
@@ -334,9 +335,9 @@ static int count_pupil_parts_with_ray(const struct glint_transfer *part, int n,
     return found;
 }
 
-/* A triplet's ghost (surfaces 0 and 3) has rays that fold in the stop plane,
- * so its pupil is divided into parts. Checks that each unblocked ray lies in
- * exactly one part, except on borders between parts, and that no part is
+/* A triplet's ghost (surfaces 0 and 3) has rays that fold in the stop plane, so
+ * the ghost's pupil is divided into parts. Checks that each unblocked ray lies
+ * in exactly one part, except on borders between parts, and that no part is
  * empty. */
 TEST(each_ray_lies_in_one_pupil_part)
 {
@@ -350,8 +351,8 @@ TEST(each_ray_lies_in_one_pupil_part)
     struct baked b;
 
     if (getenv("GLINT_QUICK") && *getenv("GLINT_QUICK"))
-        /* The test is skipped under sanitizers, where it takes 30 s; other
-         * tests run the same code. */
+        /* Skipped under sanitizers, where it takes 30 s; other tests run the
+         * same code. */
         skip();
     load_lens(&lens, "../tests/lenses/cooke-triplet");
     parse_and_bake_lens(&b, &lens, NULL, 1, 0.5);
@@ -394,8 +395,9 @@ TEST(each_ray_lies_in_one_pupil_part)
     free(b.data);
 }
 
-/* Two barrels clip this ghost, with outlines only 0.0008 stop radii apart. The
- * model needs the second barrel only at a smaller tolerance. */
+/* Two barrel apertures clip this ghost. Their outlines are only 0.0008 stop
+ * radii apart, so the model needs the second one only at a smaller
+ * tolerance. */
 TEST(near_second_barrel_needs_a_small_tolerance)
 {
     static const double band_nm[2] = {400, 700};
@@ -422,9 +424,9 @@ TEST(near_second_barrel_needs_a_small_tolerance)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
-/* A zone is a range of field angles with polynomials of its own. Checks that
- * restricting a zone to a part of its pupil gives the same pupil box, expressed
- * in the coordinates of the part. */
+/* A zone is a range of field angles with polynomials of its own. Checks that a
+ * zone restricted to a part of its pupil keeps its pupil box, expressed in the
+ * coordinates of the part. */
 TEST(cut_zone_keeps_its_box)
 {
     struct glint_zone zone = {.lo = 0.1, .hi = 0.2}, cut;
@@ -512,7 +514,7 @@ TEST(cropping_removes_only_invisible_regions)
     assert_true(seen > 100);
 }
 
-/* ------------------------------------------------------------------- errors */
+/* ----------------------------------------------- errors of the polynomials */
 
 enum { TRIED = GLINT_OUT_ENERGY + 1, BUNDLES = 300, PER_BUNDLE = 12 };
 
@@ -566,9 +568,9 @@ static void add_ray_errors(struct tally *tally, const struct glint_transfer *t,
     }
 }
 
-/* Sets RMS to the root mean square errors of the polynomials of SYSTEM of
- * GHOST, in the units of the model file. The function is independent of
- * src/bake/measure_model.c. Returns the number of rays measured. */
+/* Sets RMS to the errors of the polynomials of SYSTEM of GHOST, in the units of
+ * the model file, without using src/bake/measure_model.c. Returns the number of
+ * rays measured. */
 static long measure_system_errors(const struct glint_lens *lens, int ghost,
                                   int system, double rms[TRIED])
 {
@@ -620,7 +622,7 @@ static double read_error_stated_in_model(uint16_t stored)
     return ldexp((double)glint_model_error_q20(stored), -20);
 }
 
-/* Checks that the errors stated in a model are within 30 % of the errors that
+/* Checks that the errors stated in a model are within 30 % of those that
  * measure_system_errors() measures. */
 TEST(stated_errors_match_measured_errors)
 {
@@ -682,8 +684,8 @@ TEST(errors_near_the_axis_fall_with_squared_tolerance)
     free(b.data);
 }
 
-/* A film with this index reflects nothing at its design wavelength. Checks that
- * the fit follows the resulting zero of the ghost's energy. */
+/* A film of this refractive index reflects nothing at its design wavelength.
+ * Checks that the fit follows the resulting zero of the ghost's energy. */
 TEST(fit_follows_a_zero_of_the_energy)
 {
     struct glint_prescription lens;
@@ -700,8 +702,8 @@ TEST(fit_follows_a_zero_of_the_energy)
     free(b.data);
 }
 
-/* Checks that a wrong coefficient raises the errors that both measurements
- * report. This shows that the tests above can fail. */
+/* Checks that a wrong coefficient raises the errors stated in the model and the
+ * measured errors, so that the tests above can fail. */
 TEST(wrong_coefficient_is_detected)
 {
     static const struct glint_fitted_system no_barrels;
@@ -739,7 +741,7 @@ TEST(wrong_coefficient_is_detected)
     free(b.data);
 }
 
-/* ----------------------------------------------------------- key, refusals */
+/* --------------------------------------------------- key, rejected options */
 
 static void check_model_key_differs(const struct glint_prescription *lens,
                                     const struct glint_bake_options *o)
@@ -823,7 +825,7 @@ TEST(rejects_numbers_out_of_range)
     }
 }
 
-/* ------------------------------------------------------------- odd requests */
+/* ---------------------------------------------- unusual lenses and options */
 
 TEST(lens_without_ghosts_gives_an_empty_model)
 {
@@ -840,8 +842,6 @@ TEST(lens_without_ghosts_gives_an_empty_model)
     free(b.data);
 }
 
-/* Checks that with the loosest tolerance each polynomial has at least one
- * term. */
 TEST(loosest_tolerance_keeps_a_term)
 {
     static struct glint_prescription lens;
@@ -857,8 +857,8 @@ TEST(loosest_tolerance_keeps_a_term)
     free(b.data);
 }
 
-/* Checks a field of only 1e-3 mm, in which a ghost may be visible at angle 0
- * only: no range of angles is empty. */
+/* Checks a field of only 1e-3 mm, where a ghost may be visible at angle 0 only:
+ * its range of angles must not be empty. */
 TEST(ranges_of_a_tiny_field_have_width)
 {
     static const double band_nm[2] = {400, 700};
@@ -881,7 +881,7 @@ TEST(ranges_of_a_tiny_field_have_width)
 }
 
 /* Checks ghosts whose light enters the front element through a spot of 1/20 mm:
- * their ranges of angles extend to the angles at which the ghosts vanish. */
+ * their ranges extend to the angles at which the ghosts vanish. */
 TEST(ranges_of_spots_extend_to_where_ghosts_vanish)
 {
     static const struct {

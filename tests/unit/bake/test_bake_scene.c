@@ -124,7 +124,7 @@ TEST(right_handed_scene_is_mirrored)
     unit = ldexp(1, h->unit_log2);
     assert_string_equal(h->name, "ashop");
     assert_true(h->key[0] == 0x23456789 && h->key[1] == 1);
-    /* the plane limits the unit: the camera's distance of 4 must be less than
+    /* the plane sets the unit: the camera's distance of 4 must be less than
      * 2^28 / 64 steps */
     assert_int_equal(h->unit_log2, 19);
     assert_true(b.report.step == ldexp(1, -19) && b.report.reach == 4);
@@ -144,7 +144,7 @@ TEST(right_handed_scene_is_mirrored)
     check_scaled_vector(b.model.light[1].at, 1, 2, -3, unit);
     assert_int_equal(b.model.light[1].radius, 1 << 17);
     assert_true(glint_real_value(b.model.light[1].rgb[1]) == 7);
-    /* The weights .1, .7 and .2 would all be rounded up, but their sum must
+    /* Each of the weights .1, .7 and .2 would be rounded up, but their sum must
      * stay 1. */
     assert_int_equal(b.model.material[0].ambient_q15, 3277);
     assert_int_equal(b.model.material[0].diffuse_q15, 22937);
@@ -164,9 +164,9 @@ TEST(right_handed_scene_is_mirrored)
     free(b.data);
 }
 
-/* Requirement A12: checks that a transparent object of index 1 is baked without
- * refraction and drawn without it (requirement A11), and that objects of other
- * indices refract. */
+/* Requirement A12: checks that a transparent object of refractive index 1 is
+ * neither baked nor drawn with refraction, and that objects of other indices
+ * refract. */
 TEST(a12_index_1_is_not_refracted)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
@@ -346,8 +346,8 @@ TEST(vertices_are_stored_once)
 }
 
 /* Checks triangles whose vertices lie 10 steps inside or outside the sides of
- * grid cells. Triangles must be listed in all cells that they touch when
- * enlarged by the margin. */
+ * grid cells: each must be listed in all cells that it touches when enlarged by
+ * the margin. */
 TEST(triangles_are_listed_in_all_cells_they_touch)
 {
     for (int k = -10; k <= 10; k += 20) {

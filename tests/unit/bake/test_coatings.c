@@ -64,7 +64,7 @@ static void check_coatings_of_surfaces(const struct glint_prescription *lens,
     }
 }
 
-/* ------------------------------------------------------------------- tables */
+/* ------------------------------------------------- coatings in lens tables */
 
 TEST(parses_a_mixed_coating_line)
 {
@@ -108,7 +108,7 @@ TEST(rejects_wrong_lines)
     }
 }
 
-/* --------------------------------------------------------------- --coating */
+/* -------------------------------------------------------- option --coating */
 
 TEST(coatings_are_assigned_in_turn)
 {
@@ -173,8 +173,8 @@ TEST(rejects_too_many_coatings)
                         "the text of a coating has at most 200 characters");
 }
 
-/* Parses TEXT as one coating and checks that its films, pairs of index and
- * number of quarter waves, are as given. */
+/* Parses TEXT as one coating and checks its films: pairs of refractive index
+ * and number of quarter waves. */
 static void check_films_of_coating(const char *text, double nm, int n,
                                    const double film[][2])
 {
@@ -220,7 +220,7 @@ TEST(coatings_have_their_films)
     assert_int_equal(lens.surface[1].coating.n_films, 0); /* cemented */
 }
 
-/* ------------------------------------------------------------------ optics */
+/* ---------------------------------------------------- reflectance and keys */
 
 static double compute_reflectance(const struct glint_prescription *lens, int k,
                                   double nm)

@@ -13,7 +13,7 @@
 #include "bake/scene/mesh.h"
 #include "support/test.h"
 
-/* A valid text. Each mistake below replaces one of its lines. */
+/* A valid text. Each wrong text below replaces one of its lines. */
 static const char *const good[] = {
     "hand left   # as the tutorial",                            /* line 1 */
     "camera fov 60 at 0 1 -4 toward 0 1 0",                     /* line 2 */
@@ -360,8 +360,8 @@ TEST(rejects_wrong_lines)
     free(s);
 }
 
-/* Checks that a scene with the other handedness and the same numbers is the
- * mirrored scene: the x axis of the camera is reversed. */
+/* Checks that the same numbers with the other handedness give the mirrored
+ * scene: the x axis of the camera is reversed. */
 TEST(handedness_mirrors_the_camera)
 {
     struct glint_description *s = malloc(sizeof *s);

@@ -15,8 +15,8 @@ enum { HEAD = 32 };
 
 /* Simulates the bake of N ghosts on one worker; ghost i needs WORK[i] fits.
  * EXPECTED is the number of fits announced by glint_effort_set_estimates(), or
- * 0 if nothing is announced. Sets SAID to the reported remaining time divided
- * by the true one after 1/4, 1/2 and 3/4 of the bake. */
+ * 0 without it. Sets SAID to the reported / true remaining time after 1/4, 1/2
+ * and 3/4 of the bake. */
 static void simulate_bake_progress(const double *work, int n, bool wide,
                                    double expected, double said[3])
 {
@@ -47,8 +47,6 @@ static void simulate_bake_progress(const double *work, int n, bool wide,
     assert_true(glint_effort_estimate_progress(&e) > 0.999);
 }
 
-/* Checks, for ghosts of equal work, that the reported remaining time is within
- * 25 % of the true time. */
 TEST(equal_ghosts_are_estimated_within_25_percent)
 {
     double work[100], said[3];
@@ -60,10 +58,10 @@ TEST(equal_ghosts_are_estimated_within_25_percent)
         assert_true(said[k] > 0.8 && said[k] < 1.25);
 }
 
-/* Checks ghosts in any order whose work differs by factors of up to 100: the
- * time estimated half-way is nearly always within a factor of three of the true
- * time. An estimate from the number of ghosts alone was wrong by a factor of
- * ten. */
+/* Checks ghosts in any order whose work differs by factors of up to 100:
+ * half-way, the estimated remaining time is nearly always within a factor of
+ * three of the true time. Estimates by the number of ghosts alone were wrong by
+ * a factor of ten. */
 TEST(random_ghosts_are_estimated_within_a_factor_of_3)
 {
     uint32_t seed = 7;
@@ -93,7 +91,7 @@ TEST(long_last_ghost_is_estimated_by_its_angles)
     assert_true(said[2] > 0.5 && said[2] < 2);
 }
 
-/* Checks the estimate for several workers: they share the ghosts that were not
+/* Checks the estimate for several workers: they divide the ghosts that were not
  * begun, but only one of them works on a ghost in progress. */
 TEST(workers_share_ghosts)
 {

@@ -37,7 +37,7 @@ static void random_unit_vector(uint32_t *seed, double d[3])
         d[k] /= length;
 }
 
-/* ------------------------------------------------------------- octahedron */
+/* --------------------------------------------------------- octahedral map */
 
 TEST(octahedral_mapping_inverts)
 {
@@ -62,8 +62,8 @@ TEST(octahedral_mapping_inverts)
     assert_true(fabs(sum / (128 * 128) / (4 * GLINT_PI) - 1) < 1e-3);
 }
 
-/* The octahedral map folds over at its edges. Checks that a texel beyond an
- * edge is replaced by the texel that is its neighbour on the sphere. */
+/* The octahedral map folds over at its edges. Checks that a texel outside an
+ * edge is replaced by its neighbour on the sphere. */
 TEST(texels_outside_an_edge_map_to_neighbours)
 {
     struct glint_sphere s;
@@ -82,8 +82,8 @@ TEST(texels_outside_an_edge_map_to_neighbours)
                 glint_sphere_get_texel_index(SIDE, across[e][2], across[e][3]);
 
             assert_true(a < SIDE * SIDE && b < SIDE * SIDE);
-            /* Neighbours on the sphere are at most the diagonal of the largest
-             * texel apart. */
+            /* Neighbours on the sphere are at most as far apart as the diagonal
+             * of the largest texel. */
             assert_true(
                 compute_dot_product(s.texel[a].toward, s.texel[b].toward) >
                 cos(2 * sqrt(6) / SIDE));
@@ -92,7 +92,7 @@ TEST(texels_outside_an_edge_map_to_neighbours)
     glint_sphere_free(&s);
 }
 
-/* ------------------------------------------------------------------ baking */
+/* ------------------------------------------------------- levels of the map */
 
 struct baked {
     unsigned char *data;
@@ -104,8 +104,8 @@ struct baked {
 static float picture[HEIGHT][WIDTH][3];
 static const struct glint_float_image image = {WIDTH, HEIGHT, (float *)picture};
 
-/* Fills the picture with LIGHT(direction) in R, half of it in G, and a quarter
- * of it in B. */
+/* Fills the picture with LIGHT(direction) in R, half of this in G, and a
+ * quarter in B. */
 static void paint_panorama(double (*light)(const double d[3]))
 {
     for (int y = 0; y < HEIGHT; y++)
@@ -192,9 +192,9 @@ static double linear_environment_light(const double d[3])
     return 1 + d[1];
 }
 
-/* Returns light that is brightest in front. An environment rotated by 90
- * degrees to the right has this light on the right, as 1 + x. The irradiance of
- * a white surface is then proportional to 1 + 2/3 x. */
+/* Returns light that is brightest in front. If the environment is rotated to
+ * the right by 90 degrees, the light is 1 + x. The irradiance of a white
+ * surface is then proportional to 1 + 2/3 x. */
 static double forward_environment_light(const double d[3])
 {
     return 1 + d[2];
@@ -238,7 +238,7 @@ static double patchy_environment_light(const double d[3])
 }
 
 /* Checks that every Gaussian level equals the weighted sum over all texels,
- * except for the weight beyond four sigma, where the bake skips blocks. */
+ * except for the weight outside four sigma, where the bake skips blocks. */
 TEST(levels_equal_sums_over_all_texels)
 {
     struct glint_environment_options o = make_environment_options();
@@ -326,7 +326,7 @@ TEST(mipmap_levels_average_light)
     free(b.data);
 }
 
-/* ------------------------------------------------------------------ lights */
+/* -------------------------------------------------------- extracted lights */
 
 static const double sun[3] = {.48, .6, .64};
 
@@ -336,9 +336,9 @@ static double sky_and_sun_light(const double d[3])
            1 + .5 * d[1];
 }
 
-/* Checks that the bake finds a disc of 4 degrees as a light, with its
- * direction, power and size. The hole that the light leaves in the map is
- * filled with the surrounding light. */
+/* Checks that the bake extracts a disc of 4 degrees as a light, with the
+ * direction, power and size of the disc, and fills the resulting hole in the
+ * map with the surrounding light. */
 TEST(disc_light_is_extracted)
 {
     struct glint_environment_options o = make_environment_options();
@@ -409,7 +409,7 @@ TEST(wide_and_touching_lights_lose_no_light)
     free(b.data);
 }
 
-/* ------------------------------------------------------------------- held */
+/* -------------------------------------------------- samples and cube maps */
 
 TEST(clamps_invalid_samples)
 {
@@ -474,7 +474,7 @@ TEST(cube_faces_have_their_directions)
     glint_sphere_free(&s);
 }
 
-/* ------------------------------------------------------------------- codes */
+/* ------------------------------------------------------------ RGB9E5 codes */
 
 TEST(rgb9e5_codes_round_trip)
 {

@@ -75,7 +75,7 @@ static double compute_psnr(const double *a, const double *b,
     return m.psnr_db;
 }
 
-/* ------------------------------------------------------------------ goldens */
+/* --------------------------------------------------------- golden pictures */
 
 struct golden {
     const char *name;
@@ -168,8 +168,8 @@ TEST(light_on_axis_gives_a_symmetric_picture)
                 peak = fmax(peak, v);
             }
     assert_true(peak > 0);
-    /* Up and down are mirror images to the last bits. Left and right are mirror
-     * images within the precision of the grid. */
+    /* Up and down are mirror images to the last bits; left and right are,
+     * within the precision of the grid. */
     assert_true(worst < 2e-3 * peak);
 }
 
@@ -212,8 +212,9 @@ TEST(doubling_the_grid_changes_little)
     assert_true(db > 60);
 }
 
-/* 13 pairs of surfaces reflect at most 5 % at each reflection. So all ghosts
- * together have less than 13 * 0.05^2 of the light that enters the lens. */
+/* 13 pairs of surfaces reflect at most 5 % at each of two reflections. So all
+ * ghosts together have less than 13 * 0.05^2 of the light that enters the
+ * lens. */
 TEST(flux_is_bounded)
 {
     const struct glint_view view = {
@@ -328,9 +329,9 @@ TEST(picture_does_not_depend_on_memory)
     assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
 }
 
-/* Each colour is rounded to irradiance steps of its own. So a lamp whose green
- * is a hundredth of its power must give the same green light as a green lamp of
- * a hundredth of that power. The hot spot of this lens is much fainter than the
+/* Each colour channel is rounded to irradiance steps of its own: a lamp whose
+ * green is a hundredth of its power must give the same green light as a green
+ * lamp of that hundredth. The hot spot of this lens is much fainter than the
  * size of its bounding box suggests. */
 TEST(faint_colour_keeps_its_irradiance_steps)
 {
@@ -376,8 +377,8 @@ static void load_triplet_with_shapes(const char *before, const char *first,
 }
 
 /* Checks that a toric surface with two equal radii gives the picture of a
- * sphere. The lens counts as one without rotational symmetry, so it is traced
- * over the whole pupil, rotated by the azimuth of the light. */
+ * sphere. The toric lens counts as one without rotational symmetry, so rays are
+ * traced over its whole pupil, rotated by the azimuth of the light. */
 TEST(toric_with_equal_radii_equals_a_sphere)
 {
     const struct glint_view view = {
@@ -416,9 +417,9 @@ static void draw_lamps_linear(struct glint_frame *frame, struct glint_view view,
         glint_frame_draw_flare_alone(frame, lamps, n, 1, linear, &report));
 }
 
-/* Checks that a frame that adopts the pupil boxes found by a smaller frame
- * draws the same bits as a frame that searches for them. The lamps of the
- * smaller frame may differ. */
+/* Checks that a frame that adopts the pupil boxes found by a smaller frame,
+ * whose lamps may differ, draws the same bits as a frame that searches for
+ * them. */
 TEST(adopted_rays_do_not_change_the_picture)
 {
     const struct glint_view view = {
@@ -449,9 +450,9 @@ TEST(adopted_rays_do_not_change_the_picture)
     }
 }
 
-/* Checks that a frame draws the same bits as a new one after two kinds of
- * earlier pictures. In the first, lamps had another extent, which exact rays of
- * point lights do not show. In the second, most ghosts were muted. */
+/* Checks that a frame that has drawn other pictures draws the same bits as a
+ * new one. In one of these pictures, lamps had another extent, which exact rays
+ * of point lights do not show; in another, most ghosts were muted. */
 TEST(earlier_pictures_do_not_change_the_picture)
 {
     static float linear[2][3 * 240 * 135];
@@ -484,9 +485,9 @@ TEST(earlier_pictures_do_not_change_the_picture)
     }
 }
 
-/* Checks that lamps which share traced rays are each drawn at their own place.
- * Their picture must equal the sum of pictures of single lamps, each with rays
- * traced in its own direction. */
+/* Checks that lamps that use the same traced rays are each drawn at their own
+ * position. Their picture must equal the sum of the pictures of single lamps,
+ * each with rays traced in its own direction. */
 TEST(lamps_that_share_rays_keep_their_places)
 {
     static float linear[3][3 * 240 * 135];
@@ -547,9 +548,9 @@ TEST(decentred_lens_is_mirrored_at_the_diagonal)
     assert_true(compute_psnr(rgb, other, view) < 40);
 }
 
-/* Progress reports of a frame. N: reports in total; N_EXPOSING: reports during
- * the small picture from which the exposure is determined. LAST and EXPOSED are
- * the last reported fractions of both, RISES whether all reports rose. */
+/* Progress reports of a frame. N: all reports; N_EXPOSING: those while a small
+ * picture is drawn to determine the exposure. LAST and EXPOSED: last reported
+ * fractions of both; RISES: all reports rose. */
 struct reports {
     int n, n_exposing;
     double last, exposed;
@@ -565,9 +566,9 @@ static void record_progress_report(void *ctx, double done)
     r->n++;
 }
 
-/* Checks that the reported progress rises while the exposure is determined,
- * which includes the search for ghosts, and from there to the end of
- * drawing. */
+/* Checks that the reported progress rises while the exposure is determined
+ * (this includes the search for ghosts), and then until the picture is
+ * drawn. */
 TEST(progress_rises_from_exposure_to_picture)
 {
     const struct glint_view view = {

@@ -37,10 +37,10 @@ static void make_model_and_exact_setups(const char *name, double f_number,
     assert_ok(glint_setup_init(exact, &lens, 8, 0, nm, 3, &error));
 }
 
-/* At full aperture, barrels of these lenses clip the rim of the pupil, so that
- * the flux is 1 / 1.027 and 1 / 1.10 of that through a full circle. From a
- * quarter of a stop down, barrels clip nothing. The interpolation over three
- * apertures cannot reproduce this kink of the flux. */
+/* At full aperture, the lens barrels clip the rim of the pupil, so that the
+ * flux is 1 / 1.027 and 1 / 1.10 of that through a full circle. From a quarter
+ * f-stop down, they clip nothing. The interpolation over three apertures cannot
+ * reproduce this kink of the flux. */
 TEST(barrels_reduce_the_flux_of_fast_lenses)
 {
     static const struct {

@@ -11,8 +11,8 @@
 #include "glint/bake.h"
 #include "support/test.h"
 
-/* Indices at the d, C and F lines as printed by the manufacturers, 5 decimals;
- * not computed from glint's coefficients. */
+/* Refractive indices at the d, C and F lines as printed by the manufacturers, 5
+ * decimals; not computed from glint's coefficients. */
 static const struct {
     const char *name;
     double nd, nc, nf;
@@ -92,8 +92,8 @@ static enum glint_status parse_lens_of_medium(const char *medium,
     return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
 }
 
-/* Checks that GOT differs from WANT, a printed index, by at most 1e-5 plus half
- * of the last printed decimal. */
+/* Checks that GOT differs from WANT, a printed refractive index, by at most
+ * 1e-5 plus half of the last printed decimal. */
 static void check_index_is_near(double got, double want)
 {
     assert_true(fabs(got - want) < 1.5e-5);
@@ -140,7 +140,7 @@ TEST(printed_dispersions)
 }
 
 /* Checks that every row of the catalogue has values that are plausible for a
- * glass. Misprinted coefficients would not be. */
+ * glass; misprinted coefficients would give others. */
 TEST(all_rows_are_glasses)
 {
     struct glint_error error = {""};
@@ -168,8 +168,8 @@ TEST(all_rows_are_glasses)
     assert_null(glint_glass_at(-1));
 }
 
-/* Checks that the dispersion of a flint glass in the violet differs from that
- * of Cauchy's formula, which is determined by nd and Vd alone. */
+/* Checks that the dispersion of a flint glass in the violet differs from
+ * Cauchy's formula, whose two terms nd and Vd determine. */
 TEST(violet_dispersion_is_not_that_of_two_terms)
 {
     struct glint_error error = {""};
@@ -211,7 +211,6 @@ TEST(misspelt_names_get_a_suggestion)
     assert_true(lens.surface[0].sellmeier[0] == 0);
 }
 
-/* Checks that two glasses with equal nd and Vd give different model keys. */
 TEST(glasses_of_equal_nd_and_vd_have_distinct_keys)
 {
     struct glint_bake_options options;

@@ -34,8 +34,8 @@ TEST(bk7_indices_match_the_catalogue)
 
 /* -------------------------------------------------------------- boundaries */
 
-/* Returns the reflectance of a boundary with a film of index NF; NF 0: no
- * film. */
+/* Returns the reflectance of a boundary between media of refractive indices N1
+ * and N2 with a film of index NF; NF 0: no film. */
 static double compute_film_reflectance(double n1, double n2, double cosine,
                                        double nf, double phase)
 {
@@ -67,8 +67,8 @@ TEST(bare_boundary_reflectance)
     assert_true(compute_bare_reflectance(1.0, 1.5, 0.0) == 1.0);
 }
 
-/* From index 1.5 to 1, the cosine of the critical angle is sqrt(5) / 3; rays of
- * smaller cosines are totally reflected. */
+/* From refractive index 1.5 to 1, the cosine of the critical angle is sqrt(5) /
+ * 3; rays of smaller cosines are totally reflected. */
 TEST(reflects_totally_beyond_the_critical_angle)
 {
     static const double film[] = {0.0, 1.38};
@@ -83,9 +83,9 @@ TEST(reflects_totally_beyond_the_critical_angle)
     }
 }
 
-/* At normal incidence a quarter-wave film of index f between media n1 and n2
- * reflects ((n1 n2 - f^2) / (n1 n2 + f^2))^2, so nothing if f^2 = n1 n2. A
- * half-wave film has no effect. */
+/* At normal incidence a quarter-wave film of refractive index f between media
+ * of indices n1 and n2 reflects ((n1 n2 - f^2) / (n1 n2 + f^2))^2, so nothing
+ * if f^2 = n1 n2. A half-wave film has no effect. */
 TEST(film_reflectance_matches_hand_computation)
 {
     const double quarter = pi, half = 2.0 * pi;
@@ -100,7 +100,7 @@ TEST(film_reflectance_matches_hand_computation)
                 1e-15);
     assert_near(compute_film_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04,
                 1e-15);
-    /* a film with the index of one of the media has no effect */
+    /* a film with the refractive index of one of the media has no effect */
     for (int i = 1; i <= 20; i++) {
         const double c = 0.05 * i;
 
@@ -165,8 +165,8 @@ TEST(thin_gap_transmits_by_frustrated_reflection)
                 1e-12);
     assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0,
                 1e-12);
-    /* 1.7 times the sine 0.8 is the film's index 1.36, so the angle is
-     * critical. */
+    /* The film's refractive index is 1.36, 1.7 times the sine 0.8, so the angle
+     * is critical. */
     assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
                 compute_film_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0),
                 1e-7);
@@ -198,8 +198,9 @@ TEST(reflectance_is_equal_from_both_sides)
 
 /* ------------------------------------------------------------- first order */
 
-/* Returns a biconvex lens with radii of 50 mm, thickness 6 mm, index 1.5. The
- * expected values below were computed by hand from the lensmaker's equation. */
+/* Returns a biconvex lens with radii of 50 mm, thickness 6 mm and refractive
+ * index 1.5. The expected values below were computed by hand from the
+ * lensmaker's equation. */
 static struct glint_prescription make_biconvex_lens(void)
 {
     struct glint_prescription lens;
@@ -258,7 +259,7 @@ TEST(biconvex_with_stop_in_front)
     assert_near(optics.length_mm, 16.0, 1e-15);
 }
 
-/* ------------------------------------------------------- the eleven tables */
+/* --------------------------------------------------- published lens tables */
 
 /* Values published with the lens tables: focal length, back focal length and
  * stop radius in mm at the d line, f-number, number of surfaces before and

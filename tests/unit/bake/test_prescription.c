@@ -16,7 +16,7 @@
 
 #define CORPUS "tests/fuzz/corpus/lens"
 
-/* A valid table. Each mistake below replaces one of its lines. */
+/* A valid table. Each wrong table below replaces one of its lines. */
 static const char *const good[] = {
     "name tiny-4",                       /* line 1 */
     "source Tiny, US 1,234",             /* line 2 */
@@ -32,8 +32,9 @@ static const char *const good[] = {
 
 #define N_GOOD 10
 
-/* Writes the valid table to TEXT, with END after each line. Line NUMBER, from
- * 1, is replaced by LINE; NUMBER 0: no line is. Returns the size in bytes. */
+/* Writes the valid table to TEXT, with END after each line. Replaces line
+ * NUMBER, from 1, by LINE; NUMBER 0: replaces none. Returns the size in
+ * bytes. */
 static size_t compose_table_with_line(char text[4096], int number,
                                       const char *line, const char *end)
 {
@@ -85,7 +86,7 @@ static void expect_parse_error(const char *text, size_t bytes,
     assert_memory_equal(&lens, &before, sizeof(lens));
 }
 
-/* -------------------------------------------------------------- good tables */
+/* ------------------------------------------------------------ valid tables */
 
 static void expect_surface_values(const struct glint_surface *s, double radius,
                                   double thickness, double semi, double nd,
@@ -220,7 +221,7 @@ TEST(parses_round_stops)
     assert_true(lens.stop_thickness_mm == 40 && lens.stop_semi_mm == 8);
 }
 
-/* Checks that the parser rounds decimals like the compiler. */
+/* Checks that the parser rounds decimals as the compiler does. */
 TEST(numbers_are_exact)
 {
     static const struct {
@@ -248,7 +249,7 @@ TEST(numbers_are_exact)
     }
 }
 
-/* ---------------------------------------------------------------- mistakes */
+/* --------------------------------------------------------- rejected tables */
 
 static const struct {
     int number; /* number of the line that is replaced, from 1 */
@@ -603,9 +604,9 @@ TEST(errors_keep_the_cause_after_a_long_file_name)
     assert_memory_equal(error.text, "...ddd", 6);
 }
 
-/* Checks lenses whose smallest valid f-number would become too small if it were
- * rounded to nearest. The parser must accept the f-number that
- * glint_prescription_widest() returns. */
+/* Checks lenses whose widest f-number, rounded to nearest, would be too small.
+ * The parser must accept the f-number that glint_prescription_widest()
+ * returns. */
 TEST(printed_widest_f_number_is_accepted)
 {
     static const char *const names[] = {"heliar-tronnier", "canon-zoom-long",
@@ -675,8 +676,8 @@ TEST(parses_the_table_of_the_manual)
     assert_string_equal(lens.name, "achromat");
 }
 
-/* Checks the lens tables in the corpus of the fuzzer by their names: good-*
- * must parse, bad-* must be rejected, others may do either. */
+/* Checks the lens tables in the fuzzer's corpus by their names: good-* must
+ * parse, bad-* must be rejected, others may do either. */
 TEST(corpus_tables_match_their_names)
 {
     static struct glint_prescription lens;

@@ -32,9 +32,8 @@ static bool is_ray_in_pupil_box(const struct glint_pupil *box, double x,
 }
 
 /* Compares the pupil box of GHOST at THETA_DEG and the wavelength NM with a
- * dense scan of rays. With NEAR, the box is found as in a frame: the search
- * extends the box found at 532 nm. Adds the number of unblocked rays to
- * *N_SEEN. */
+ * dense scan of rays. NEAR: the box is found as in a frame, by extending the
+ * box found at 532 nm. Adds the number of unblocked rays to *N_SEEN. */
 static void check_pupil_box_by_scan(int ghost, double theta_deg, double nm,
                                     bool near, int *n_seen)
 {
@@ -207,8 +206,8 @@ TEST(finds_thin_tips_of_a_crescent)
     }
 }
 
-/* Checks that a ghost has no pupil box at 85 degrees, where none of its light
- * reaches the stop. */
+/* Checks that a ghost has no pupil box at 85 degrees, where no light of the
+ * ghost reaches the stop. */
 TEST(blocked_ghost_has_no_box)
 {
     struct glint_pupil box;

@@ -43,7 +43,7 @@ static int32_t random_number_q30(void)
     return (int32_t)lrint(random_signed_unit() * 0x1p30);
 }
 
-/* ------------------------------------------------------------------ systems */
+/* ---------------------------------------------------------- random systems */
 
 /* A fitted ghost with one polynomial system, and the model made from it. */
 struct made {
@@ -157,7 +157,7 @@ static void free_quantised_model(struct made *m)
     free(m->draft.data);
 }
 
-/* -------------------------------------------------------------------- proof */
+/* ----------------------------------------------------------- proven bounds */
 
 static double decode_q30(int32_t x_q30)
 {
@@ -172,7 +172,7 @@ static int32_t map_range_to_q30(int32_t x, int32_t lo, int32_t hi)
     return (int32_t)(twice * ONE_Q30 / ((int64_t)hi - lo));
 }
 
-/* Returns the value of the fitted polynomial O; POWER[] are the powers of its
+/* Returns the value of the fitted polynomial O, given the powers of its
  * variables. */
 static double evaluate_polynomial(const struct glint_fitted_output *o,
                                   double power[4][16])
@@ -198,17 +198,16 @@ static void set_powers_of_variables(double power[4][16], const double x[4])
     }
 }
 
-/* How closely values approached the proven bounds, 0 .. 1. BOUND: the largest
- * value divided by its bound; ROUNDING: the largest rounding error divided by
- * its bound. */
+/* How closely values and rounding errors approached their proven bounds:
+ * largest ratio to the bound, 0 .. 1. */
 struct used {
     double bound, rounding;
     long n;
 };
 
 /* Returns the energy that the run time computes from VALUE, the result of the
- * energy polynomial. With HEAD or ROOTS, VALUE is clamped to 0 .. 2^(29 - HEAD)
- * and scaled up by 2^HEAD, and then squared ROOTS times. */
+ * energy polynomial: clamps it to 0 .. 2^(29 - HEAD), scales it up by 2^HEAD
+ * and squares it ROOTS times. If HEAD and ROOTS are 0, returns VALUE. */
 static double compute_energy_of_polynomial(int head, int roots, double value)
 {
     if (head || roots)
@@ -349,7 +348,7 @@ TEST(wrong_coefficient_exceeds_the_proven_bound)
     free_quantised_model(&m);
 }
 
-/* ------------------------------------------------------------------ numbers */
+/* --------------------------------------------------- conversion of doubles */
 
 TEST(doubles_convert_to_reals)
 {
@@ -385,7 +384,6 @@ TEST(zero_and_infinite_doubles_convert)
 
 /* ---------------------------------------------------------------- exponents */
 
-/* Returns the sum of the magnitudes of the coefficients. */
 static int64_t
 sum_coefficient_magnitudes(const struct glint_fitted_output *o,
                            const struct glint_quantised_output *q)
@@ -427,7 +425,7 @@ TEST(exponents_use_half_of_the_range)
 }
 
 /* Checks that the upper limit of a ghost's energy is at least 1.2 times the
- * largest energy of its unblocked rays. */
+ * largest energy of the ghost's unblocked rays. */
 TEST(energy_limit_has_headroom)
 {
     int cut = 0;
@@ -467,7 +465,7 @@ TEST(tiny_coefficients_use_the_smallest_exponent)
     free_quantised_model(&m);
 }
 
-/* ----------------------------------------------------------------- refusals */
+/* ---------------------------------------------------- rejected polynomials */
 
 static void check_system_is_rejected(struct made *m)
 {

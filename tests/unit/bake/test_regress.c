@@ -60,8 +60,8 @@ static double evaluate_polynomial(const struct glint_poly *poly,
     return glint_poly_evaluate(poly->n, poly->power, poly->coef, x);
 }
 
-/* On a grid symmetric in u, odd powers cannot represent an even function and
- * vice versa: the fit must not use powers of the other parity. */
+/* On a grid symmetric in u, odd powers cannot represent an even function, nor
+ * even powers an odd one: the fit must not use them. */
 TEST(symmetric_grid_separates_even_and_odd_terms)
 {
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
@@ -85,10 +85,9 @@ static double evaluate_cubic_polynomial(double u, double v)
     return 1 - u + 2 * u * u - 3 * u * u * u;
 }
 
-/* On a twentieth of the range, powers of u are nearly dependent: the component
- * of u^3 orthogonal to lower powers has only 10^-5 of the length of u^3.
- * Differences of squares would cancel it, so the regression computes it
- * separately. */
+/* On a twentieth of the range, powers of u are nearly dependent: only 10^-5 of
+ * the length of u^3 is orthogonal to lower powers. Differences of squares would
+ * cancel this part, so the regression computes it separately. */
 TEST(fits_nearly_dependent_powers)
 {
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};

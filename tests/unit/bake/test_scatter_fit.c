@@ -42,8 +42,8 @@ static void fit_rows_by_model(struct glint_scatter_rows *rows,
     assert_ok(glint_scatter_fit(rows, &options, NULL, fit));
 }
 
-/* Returns entry D of kernel J of the synthetic rows. The kernels are not
- * symmetric, so that a mirrored kernel would be noticed. */
+/* Returns entry D of kernel J of the synthetic rows. Kernels are not symmetric,
+ * so that mirroring them changes the result. */
 static double compute_synthetic_kernel_entry(int j, int d)
 {
     const int u = d % KERNEL - KERNEL / 2, v = d / KERNEL - KERNEL / 2;

@@ -67,9 +67,9 @@ static double compute_radiant_exitance(const struct glint_slab *s, double r)
 }
 
 /* Checks rows of a homogeneous medium, away from its rim, against a closed
- * form. Entries from two texels off the centre on, and the sum of each row,
- * must be right within 2 %. A sum of modes alone must be right from three
- * texels on. */
+ * form. Entries from two texels off the centre on, and row sums, must be right
+ * within 2 %. Computed by a sum of modes alone, entries must be right from
+ * three texels on. */
 TEST(homogeneous_rows_match_the_closed_form)
 {
     const struct glint_stone stone = make_medium(GLINT_STONE_EVEN);
@@ -303,13 +303,11 @@ TEST(rejects_invalid_stones)
     }
 }
 
-/* Checks that DONE is a fraction that increases with each call, and counts
- * the calls. */
+/* Counts calls, and checks that DONE is a fraction that increases with each. */
 static void count_progress_calls(void *ctx, double done)
 {
     double *seen = ctx;
 
-    /* DONE has increased since the previous call, and is at most 1 */
     assert_true(done > seen[0] && done < 1 + 1e-9);
     seen[0] = done;
     seen[1]++;

@@ -108,7 +108,8 @@ static long double compute_gap_to_surface(const struct glint_surface *s,
 }
 
 /* Finds the intersection nearest to the vertex plane: searches outwards in
- * small steps, then bisects. Returns false if there is none within REACH. */
+ * small steps, then bisects. Returns false if there is none within the distance
+ * REACH. */
 static bool find_nearest_intersection(const struct glint_surface *s,
                                       const struct line *l, long double reach,
                                       long double *t)
@@ -176,7 +177,8 @@ static double random_uniform(double low, double high)
 }
 
 /* Compares library rays that start within SPAN of the axis with rays of the
- * second method. Returns the number of rays that hit the surface. */
+ * second method (vector Snell). Returns the number of rays that hit the
+ * surface. */
 static int compare_rays_near_axis(const char *surfaces, double span)
 {
     const struct glint_surface *const s = lens.surface;
@@ -201,7 +203,7 @@ static int compare_rays_near_axis(const char *surfaces, double span)
             find_nearest_intersection(s, &own, 3 * s->semi_mm, &t);
         enum glint_ray_status status;
 
-        /* The NAN remains unless the ray hits the shaped surface. */
+        /* NAN remains if the ray misses the shaped surface. */
         hits[1][0] = (double)NAN;
         status = glint_trace(&path, x, y, direction, &ray, hits);
         for (int k = 0; k < 2; k++)
@@ -425,7 +427,7 @@ TEST(rotated_lens_equals_rotated_light)
     assert_true(fabs(a.stop_x_mm * c - a.stop_y_mm * s - b.stop_x_mm) < 1e-11);
 }
 
-/* -------------------------------------------------------------------- text */
+/* ------------------------------------------------------------- shape lines */
 
 TEST(rejects_wrong_shape_lines)
 {
@@ -471,8 +473,8 @@ TEST(rejects_wrong_shape_lines)
     }
 }
 
-/* Checks that glint_surface_point(), at the position where a ray meets a
- * surface, returns a point of the ray. */
+/* Checks that glint_surface_point() at the position where a ray hits a surface
+ * returns a point of the ray. */
 TEST(points_lie_on_rays)
 {
     static const char *const shapes[] = {

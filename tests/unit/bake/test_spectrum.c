@@ -136,8 +136,8 @@ TEST(coating_colours_converge)
 }
 
 /* Returns the error of N wavelengths at an outline that dispersion widens: the
- * height of the colour steps, which is the largest difference, in any channel,
- * from 3000 wavelengths. */
+ * height of the colour steps, as the largest difference in any channel from
+ * 3000 wavelengths. */
 static double compute_step_error(int n)
 {
     enum { FINE = 3000 };

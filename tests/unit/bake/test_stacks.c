@@ -20,7 +20,7 @@ struct shares {
 };
 
 /* Sets R and T to Fresnel's amplitude coefficients for light from a medium of
- * index N1 at the cosine C1. */
+ * refractive index N1 at the cosine C1. */
 static void set_fresnel_amplitudes(double n1, double complex c1, double n2,
                                    double complex c2, int is_p,
                                    double complex *r, double complex *t)
@@ -33,8 +33,8 @@ static void set_fresnel_amplitudes(double n1, double complex c1, double n2,
 }
 
 /* Returns the fractions of light that N films reflect and transmit. Light comes
- * from the medium of index N1 at the cosine COSINE. FILM[0] is next to the
- * medium of lower index. */
+ * from the medium of refractive index N1 at the cosine COSINE. FILM[0] is next
+ * to the medium of lower index. */
 static struct shares compute_stack_by_rouard(double n1, double n2,
                                              double cosine,
                                              const struct glint_film_at *film,
@@ -88,7 +88,7 @@ static void expect_stack_equals_rouard(double n1, double n2, double cosine,
     assert_near(of_p + p.t, 1, 1e-9);
 }
 
-/* ------------------------------------------------------------------- named */
+/* ---------------------------------------------------------- named coatings */
 
 /* Checks all named coatings on four glasses, from 380 to 780 nm and from 0 to
  * 89 degrees, from the air and from the glass. */
@@ -116,8 +116,8 @@ TEST(named_coatings_match_rouard)
 }
 
 /* At the design wavelength and normal incidence, two quarter-wave films of
- * indices a and b on glass of index g reflect ((a^2 g - b^2) / (a^2 g +
- * b^2))^2; a half-wave film between them has no effect. */
+ * refractive indices a and b on glass of index g reflect ((a^2 g - b^2) / (a^2
+ * g + b^2))^2; a half-wave film between them has no effect. */
 TEST(two_film_stack_matches_hand_computation)
 {
     const double g = 1.52, a = 1.38 * 1.38 * g;
@@ -163,7 +163,7 @@ TEST(coatings_reflect_less_in_their_band)
     assert_true(mean[1] < 0.003 && mean[2] < 0.003);
 }
 
-/* -------------------------------------------------------------------- any */
+/* ---------------------------------------------- random and extreme stacks */
 
 static double random_uniform(uint32_t *seed, double lo, double hi)
 {
@@ -222,7 +222,7 @@ TEST(extreme_stacks_match_rouard)
     assert_true(s == 1 && p == 1);
 }
 
-/* ------------------------------------------------------------------- paths */
+/* ------------------------------------------------------------ ray energies */
 
 /* Checks that the energy of a ray through a coated pane is the product of both
  * transmittances, and of a ghost that of both reflectances, for film stacks as

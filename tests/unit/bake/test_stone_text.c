@@ -72,8 +72,8 @@ TEST(omitted_lines_have_defaults)
     assert_int_equal(t.stone.seed, 3);
 }
 
-/* Checks that the first medium named in a pattern is material 0, in whatever
- * order the media are defined. */
+/* Checks that the first medium named in a pattern is material 0, whatever the
+ * order in which media are defined. */
 TEST(first_medium_of_a_pattern_is_material_0)
 {
     struct glint_stone_text t;
@@ -149,9 +149,9 @@ TEST(rejects_mistakes)
     }
 }
 
-/* Returns the mean difference of SHARE between adjacent columns of the medium,
- * or adjacent rows if ROWS is set. With EDGE, the differences across the edge
- * are used, where opposite sides of the medium meet. */
+/* Returns the mean difference of SHARE between adjacent columns of the medium
+ * (ROWS: adjacent rows). EDGE: only the differences across the edge where
+ * opposite sides of the medium meet. */
 static double compute_mean_neighbour_difference(const double *share, int side,
                                                 bool rows, bool edge)
 {

@@ -160,11 +160,11 @@ TEST(rays_match_other_program)
     assert_int_equal(n_files, N_GOLDEN);
 }
 
-/* ------------------------------------------------------------------- paths */
+/* -------------------------------------------------------- events of a path */
 
 /* Returns a lens of N uncoated surfaces, which lead alternately into glass of
- * index 1.5 and into air, with the stop behind them. The parser might reject
- * it. */
+ * refractive index 1.5 and into air, with the stop behind them. The parser
+ * might reject it. */
 static struct glint_prescription
 make_lens_of_bare_surfaces(int n, const double *radius_mm, double thickness_mm)
 {
@@ -242,8 +242,6 @@ TEST(direct_path_begins_at_a_front_stop)
     assert_near(ray.stop_y_mm, -4.0, 1e-14);
 }
 
-/* Checks that the longest possible path, through the stop, fits into the array
- * of events. */
 TEST(longest_path_fits_the_event_array)
 {
     static double radii[GLINT_MAX_SURFACES];
@@ -269,9 +267,9 @@ trace_single_ray(const struct glint_prescription *lens, double py_mm,
     return glint_trace(&path, 0.0, py_mm, direction, ray, NULL);
 }
 
-/* A plane-parallel plate, 5 mm thick, of index 1.5: a ray of sine 0.6 has sine
- * 0.4 inside, rises by 5 tan(asin 0.4), and leaves the plate parallel to its
- * entry. */
+/* A plane-parallel plate, 5 mm thick, of refractive index 1.5: a ray of sine
+ * 0.6 has sine 0.4 inside, rises by 5 tan(asin 0.4), and leaves the plate
+ * parallel to its entry. */
 TEST(plate_displaces_ray)
 {
     static const double flat[2] = {0.0, 0.0};
@@ -424,9 +422,9 @@ TEST(invalid_rays_are_missed)
 
 /* ---------------------------------------------------------- batches of rays */
 
-/* Checks that N rays traced in a batch, and their intersections, are
- * bit-identical to rays traced one by one. Intersections that a ray does not
- * reach must stay unchanged. */
+/* Checks that N rays traced in a batch, and their intersections with surfaces,
+ * are bit-identical to rays traced one by one. Entries of surfaces that a ray
+ * does not reach must stay unchanged. */
 static void expect_batch_equals_single_rays(const struct glint_path *path,
                                             int n,
                                             const struct glint_launch *from)

@@ -52,8 +52,8 @@ TEST(parts_are_disjoint)
 }
 
 /* The attempted fit of a zone of a bright ghost, from FROM to TO degrees. LEFT
- * is the error of the fit in units of the tolerance. The zone from which this
- * zone was halved had an error of 10. */
+ * is the error of the fit divided by the tolerance. The zone that was halved
+ * into this one had an error of 10. */
 struct attempted {
     bool shaped, far;
     double from, to, left;
@@ -93,10 +93,9 @@ static enum glint_next choose_next_division_of_zone(const struct attempted *c)
     return glint_next_choose_step(&rules, &piece, &attempt);
 }
 
-/* The pupil parts of wide zones of aspheric lenses would have gaps between
- * them. So the bake halves these zones in angle, where it divides zones of
- * spherical lenses into parts. It may also halve their pupil boxes more
- * often. */
+/* In wide zones of aspheric lenses, pupil parts would have gaps between them.
+ * So the bake halves these zones in angle, where it divides zones of spherical
+ * lenses into pupil parts. It may also halve their pupil boxes more often. */
 TEST(wide_zones_of_aspheres_are_halved)
 {
     static const struct attempted all[] = {
@@ -117,8 +116,8 @@ TEST(wide_zones_of_aspheres_are_halved)
         {true, false, 0, 3, 9, 5, 4, GLINT_PART},
         {true, false, 0, 3, 9, 6, 4, GLINT_KEEP},
         {true, false, 0, 3, 9, 7, 8, GLINT_PART},
-        /* For lights beyond 60 degrees, zones are halved like those of aspheric
-         * lenses, but are not divided into parts. */
+        /* Zones beyond 60 degrees are halved like those of aspheric lenses, but
+         * not divided into pupil parts. */
         {false, true, 70, 74, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.7, 9, -1, 4, GLINT_HALVE},
         {false, true, 70, 73.5, 9, -1, 4, GLINT_THOROUGH},

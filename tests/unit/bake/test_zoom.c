@@ -67,8 +67,8 @@ TEST(zoom_at_a_column_equals_its_table)
 }
 
 /* Checks that focal lengths between the columns of a table are monotonic and
- * that the image stays in focus; glint_prescription_zoom_to() finds each focal
- * length again. */
+ * the image stays in focus, and that glint_prescription_zoom_to() finds the
+ * position of each focal length. */
 TEST(monotone_between_columns)
 {
     enum { STEPS = 40 };
@@ -216,7 +216,7 @@ TEST(elements_stay_solid_behind_a_front_stop)
     assert_non_null(strstr(error.text, "cannot focus at 3 m"));
 }
 
-/* -------------------------------------------------------------------- text */
+/* ---------------------------------------------------- zoom lines of tables */
 
 static void check_table_is_rejected(const char *body, const char *cause)
 {
@@ -260,9 +260,9 @@ TEST(rejects_wrong_columns)
                             "the focusing group has no surface");
 }
 
-/* Checks that the result of setting a zoom does not depend on its previous
- * position. This must hold even if the table states a single last gap while
- * each column has another focus distance. */
+/* Checks that the lens at a zoom position does not depend on the position set
+ * before, even if the table states a single last gap while each column has
+ * another focus distance. */
 TEST(result_is_independent_of_history)
 {
     static const char text[] =

@@ -39,8 +39,7 @@ TEST(overflowing_size_fills_the_arena)
     assert_true(m.used > SIZE_MAX - 256);
 }
 
-/* Checks rounding to nearest, with ties rounded up, also for negative
- * numbers. */
+/* Ties are rounded up, also for negative numbers. */
 TEST(rounds_to_nearest_ties_up)
 {
     assert_int_equal(q_shift(5, 1), 3);

@@ -45,7 +45,6 @@ TEST(crc32_of_known_text)
     assert_true(glint_blob_compute_crc32("", 0) == 0);
 }
 
-/* Checks that the header fields have the same offsets as in existing files. */
 TEST(fields_have_the_offsets_of_existing_files)
 {
     struct glint_blob blob;
@@ -89,8 +88,7 @@ TEST(reports_the_fault_of_a_header)
                      GLINT_BLOB_UNALIGNED);
 }
 
-/* Checks that each single wrong bit from the checksum to the end of the file is
- * detected. */
+/* Checks every single wrong bit from the checksum to the end of the file. */
 TEST(detects_any_changed_bit)
 {
     struct file f;

@@ -39,7 +39,7 @@ TEST(random_divisions_are_exact)
     }
 }
 
-/* Checks numerators at and next to multiples of the divisor D, and at powers of
+/* Checks numerators at and next to multiples of the divisor D, and powers of
  * two. */
 TEST(divisions_near_multiples_are_exact)
 {
