@@ -30,9 +30,9 @@ static void compute_lamp_position(const struct glint_lamp *lamp, double *u,
     *v = PIXELS * tan(lamp->theta_deg * degree) * sin(lamp->phi_deg * degree);
 }
 
-/* Sets SUM to sums over the points of LAMP: of power; of power times offset
- * from the lamp, pixels, in u and v; of power times squared offset along the
- * lamp's major and minor axis. Returns the number of points. */
+/* Sets SUM to sums over the points of LAMP: power; power times offset from the
+ * lamp's centre, pixels, in u and in v; power times squared offset along the
+ * major and the minor axis. Returns the number of points. */
 static int compute_point_sums(const struct glint_lamp *lamp, double thinning,
                               double sum[5])
 {
@@ -92,9 +92,9 @@ TEST(sums_equal_the_lamp)
     assert_true(fabs(sqrt(sum[4] / 5) - 10) < 10 * 0.05);
 }
 
-/* Checks that the points of a lamp do not move when its rotation passes 90
- * degrees, where its axes jump by a half turn, and that the points of a round
- * lamp do not depend on its rotation. */
+/* Checks that the points of a lamp do not move when the lamp's rotation passes
+ * 90 degrees, where its axes jump by a half turn, and that those of a round
+ * lamp do not depend on the rotation. */
 TEST(half_turn_of_the_axes_keeps_the_points)
 {
     const struct glint_area_rule rule = {PIXELS, MOST, 5, 1};
@@ -170,8 +170,8 @@ TEST(point_count_is_limited)
     assert_int_equal(total, 1);
 }
 
-/* Steps between faint points are less visible. Checks that a lamp with 1/16 of
- * the power gets 1/4 of the points. */
+/* Steps between faint points are less visible: a lamp with 1/16 of the power
+ * gets 1/4 of the points. */
 TEST(faint_lamps_get_fewer_points)
 {
     struct glint_lamp lamps[2] = {make_disc_lamp(30, 30),
@@ -190,8 +190,8 @@ TEST(faint_lamps_get_fewer_points)
 
 /* Checks that the points of a disc are as far apart as those of a square grid
  * with the same area per point, and that this distance changes continuously
- * while the disc grows from one point to many. An ellipse 1/100 as wide as it
- * is long has a fifth of that distance. */
+ * while the disc grows from one point to many. In an ellipse 1/100 as wide as
+ * long it is a fifth of that. */
 TEST(point_distance_is_that_of_a_square_grid)
 {
     struct glint_area area;

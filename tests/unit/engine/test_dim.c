@@ -63,10 +63,9 @@ static double compute_psnr(const uint8_t *a, const uint8_t *b)
     return 10 * log10(255. * 255 * BYTES / fmax(sum, 1));
 }
 
-/* Checks that larger values of dim_codes draw fewer bundles, and images that
- * are less close to that of dim_codes 0, where each ghost has three
- * wavelengths of its own. The PSNR must stay above 40 dB, and the sum of
- * codes within 1 %. */
+/* Checks that larger values of dim_codes draw fewer ray bundles, and change the
+ * image more against dim_codes 0, where each ghost has three wavelengths of its
+ * own. The PSNR must stay above 40 dB, and the sum of codes within 1 %. */
 TEST(larger_dim_codes_draw_fewer_bundles)
 {
     int bundles;
@@ -126,8 +125,8 @@ static void set_lamp_groups(double time, uint64_t *noise)
 }
 
 /* Returns the total light of a linear image with the quality parameter
- * dim_codes set to CODES. Its ghosts are planned like those of an image in
- * codes, but none is faint enough to be dropped. */
+ * dim_codes set to CODES. Ghosts are planned as for an image of pixel codes,
+ * but none is faint enough to be dropped. */
 static double sum_image_light(double codes)
 {
     static int32_t light_q20[3 * W * H];
@@ -147,10 +146,10 @@ static double sum_image_light(double codes)
     return sum;
 }
 
-/* Checks that dim ghosts of neighbouring lights are merged. Merging must save
- * more than half of the bundles and preserve the total light within 6 %.
- * Compared with separate ghosts, the mean of 8 x 8 pixels may change per frame
- * by at most half a code more. The frame statistics must agree. */
+/* Checks that dim ghosts of neighbouring lights are merged. This must save more
+ * than half of the ray bundles and preserve the total light within 6 %. Per
+ * frame, the mean of 8 x 8 pixels may change by at most half a code more than
+ * with separate ghosts. The frame statistics must agree. */
 TEST(dim_ghosts_of_near_lights_are_merged)
 {
     struct glint_account account;

@@ -42,9 +42,9 @@ static struct glint_engine *create_engine(void *arena, size_t bytes)
     return engine;
 }
 
-/* Draws the picture of draw_lamp_picture() into PX, as the picture US
- * microseconds after the previous one, and adds the flare of the lamps that the
- * engine finds in it. Returns the number of lamps. */
+/* Draws the picture of draw_lamp_picture() into PX, US microseconds after the
+ * previous one, and adds the flare of the lamps that the engine finds in it.
+ * Returns the number of lamps. */
 static int draw_flare_of_found_lamps(struct glint_engine *engine, int32_t us,
                                      uint8_t *px,
                                      struct glint_engine_report *report)
@@ -102,7 +102,7 @@ TEST(callers_memory_gives_the_same_image)
 }
 
 /* Checks that lamps in a video are fully faded in after 30 frames, and that
- * lower quality parameters draw fewer bundles. */
+ * lower quality parameters draw fewer ray bundles. */
 TEST(tracked_lamps_are_present_after_30_frames)
 {
     static uint8_t px[BYTES];
@@ -140,9 +140,9 @@ static double draw_flare_of_given_lamp(struct glint_engine *engine,
 }
 
 /* Checks that a lamp given by the caller is exposed like a lamp that the engine
- * finds. In a still image, a small rendering of its flare determines the
- * exposure, whatever was drawn before. In a video, the exposure changes by
- * small steps from frame to frame. */
+ * finds. In a still image, a small rendering of its flare sets the exposure,
+ * whatever was drawn before. In a video, the exposure changes by small
+ * steps. */
 TEST(given_lamp_is_exposed_like_a_found_one)
 {
     static uint8_t px[BYTES], found[BYTES], again[BYTES];
@@ -286,8 +286,8 @@ TEST(layers_add_up_to_the_whole_flare)
     glint_engine_destroy(engine);
 }
 
-/* Returns the light of the component PART (GLINT_ENGINE_GHOSTS or another) of
- * the flare of LAMP, US microseconds after the previous picture. */
+/* Returns the light of one component of the flare of LAMP, PART (such as
+ * GLINT_ENGINE_GHOSTS), US microseconds after the previous picture. */
 static double sum_layer_light(struct glint_engine *engine,
                               const struct glint_lamp *lamp, int32_t us,
                               unsigned part)
@@ -308,8 +308,8 @@ static double sum_layer_light(struct glint_engine *engine,
 }
 
 /* Checks a lamp that becomes too bright for the exposure of a video: its ghosts
- * are limited, but not its starburst, whose brightness does not depend on the
- * exposure. */
+ * are limited, but not its starburst, as the exposure does not change
+ * starbursts. */
 TEST(limited_lamp_keeps_its_starburst)
 {
     const struct glint_lamp faint = {5, 30, 1e2, {1, 1, 1}, {0, 0}, 0};
@@ -417,8 +417,8 @@ TEST(rejects_invalid_configurations)
 }
 
 /* Checks a program compiled for an older library, whose configuration struct is
- * shorter: missing members get their defaults, whatever the memory after the
- * struct contains. */
+ * shorter: missing members must get their defaults, whatever the memory behind
+ * the struct contains. */
 TEST(shorter_config_of_older_programs_gets_defaults)
 {
     struct glint_engine *engine = NULL;
@@ -507,9 +507,9 @@ static bool is_option_accepted(struct glint_options *o, const char *name,
     return is_set;
 }
 
-/* Checks that stop, dust and colours set by options equal a setup that is made
- * step by step. The option front-dust must set the engine's dirt, and the
- * option stop must have the effect of glint_engine_iris(). */
+/* Checks that stop, dust and colours set by options equal a setup made step by
+ * step. The option front-dust must set the engine's dirt, the option stop must
+ * act like glint_engine_iris(). */
 TEST(camera_options_equal_a_setup_by_steps)
 {
     static uint8_t want[BYTES], got[BYTES];

@@ -63,9 +63,8 @@ static int count_drawn_ghosts(const struct glint_explain *e)
     return n;
 }
 
-/* Checks conditions that every frame fulfils: the explanation E agrees with
- * REPORT, and its counts per ghost, per light and per wavelength each add up to
- * the counts of the frame. */
+/* Checks that the explanation E agrees with REPORT, and that the counts per
+ * ghost, per light and per wavelength each add up to those of the frame. */
 static void
 assert_explanation_matches_report(const struct glint_explain *e,
                                   const struct glint_engine_report *report)
@@ -101,10 +100,10 @@ assert_explanation_matches_report(const struct glint_explain *e,
     }
 }
 
-/* ------------------------------------------------------------------- tests */
+/* -------------------------------------------------------- explained frames */
 
-/* Explains a frame of three lights. One is outside the angles of the model; the
- * other two are drawn, each without some ghosts. */
+/* Explains a frame of three lights: one is outside the angles of the model;
+ * each of the other two is drawn without some ghosts. */
 TEST(explains_lights_outside_and_inside_the_model)
 {
     struct glint_engine_report report;
@@ -130,8 +129,8 @@ TEST(explains_lights_outside_and_inside_the_model)
     glint_frame_finish(&frame);
 }
 
-/* Checks that the peak light is within the range of codes, and that the
- * reported light is proportional to UNIT. */
+/* Checks that peak light and flux are proportional to UNIT, and that the peak
+ * is plausible for the drawn codes. */
 TEST(light_is_linear_in_the_unit)
 {
     struct glint_engine_report report;
@@ -162,7 +161,7 @@ TEST(light_is_linear_in_the_unit)
 }
 
 /* Checks that each outcome in the table occurs in a frame made for it, and that
- * a frame whose only lamp is outside the model's range of angles has no
+ * a frame whose only lamp is outside the model's range of angles has no ray
  * bundles. */
 TEST(every_reason_occurs)
 {

@@ -279,10 +279,10 @@ static bool makes_grids_coarser(int n, size_t bytes, uint8_t rgb[BYTES],
     return report->tight;
 }
 
-/* Checks the amount of memory below which grids become coarser. It must not
- * depend on the number of workers, and grids must be no coarser than necessary.
- * It must be at least the memory that the frame needs, and must not include a
- * reserve for workers with uneven amounts of work. */
+/* Checks the memory limit below which grids become coarser. The limit must not
+ * depend on the number of workers, be at least the memory that the frame needs,
+ * and include no reserve for workers with uneven amounts of work. Grids must be
+ * no coarser than necessary. */
 TEST(memory_limit_does_not_depend_on_workers)
 {
     static uint8_t want[BYTES], got[BYTES];
@@ -300,8 +300,8 @@ TEST(memory_limit_does_not_depend_on_workers)
             high = middle;
     }
     assert_true(high >= full.need_bytes);
-    /* At this limit, workers with uneven amounts of work may drop bundles, but
-     * must count them. */
+    /* At this limit, workers with uneven amounts of work may drop ray bundles,
+     * but must count them. */
     assert_false(makes_grids_coarser(5, high, got, &held));
     assert_true(held.stats.dropped_bundles + held.stats.dropped_cells > 0 ||
                 count_different_samples(got, want) == 0);
@@ -311,8 +311,8 @@ TEST(memory_limit_does_not_depend_on_workers)
     assert_memory_equal(got, want, BYTES);
 }
 
-/* Checks that the bundles dropped for lack of reserved memory do not depend on
- * the number of workers, either. */
+/* Checks that the ray bundles dropped for lack of reserved memory do not depend
+ * on the number of workers, either. */
 TEST(dropped_bundles_do_not_depend_on_workers)
 {
     static uint8_t got[2][BYTES];
@@ -335,7 +335,7 @@ TEST(dropped_bundles_do_not_depend_on_workers)
     }
 }
 
-/* Checks that lamps beyond max_lights are merged, without an allocation. */
+/* Merging the lamps must allocate nothing. */
 TEST(lamps_above_max_lights_are_merged)
 {
     static uint8_t got[BYTES];
@@ -354,8 +354,6 @@ TEST(lamps_above_max_lights_are_merged)
     glint_frame_finish(&frame);
 }
 
-/* Checks that a frame whose settings were changed draws the image of a frame
- * created with these settings. */
 TEST(changed_settings_equal_a_new_frame)
 {
     static const struct {
@@ -472,7 +470,7 @@ TEST(failed_stop_change_keeps_the_old_stop)
 }
 
 /* Checks that numbers of lamps, ghosts and wavelengths whose product overflows
- * an int are rejected before any bundle is written. */
+ * an int are rejected before any ray bundle is written. */
 TEST(rejects_overflowing_numbers_of_bundles)
 {
     enum { N = 66577 };
@@ -487,7 +485,8 @@ TEST(rejects_overflowing_numbers_of_bundles)
         many[i] = (struct glint_lamp){i % 100 / 2., i / 100 / 2., 1,
                                       {1, 1, 1},    {0, 0},       0};
     make_frame_for_lens(&exact_scene, &frame);
-    /* 66577 lamps x 2016 ghosts x 32 wavelengths are 2^32 + 48128 bundles */
+    /* 66577 lamps x 2016 ghosts x 32 wavelengths are 2^32 + 48128 ray
+     * bundles */
     crowd = exact_scene.lens.setup;
     crowd.n_ghosts = 2016;
     crowd.n_wavelengths = 32;
@@ -501,9 +500,9 @@ TEST(rejects_overflowing_numbers_of_bundles)
     free(many);
 }
 
-/* Checks how many point lights may represent wide lamps. If the lamps fit into
- * max_lights, the limit is point_room. In reserved memory, or with more lamps
- * than max_lights, the limit is max_lights. */
+/* Checks how many point lights may represent wide lamps: point_room if the
+ * lamps fit into max_lights; max_lights in reserved memory or if there are more
+ * lamps. */
 TEST(points_of_wide_lamps_use_point_room)
 {
     static const struct {

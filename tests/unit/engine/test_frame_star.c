@@ -41,8 +41,8 @@ TEST_CLOSE
     opened_lens_close(&opened.lens);
 }
 
-/* Returns the power, in the brightest channel, of the star of a lamp of power
- * POWER at LEVEL (0 .. 1 while the lamp fades). SEEN_PX: RMS radius of the
+/* Returns the power, in the brightest channel, of the starburst of a lamp of
+ * power POWER at the fade level LEVEL, 0 .. 1. SEEN_PX: RMS radius of the
  * lamp's clipped core in the image, pixels; 0: not clipped. */
 static double compute_star_power_at_fade_level(double power, double seen_px,
                                                double level)
@@ -65,8 +65,8 @@ static bool is_relatively_near(double a, double b)
 }
 
 /* A star of power W is white out to cbrt(W a) / pi pixels, where a is the
- * wavelength times the f-number, pixels. Returns half of the power at which the
- * star of a point lamp is white out to the edge of a core of RMS radius
+ * wavelength times the f-number, pixels. Returns half of the power at which a
+ * point lamp's star is white out to the edge of a core of RMS radius
  * SEEN_PX. */
 static double compute_half_power_of_white_star(double seen_px)
 {
@@ -100,16 +100,16 @@ static double compute_star_radius_px(double power, double seen_px)
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
-/* Returns the max radius, pixels, of a lamp that its own clipped rim of SEEN_PX
- * pixels can hide. The radius is computed as for still images. */
+/* Returns the max radius, pixels, that a lamp in a still image can have without
+ * showing behind its clipped rim of SEEN_PX pixels. */
 static double compute_max_hidden_lamp_radius(double seen_px)
 {
     return floor(256 * seen_px / 6) * 2 / 256;
 }
 
-/* Checks that a lamp whose core is no wider than its own star gets the largest
- * radius that its clipped rim can hide, as in a still image, and that a lamp
- * that fills its core is drawn as a disc. */
+/* Checks the drawn radius of lamps. A lamp whose core is no wider than its own
+ * star gets the largest radius that its clipped rim can hide, as in a still
+ * image; a lamp that fills its core is a disc. */
 TEST(narrow_core_gets_the_radius_its_rim_can_hide)
 {
     assert_true(compute_star_radius_px(100, 0) == 0);
@@ -124,9 +124,8 @@ TEST(narrow_core_gets_the_radius_its_rim_can_hide)
 }
 
 /* Checks that a spot widened by the glare of a lamp far above white has the
- * spikes of a small lamp. A spot barely above white must have the spikes of a
- * disc, and the transition must be continuous. The star of a fading lamp must
- * keep its extent. */
+ * spikes of a small lamp, and a spot barely above white those of a disc, with a
+ * continuous transition. The star of a fading lamp must keep its extent. */
 TEST(glare_of_a_small_lamp_does_not_widen_spikes)
 {
     const double white = GLINT_PI * 2 * 50 * 50;
@@ -165,8 +164,6 @@ TEST(brightest_lamps_get_stars)
         101));
 }
 
-/* Checks that a frame allocates nothing after memory was reserved for the stars
- * of many lamps. */
 TEST(reserved_memory_prevents_allocations)
 {
     const struct glint_star *star;
@@ -209,10 +206,10 @@ TEST(stars_cost_at_most_a_quarter_of_the_budget)
 }
 
 /* Checks that camera noise does not make stars flicker: for lamps of three
- * sizes and noise of 2 and 4 codes, a star that has faded in changes by at most
- * 2 % per frame and 7 % in four seconds. Noise of 8 codes hides the rim of the
- * smallest lamp; then the limits are 6 % and 25 %, as a star's power is
- * proportional to the cube of the lamp's extent. */
+ * sizes and noise of 2 and 4 codes, a star changes by at most 2 % per frame and
+ * 7 % in four seconds. Noise of 8 codes hides the rim of the smallest lamp;
+ * then the limits are 6 % and 25 %, as a star's power grows with the cube of
+ * the lamp's extent. */
 TEST(camera_noise_does_not_make_stars_flicker)
 {
     enum { FRAMES = 100, SETTLED = 25 };
@@ -252,7 +249,6 @@ TEST(camera_noise_does_not_make_stars_flicker)
     }
 }
 
-/* Checks that a higher cull_codes draws stars on fewer pixels. */
 TEST(higher_cull_codes_cover_fewer_pixels)
 {
     const double cull = frame.dials.cull_codes;

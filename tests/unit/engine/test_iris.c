@@ -74,8 +74,8 @@ static void check_each_iris(void (*test)(const struct glint_setup *s,
 }
 
 /* Checks that corners lie on the circle that the f-number defines. Half-way
- * between two corners, the outline must lie on the circle of radius 1 / R
- * through both corners, where R is the roundness. */
+ * between two corners, the outline must lie on the circle through both of
+ * radius 1 / R, where R is the roundness. */
 static void check_outline_corners(const struct glint_setup *s,
                                   const struct glint_iris_sides *sides)
 {
@@ -129,8 +129,8 @@ TEST(outline_is_convex_and_has_its_area)
 }
 
 /* Checks that the integer test finds points on the same side of the outline as
- * a test in double precision. Near the outline, both tests must give the same
- * distance from it. */
+ * a test in double precision, and near the outline at the same distance from
+ * it. */
 static void check_integer_stop_test(const struct glint_setup *s,
                                     const struct glint_iris_sides *sides)
 {

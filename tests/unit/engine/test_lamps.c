@@ -15,8 +15,8 @@
 
 enum { WIDTH = 320, HEIGHT = 200, SIDE = 10, X0 = 220, Y0 = 40 };
 
-/* Checks the lamp that is found in a white square of 10 x 10 pixels on black:
- * centre (225, 45), flux 100. A clipped pixel counts as 2^3 times white. */
+/* Checks the lamp found in a white square of 10 x 10 pixels on black: centre
+ * (225, 45), flux 100. A clipped pixel counts as 2^3 times white. */
 TEST(finds_a_white_square)
 {
     static uint8_t rgb[3 * WIDTH * HEIGHT];
@@ -95,8 +95,8 @@ TEST(tracked_stationary_lamp_equals_a_still)
 }
 
 /* Checks a lamp in glare whose clipped core has a rim as wide as the core's
- * radius. In a video the lamp may become a point. In a still image its axes are
- * at least a sixth of the size of the core. */
+ * radius. In a video the lamp may become a point; in a still image its axes are
+ * at least a sixth of the core's. */
 TEST(lamp_in_glare_may_become_a_point)
 {
     static uint8_t grey[W * H];
@@ -233,7 +233,7 @@ TEST(csv_and_json_lists_give_the_same_lamps)
 }
 
 /* Checks that text that is not a list of lamps is rejected with the number of
- * the wrong line. In the third text power times colour is too large for an
+ * the wrong line. In the third text, power times colour is too large for an
  * image. */
 TEST(rejects_texts_that_are_not_lamp_lists)
 {

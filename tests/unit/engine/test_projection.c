@@ -23,7 +23,6 @@ compute_projection(struct glint_prescription *lens, const char *name,
     return p;
 }
 
-/* Checks that a view without a projection equals a pinhole bit by bit. */
 TEST(view_without_projection_is_a_pinhole)
 {
     const struct glint_projection none = {.reach = 0};
@@ -64,7 +63,6 @@ TEST(angles_convert_to_positions_and_back)
     }
 }
 
-/* Checks that light from the direction of a pixel is imaged to that pixel. */
 TEST(pixel_directions_are_imaged_to_the_pixel)
 {
     struct glint_prescription lens;

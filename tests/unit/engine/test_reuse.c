@@ -80,11 +80,11 @@ static void set_stop_of_frames(double opening)
     }
 }
 
-/* -------------------------------------------------------------------- same */
+/* -------------------------------------------------------- unchanged frames */
 
-/* Changes the lamps or a setting of both frames at certain values of TIME, and
- * returns true. At other times changes nothing and returns false; the next
- * frame must then reuse the edges. */
+/* At certain values of TIME, changes the lamps or a setting of both frames and
+ * returns true. At others returns false; the next frame must then reuse the
+ * edges. */
 static bool change_setting_or_lamps_at_times(int time, int *n)
 {
     switch (time % 12) {
@@ -125,7 +125,7 @@ static void check_reuse_in_video(void)
 
         n_reused += reused;
         assert_int_equal(reused, !turned);
-        /* the ray prepass and planning are skipped in frames that are reused */
+        /* frames that are reused skip the ray prepass and planning */
         assert_true(reused == (of_reusing.looked == 0));
         assert_int_equal(of_reusing.stats.primitives,
                          of_fresh.stats.primitives);
@@ -150,7 +150,7 @@ TEST(reused_rays_give_the_same_image)
 
 static struct glint_tint tints[GLINT_MAX_GHOSTS];
 
-/* Changes input number K of the frame's plan. Returns false if the plan has no
+/* Changes input number K of the frame's plan. Returns false if there is no
  * input of this number. */
 static bool change_plan_input(int k)
 {
@@ -204,7 +204,6 @@ static bool change_plan_input(int k)
     }
 }
 
-/* Checks that a change of any input of the plan prevents reuse. */
 TEST(any_change_prevents_reuse)
 {
     const int things = 14;
@@ -225,8 +224,8 @@ TEST(any_change_prevents_reuse)
     close_both_frames();
 }
 
-/* Draws some bundles of a frame only. Checks that the next frame draws all
- * bundles. */
+/* Draws only some ray bundles of a frame. Checks that the next frame draws
+ * all. */
 TEST(restricted_frame_does_not_restrict_the_next)
 {
     open_both_frames(0);
@@ -239,7 +238,7 @@ TEST(restricted_frame_does_not_restrict_the_next)
 }
 
 /* Checks two cases without reuse: a frame in reserved memory with more lights
- * than can be remembered, and a linear image after one in codes. */
+ * than can be remembered, and a linear image after one of pixel codes. */
 TEST(frame_with_too_many_lights_is_drawn_again)
 {
     static int32_t linear[2][3 * W * H];
@@ -269,7 +268,7 @@ TEST(frame_with_too_many_lights_is_drawn_again)
     close_both_frames();
 }
 
-/* ------------------------------------------------------------------- still */
+/* -------------------------------------------------------- stationary lamps */
 
 static double sum_image_codes(const uint8_t *codes)
 {
@@ -280,9 +279,9 @@ static double sum_image_codes(const uint8_t *codes)
     return sum;
 }
 
-/* Draws N stationary lamps with the frame that reuses edges, and draws the same
+/* Draws N stationary lamps with the frame that reuses edges, and the same
  * lights and factors with a frame that builds its edges again. Checks that both
- * images are equal. Returns whether the first frame reused edges. */
+ * images are equal. Returns whether the reusing frame reused edges. */
 static bool draw_stationary_lamps(int n, double scale)
 {
     draw_lamps_with_frame(&reusing, n, scale, got, &of_reusing);
@@ -356,9 +355,9 @@ static double distance_to_reused_light_px(const struct glint_lamp *lamp)
     return least;
 }
 
-/* Checks that a slowly moving lamp is traced again before it is displaced by
- * more than the tolerance, that a new lamp is traced, and that no ray is traced
- * when a lamp disappears. */
+/* Checks that a slowly moving lamp is traced again before the tolerance
+ * displaces it, that a new lamp is traced, and that no ray is traced when a
+ * lamp disappears. */
 TEST(moving_lamp_is_traced_before_the_tolerance)
 {
     int n_reused = 0;
@@ -376,15 +375,15 @@ TEST(moving_lamp_is_traced_before_the_tolerance)
     assert_false(draw_stationary_lamps(LIGHTS, 1));
     assert_true(draw_stationary_lamps(LIGHTS - 2, 1));
     assert_true(draw_stationary_lamps(LIGHTS, 1));
-    /* limit on lights, below the number of reused lights */
+    /* a limit of lights below the number of reused lights */
     reusing.dials.max_lights = fresh.dials.max_lights = 2;
     assert_false(draw_stationary_lamps(2, 1));
     assert_int_equal(reusing.lights.n, 2);
     close_both_frames();
 }
 
-/* Checks that a frame in reserved memory reuses the rays of lights only if the
- * memory is sufficient for them. */
+/* Checks that a frame in reserved memory reuses the rays of lights only if they
+ * fit into the memory. */
 TEST(reserved_memory_limits_reuse)
 {
     for (int i = 0; i < 2; i++) {

@@ -39,8 +39,8 @@ static struct glint_seen measure_flare_visibility(void)
     return seen;
 }
 
-/* Checks that added light of 32 codes has the visibility 1 on black, 1/9 on
- * code 120, and 0 on code 240. */
+/* Checks that added light of 32 codes has the visibility 1 on black, 1/9 on a
+ * background of code 120, and 0 on code 240. */
 TEST(bright_background_lowers_visibility)
 {
     struct glint_seen dark, lit;
@@ -76,9 +76,9 @@ TEST(visibility_ignores_single_pixels)
 }
 
 /* Checks the measure `white`: the light of a flare divided by the light that
- * makes all channels of the ground white. On code 200, it is 1 for a small
- * ghost of exactly that light. On darker ground, and on code 250, where a white
- * ghost has no visible edge, it is 0. */
+ * makes all channels of the background white. On code 200, it is 1 for a small
+ * ghost of exactly this light. On a darker background, and on code 250, where a
+ * white ghost has no visible edge, it is 0. */
 TEST(only_all_channels_make_white)
 {
     const float room = (float)(1 - canvas_decode_srgb(200));
@@ -112,9 +112,9 @@ TEST(background_is_sampled_from_the_image)
 
 /* ----------------------------------------------------------------- exposure */
 
-/* Corrects the exposure of a flare at the strength ASKED. Before that, the
- * flare has the peak PEAK, the mean MEAN and the visibility SEEN. Returns its
- * peak after that. */
+/* Corrects the exposure of a flare at the strength ASKED. Before the
+ * correction, the flare has the peak PEAK, the mean MEAN and the visibility
+ * SEEN. Returns the corrected peak. */
 static double compute_exposed_flare_peak(double asked, double peak, double mean,
                                          struct glint_seen seen)
 {
@@ -143,7 +143,7 @@ TEST(hidden_flares_are_exposed_brighter)
                 0.001);
     assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, hidden) -
                      0.6) < 0.001);
-    /* Half of the strength darkens the flare by two stops, as for visible
+    /* Half of the strength darkens the flare to a quarter, as for visible
      * flares. */
     assert_true(fabs(compute_exposed_flare_peak(0.25, peak, mean, half) -
                      0.125) < 0.001);

@@ -18,15 +18,16 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 enum { PIXELS = 1000000, FRAME_US = 40000 };
 
-/* Power of a lamp, in units of one white pixel. With the lens responses made
- * below, its flare gets a peak of a quarter of white by default. */
+/* Power of a lamp, in units of one white pixel, whose flare gets a peak of a
+ * quarter of white by default, with the lens responses made below. */
 static const double common = PIXELS / 8.0;
 
 /* factors by which the last exposure has limited the ghosts of each lamp */
 static double part[16];
 
-/* Returns the response of a lens whose flare peak falls by SLOPE stops from the
- * axis to 20 degrees, and whose flare mean is MEAN stops below the peak. */
+/* Returns a lens response (flare per lamp power) whose peak falls by a factor
+ * of 2^SLOPE from the axis to 20 degrees, and whose mean is 2^-MEAN of the
+ * peak. */
 static struct glint_response make_lens_response(double slope, double mean)
 {
     struct glint_response r = {.n = 3, .theta_deg = {0, 10, 20}};
@@ -47,9 +48,8 @@ static struct glint_engine_lamp make_lamp_at_angle(double theta_deg,
     return glint_engine_lamp_of(&lamp, 1);
 }
 
-/* Returns the peak that the exposure gives to the flare of N lamps, US
- * microseconds after the previous frame. level[i], 0 .. 1, is the fading state
- * of lamp i. */
+/* Returns the peak of the flare of N lamps after exposure, US microseconds
+ * after the previous frame. level[i], 0 .. 1, is the fade level of lamp i. */
 static double compute_exposed_flare_peak(struct glint_strength *s,
                                          const struct glint_response *r,
                                          struct glint_engine_lamp *lamps,
@@ -74,7 +74,7 @@ static double flare_peak_of_still(double asked, const struct glint_response *r,
     return compute_exposed_flare_peak(&s, r, &lamp, NULL, 1, 0);
 }
 
-/* ------------------------------------------------------------------- stills */
+/* ------------------------------------------------------------ still images */
 
 static struct glint_strength strength;
 
@@ -106,8 +106,8 @@ TEST(rises_with_strength)
     }
 }
 
-/* Checks that the peak of the flare of a lamp of any power is within a stop of
- * a quarter of white, and increases with the power. */
+/* Checks that for any lamp power the peak of the flare is within a factor of
+ * two of a quarter of white, and increases with the power. */
 TEST(any_lamp_power_gives_a_visible_flare)
 {
     const struct glint_response r = make_lens_response(8, 7);
@@ -193,9 +193,9 @@ TEST(lamps_without_light_give_a_finite_exposure)
     assert_true(strength.scale == 0);
 }
 
-/* Corrects the exposure of a still image whose flare is STOPS brighter than the
- * response predicts and has a mean MEAN_STOPS below its peak. Returns the peak
- * of the flare after that. */
+/* Corrects the exposure of a still image whose flare is 2^STOPS times as bright
+ * as the response predicts and has a mean of 2^-MEAN_STOPS of its peak. Returns
+ * the corrected peak. */
 static double compute_corrected_flare_peak(double asked, double stops,
                                            double mean_stops)
 {
@@ -253,9 +253,9 @@ TEST(physical_exposure_is_not_corrected)
 
 /* ------------------------------------------------------------------- videos */
 
-/* Moves a lamp across the image in 200 frames. Checks that per frame its flare
- * changes by at most the change of the lens's response plus the max step of the
- * exposure factor. */
+/* Moves a lamp across the image in 200 frames. Checks that per frame the lamp's
+ * flare changes by at most the change of the lens response plus the max step of
+ * the exposure factor. */
 TEST(crossing_lamp_changes_gradually)
 {
     const struct glint_response r = make_lens_response(7, 7);
@@ -275,7 +275,7 @@ TEST(crossing_lamp_changes_gradually)
 }
 
 /* Checks a sun that appears among lamps: the exposure factor of all lamps falls
- * gradually, and the light of the sun is limited in the meantime. */
+ * gradually; meanwhile the light of the sun is limited. */
 TEST(rising_sun_lowers_the_factor_gradually)
 {
     const struct glint_response r = make_lens_response(0, 7);
@@ -403,7 +403,7 @@ TEST(strength_of_key_frames_applies_at_once)
 /* ------------------------------------------------------------------- lenses */
 
 /* Draws one lamp at several angles and powers with automatic exposure, and
- * checks that the response of LENS predicts the peak of the flare. */
+ * checks that the response of LENS predicts the peak of each flare. */
 static void check_automatic_exposure_of_lens(const char *lens,
                                              double corner_deg)
 {
@@ -448,7 +448,7 @@ TEST(automatic_exposure_suits_real_lenses)
     check_automatic_exposure_of_lens("lenses/nikon-zoom-mid.lens", 12.5);
 }
 
-/* Checks that the response measured within the memory limits of glint live
+/* Checks that the lens response measured within the memory limits of glint live
  * equals the response without limits. */
 TEST(response_is_the_same_in_little_memory)
 {

@@ -37,8 +37,8 @@ struct fixture {
     struct glint_flare *flare;
 };
 
-/* Opens a model with WAVES wavelengths. Sets N_LIGHTS lights in different
- * directions, all at the angle whose sine is 1/8. */
+/* Opens a model with WAVES wavelengths. Sets N_LIGHTS lights at the angle of
+ * sine 1/8, each at another azimuth. */
 static void open_model_with_beams(struct fixture *f, int n_lights)
 {
     *f = (struct fixture){.m = model_make_three_ghosts(), .n_lights = n_lights};
@@ -95,8 +95,7 @@ struct sums {
     double flux;
 };
 
-/* Checks the statistics of each bundle and returns their sums over all
- * bundles. */
+/* Checks the statistics of each ray bundle and returns their sums. */
 static struct sums sum_bundle_statistics(struct fixture *f)
 {
     struct sums sums = {.n = 0};
@@ -138,8 +137,8 @@ static void assert_sums_equal_totals(struct fixture *f)
                 1e-6 * s.flux);
 }
 
-/* Checks that N bundles have OUTCOME and that all others are drawn or
- * closed. */
+/* Checks that N ray bundles have OUTCOME and that all others are drawn or
+ * closed (no ray passes). */
 static void assert_bundle_outcome(struct fixture *f, enum glint_outcome outcome,
                                   int n)
 {
@@ -155,10 +154,10 @@ static void assert_bundle_outcome(struct fixture *f, enum glint_outcome outcome,
         s.n);
 }
 
-/* ------------------------------------------------------------------- tests */
+/* ------------------------------------------------- outcomes of ray bundles */
 
-/* Ghost 1 of the model is closed at all angles; ghost 2 is closed at sines
- * below 1/8. */
+/* Ghost 1 of the model is closed (no ray passes) at all angles, ghost 2 at
+ * sines below 1/8. */
 TEST(counts_drawn_and_closed_bundles)
 {
     struct fixture f;
@@ -213,7 +212,7 @@ TEST(counts_bundles_blocked_by_barrels)
     struct fixture f;
 
     open_model_with_beams(&f, 2);
-    /* A barrel value above 1 means that the barrel blocks the ray; here it
+    /* A value above 1 means that the barrel aperture blocks the ray; here it
      * blocks all rays. */
     *address_of_coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
     *address_of_coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
@@ -241,9 +240,9 @@ TEST(counts_bundles_outside_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks that bundles fainter than FAINTEST are counted as faint. There are two
- * separate counts: for faint ghosts of a single light, and for ghosts that are
- * faint even in the sum over several lights. */
+/* Checks the two counts of ray bundles fainter than FAINTEST: ghosts that are
+ * faint for a single light, and ghosts that are faint even in the sum over
+ * several lights. */
 TEST(counts_faint_bundles)
 {
     struct fixture f;
@@ -294,9 +293,9 @@ static void draw_flare_image(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* Checks that images of single ghosts, of single lights and of single
+/* Checks that the images of single ghosts, of single lights and of single
  * wavelengths each add up to the whole image, within their rounding to 2^-20.
- * The image of ghost 1, which is closed, is black. */
+ * The image of ghost 1, which no ray passes, is black. */
 TEST(images_of_parts_add_up)
 {
     static int32_t whole[3 * N], part[3 * N];
@@ -345,10 +344,9 @@ TEST(statistics_do_not_change_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks the number of polynomial terms evaluated for ghost 0. Sensor x has 2,
- * and the term v^2 s except in the middle of the range of angles, where s is 0.
- * Sensor y has 2, stop x 1, stop y 2, the energy 1 for a given wavelength, and
- * the barrel 2. */
+/* Checks the number of polynomial terms evaluated for ghost 0: sensor x 3, or 2
+ * in the middle of the range of angles, where s and so v^2 s is 0; sensor y 2;
+ * stop x 1; stop y 2; energy 1 for a given wavelength; barrel aperture 2. */
 TEST(counts_polynomial_terms)
 {
     struct glint_account a;
@@ -408,9 +406,9 @@ static int64_t sum_light_in_middle(const int32_t *px_q20, int width, int height)
     return sum;
 }
 
-/* Scales up the polynomials that give the position of a ray in the stop. With a
- * round stop, only rays in a small spot of the ghost's pupil then pass, and no
- * ray of the prepass is near the edge of that spot. */
+/* Scales up the polynomials of a ray's position in the stop. With a round stop,
+ * only rays in a small spot of the ghost's pupil then pass, and no ray of the
+ * prepass is near the edge of this spot. */
 static void scale_stop_polynomials(struct fixture *f)
 {
     const struct glint_model_output *o =

@@ -53,9 +53,9 @@ static void assert_same_direction_and_power(const struct glint_light *a,
     assert_memory_equal(a->rgb_q14, b->rgb_q14, sizeof a->rgb_q14);
 }
 
-/* Checks the directions of pixels of images of any shape, also far off-screen,
- * for lenses from fisheyes to telephotos and for mirroring lenses (negative
- * focal length). */
+/* Checks the directions of pixels, also far off-screen, of images of any shape,
+ * for lenses from fisheyes to telephotos and mirroring ones (negative focal
+ * length). */
 TEST(pixel_directions_match_double_precision)
 {
     uint32_t seed = 7;
@@ -145,8 +145,8 @@ static void check_wavelength_fluxes(const double flux[6])
 }
 
 /* Checks the weights of wavelengths against double precision, for the flux
- * polynomial of a real lens and for a constant polynomial. Wavelengths outside
- * the model's band must get the weight at the nearer end of the band. */
+ * polynomial of a real lens and for a constant one. Wavelengths outside the
+ * model's band must get the weight at its nearer end. */
 TEST(wavelength_weights_match_double_precision)
 {
     static const double lens_flux[6] = {312.4, -41.2, -10.7, 2.9, -0.4, 0.01};

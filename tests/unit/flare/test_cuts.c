@@ -93,7 +93,7 @@ TEST(edge_across_the_stop_is_cut_twice)
 }
 
 /* Checks that a cell finds the upper right corner of the stop exactly if the
- * middle of the cell is within three quarters of a cell from that corner. */
+ * middle of the cell is within three quarters of a cell from the corner. */
 TEST(cells_near_a_corner_find_it)
 {
     const int wide = ONE_Q16 / 4;

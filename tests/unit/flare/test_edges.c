@@ -51,8 +51,9 @@ static void add_red_edge(struct glint_edge_sums *s, int x0_q8, int y0_q8,
     glint_edges_add_to_sums(s, &edge, &red, &first, 1);
 }
 
-/* Returns the red light of pixel X in row Y of an image in codes, Q16. Light of
- * half of white adds 128 for each 1/256 of the pixel that it covers. */
+/* Returns the red light, Q16, of pixel X in row Y of an image of pixel codes.
+ * Light of half of white adds 128 for each 1/256 of the pixel that it
+ * covers. */
 static int read_pixel_light(struct glint_edge_sums *s, int x, int y)
 {
     uint16_t light_q16[STRIDE];
@@ -110,8 +111,8 @@ static int random_int_below(int n)
 }
 
 /* Checks that a random edge gives bit-identical light in one tile and in the
- * two halves of this tile, which use different code. There must be no light
- * left of the edge, and the light of its full height right of it. */
+ * tile's two halves, which use different code. There must be no light left of
+ * the edge, and that of its full height right of it. */
 TEST(edge_gives_the_same_light_in_half_tiles)
 {
     enum { FROM = 4 };

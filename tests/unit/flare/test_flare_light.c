@@ -12,7 +12,7 @@
 #include "support/ghosts.h"
 #include "support/test.h"
 
-/* ------------------------------------------------------------------- light */
+/* ------------------------------------------------ total light and outlines */
 
 /* Checks the total light of a ghost: an octagonal stop of radius 1 in a grid of
  * 2.5 x 2.5 stop radii. The stop has an area of 2 sqrt 2, the grid of 6.25. The
@@ -25,8 +25,8 @@ TEST(ghost_has_the_light_that_passes_the_stop)
         256 * 1.5e9 / 2147483648.0 * 50000 / 65536 * 2.8284271 / 6.25;
     struct glint_flare_config c = make_octagonal_stop_config();
 
-    /* The corners of the stop lie on the rim of the barrel, so that only the
-     * stop clips. */
+    /* The corners of the stop lie on the rim of the barrel aperture, so that
+     * only the stop clips. */
     c.stop.apothem_q16 = 60547;
     draw_ghost_list(c, &g, 1, pixels);
     assert_true(sum_channel_light(pixels, 0) > 0.999 * flux);
@@ -58,7 +58,7 @@ static int32_t read_pixel_light(const int32_t *p, int x, int y)
     return p[3 * (y * WIDTH + x)];
 }
 
-/* Checks that a flat ghost has an even irradiance away from its rim: the flux
+/* Checks that away from its rim a flat ghost has an even irradiance: the flux
  * of a cell divided by the cell's area in pixels. */
 TEST(flat_ghost_is_even_inside)
 {
@@ -82,8 +82,7 @@ TEST(flat_ghost_is_even_inside)
     assert_int_equal(read_pixel_light(pixels, 100, 2), 0);
 }
 
-/* Checks that outlines are closed bit by bit. A gap would cause a streak to the
- * right end of its row. */
+/* Checks that outlines close exactly; a gap would light the rest of its row. */
 TEST(outlines_close_without_streaks)
 {
     for (int k = 0; k < 400; k++) {
@@ -101,9 +100,9 @@ TEST(outlines_close_without_streaks)
     }
 }
 
-/* Checks that the outline of a cell is closed even if a corner is so far
- * outside the stop that the visible parts of its two sides are shorter than
- * 1/256 pixel. */
+/* Checks that the outline of a cell closes even if a corner is so far outside
+ * the stop that the visible parts of its two sides are shorter than 1/256
+ * pixel. */
 TEST(outline_closes_around_a_far_corner)
 {
     static const int32_t far_q16[] = {70000, 1 << 20, 700000000, 1000000000,
@@ -165,10 +164,10 @@ TEST(irradiance_steps_change_little_light)
                     pixels[i] + 20);
 }
 
-/* --------------------------------------------------------------------- rays */
+/* ---------------------------------------------------- comparison with rays */
 
-/* Returns whether a ray of a cell passes STOP and the barrel. The ray is
- * interpolated between the corners V with the bilinear weights WEIGHT. */
+/* Returns whether a ray of a cell passes STOP and the barrel aperture. The ray
+ * is interpolated between the corners V with the bilinear weights WEIGHT. */
 static bool ray_passes_stop(const struct glint_stop *stop,
                             const struct glint_vertex *v, const double *weight)
 {
@@ -240,8 +239,8 @@ static void check_image_equals_rays(const struct ghost *g, double off)
     assert_true(fabs(sum_channel_light(pixels, 0) - all) < 0.002 * all);
 }
 
-/* Checks ghosts that are bent, folded, and clipped by stop and barrel, with
- * cells of 4.7 and of 2 pixels. */
+/* Checks ghosts that are bent, folded, and clipped by stop and barrel aperture,
+ * with cells of 4.7 and of 2 pixels. */
 TEST(ghosts_agree_with_traced_rays)
 {
     const struct ghost large = {32, 100, 75, 60, 100, 1, 300, 6, {16384, 0, 0}};
@@ -328,8 +327,8 @@ TEST(rectangle_matches_hand_computation)
     assert_pixel_light(13, 11, 8);
     assert_pixel_light(14, 12, 1);
     assert_pixel_light(12, 13, 0);
-    /* The barrel radius increases from 0.5 on the left to 1.5 on the right, so
-     * only the left half passes. */
+    /* The barrel's value rises from 0.5 on the left to 1.5 on the right. Above
+     * 1 it blocks, so only the left half passes. */
     q.barrel_q16[0] = q.barrel_q16[3] = 32768;
     q.barrel_q16[1] = q.barrel_q16[2] = 98304;
     draw_single_quad(&q);
@@ -380,7 +379,7 @@ TEST(thin_cells_keep_their_light)
         assert_int_equal(draw_single_quad(&quads[i]).dropped_cells, 0);
         assert_total_flux(64);
     }
-    /* the barrel passes half of a line */
+    /* the barrel aperture passes half of a line */
     draw_single_quad(
         &(struct quad){{{5000, 5000}, {9000, 7000}, {9000, 7000}, {5000, 5000}},
                        {32768, 98304, 98304, 32768},
@@ -388,8 +387,8 @@ TEST(thin_cells_keep_their_light)
     assert_total_flux(32);
 }
 
-/* Checks that light is linear: eight times the flux gives an image eight times
- * as bright, within rounding. */
+/* Checks that eight times the flux gives an image eight times as bright, within
+ * rounding. */
 TEST(image_is_linear_in_flux)
 {
     struct ghost g = ghosts[1];

@@ -38,8 +38,8 @@ TEST(requested_capacities_are_sufficient)
     free(mem);
 }
 
-/* Checks each capacity: if it is too small by one, one bundle is dropped and
- * counted, and all others are drawn correctly. */
+/* Checks each capacity: if it is too small by one, one ray bundle is dropped
+ * and counted, and all others are drawn correctly. */
 TEST(missing_capacity_drops_one_bundle)
 {
     struct glint_flare_config full = make_octagonal_stop_config();
@@ -66,7 +66,7 @@ TEST(missing_capacity_drops_one_bundle)
     less = draw_scene(full, pixels);
     assert_int_equal(less.bundles, 0);
     assert_int_equal(less.need_primitives, s.need_primitives);
-    /* dropped bundles are counted even with very little memory */
+    /* dropped ray bundles are counted even with very little memory */
     for (int k = 0; k < 8; k++) {
         full.max_primitives = (int)((int64_t)s.need_primitives * k / 8);
         full.max_refs = k % 2 ? s.need_refs / 3 : s.need_refs;
@@ -92,7 +92,7 @@ TEST(rejects_invalid_configurations)
     assert_int_equal(glint_flare_bytes(&c), 0);
 }
 
-/* true: the wrapped glint_edges_bin() draws nothing, but adds 1e9 cells per
+/* true: the wrapped glint_edges_bin() draws nothing, but adds 1e9 cells per ray
  * bundle to the counts */
 static bool counts_many;
 

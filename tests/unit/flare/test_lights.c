@@ -115,7 +115,7 @@ static void assert_light_is_valid(const struct glint_light *b)
     assert_int_equal(most, 16384);
 }
 
-/* ------------------------------------------------------------------- tests */
+/* ----------------------------------------------------------------- merging */
 
 TEST(no_light_and_one_light_are_unchanged)
 {
@@ -189,8 +189,8 @@ TEST(identical_lights_are_merged)
     assert_true(fabs(real_to_double(b->power) - 0.5 * MANY) < 1e-5 * MANY);
 }
 
-/* Returns the chord between the unit vectors with the sines (X, Y) and (P, Q),
- * which is the length of their difference. */
+/* Returns the chord (length of the difference) between the unit vectors with
+ * the sines (X, Y) and (P, Q). */
 static double compute_chord_between_directions(double x, double y, double p,
                                                double q)
 {
@@ -270,8 +270,8 @@ TEST(lights_at_the_horizon_merge_to_valid_ones)
     assert_light_is_valid(b);
 }
 
-/* Checks that the result is bit-identical for any order of the lights and any
- * requested number. */
+/* Checks that the result is bit-identical for any order of the lights, whatever
+ * the max number of merged lights. */
 TEST(merging_does_not_depend_on_order)
 {
     static struct glint_light want[MANY], got[MANY];
@@ -312,8 +312,8 @@ TEST(limit_of_lights_keeps_the_flux)
     }
 }
 
-/* Checks that the colours of many faint lights merged with a bright light are
- * not lost in the rounding of the bright light's colour. */
+/* Checks that when many faint lights are merged with a bright one, rounding the
+ * bright light's colour does not lose theirs. */
 TEST(colour_of_faint_lights_is_kept)
 {
     static struct glint_light b[MANY];

@@ -20,7 +20,7 @@
 
 enum { WIDTH = 160, HEIGHT = 120 };
 
-/* ----------------------------------------------------------------- numbers */
+/* ---------------------------------------------- reals (mantissa, exponent) */
 
 static double real_to_double(struct glint_real x)
 {
@@ -155,8 +155,8 @@ TEST(visible_lights_are_planned)
     assert_true(plan_and_bin_lights(&fx, 1).bundles < all);
 }
 
-/* Checks that the plan of an annular pupil, which has no rays in its middle,
- * counts no invalid rays there. */
+/* Checks that the plan of an annular pupil counts no invalid rays in the
+ * pupil's middle, which has no rays. */
 TEST(annular_pupil_has_no_invalid_rays)
 {
     struct glint_model_system *system;
@@ -239,9 +239,9 @@ static void draw_flare_image(struct fixture *f, int32_t *px_q20,
     f->mem = NULL;
 }
 
-/* Checks that the plan for images in codes draws faint light with fewer edges
- * and nearly the same codes (50 dB), and that the plan for linear images uses
- * as many edges for faint as for bright light. */
+/* Checks that the plan for pixel codes draws faint light with fewer edges and
+ * nearly the same codes (50 dB), and that the plan for linear images uses as
+ * many edges for faint as for bright light. */
 TEST(faint_light_gets_fewer_edges)
 {
     static int32_t linear[3 * WIDTH * HEIGHT], coded[3 * WIDTH * HEIGHT];
@@ -296,9 +296,8 @@ static struct extent compute_image_extent(const int32_t *px_q20)
     return e;
 }
 
-/* Checks a lamp of several points: distant points give wider ghosts at the
- * same position with the same light; near points give the ghost of a single
- * light. */
+/* Checks a lamp of several points: distant points give wider ghosts with the
+ * same position and light; near points give those of a single light. */
 TEST(distant_lamp_points_widen_ghosts)
 {
     static int32_t px_q20[3 * WIDTH * HEIGHT];
@@ -501,7 +500,7 @@ TEST(image_is_bit_identical_for_all_settings)
     }
 }
 
-/* Draws N faint lights with F into a linear image and into an image in codes.
+/* Draws N faint lights with F into a linear image and into one of pixel codes.
  * Returns the mean square difference, codes squared. Checks that the brightest
  * code is between 4 and 40. */
 static double compare_faint_lights(struct fixture *f, int n)
@@ -550,8 +549,8 @@ static double compare_faint_lights(struct fixture *f, int n)
 }
 
 /* Checks that lights too faint to be visible singly are visible together, also
- * in codes. With soft edges, each light is drawn as several outlines; fewer
- * such lights must be visible together, too. */
+ * as pixel codes. With soft edges, each light is drawn as several outlines, so
+ * fewer lights must suffice. */
 TEST(many_faint_lights_are_visible_together)
 {
     const struct glint_shade soft = {.method = &glint_shade_method,
@@ -587,8 +586,8 @@ static void draw_planned_flare(struct fixture *f, int32_t *px_q20)
     glint_flare_draw(f->flare, &image);
 }
 
-/* Checks that edges computed row by row, where each row of rays is discarded
- * after use, equal those of a stored grid. */
+/* Checks that edges computed row by row, discarding each row of rays after use,
+ * equal those of a stored grid. */
 static void check_row_edges_equal_grid_edges(int32_t opening_q30)
 {
     static int32_t rows[3 * WIDTH * HEIGHT], grid[3 * WIDTH * HEIGHT];
@@ -641,7 +640,7 @@ TEST(rows_and_grids_give_the_same_edges)
 }
 
 /* Checks that a hole of radius 0.4 in a stop as wide as the model's gives the
- * same light as a hole of 0.8 in a stop half as wide, except for the corners of
+ * light of a hole of 0.8 in a stop half as wide, except at the corners of
  * cells, and that closing the stop further reduces the light. */
 TEST(stop_radius_scales_the_opening)
 {
@@ -727,9 +726,9 @@ TEST(finest_grid_has_the_max_cells)
     assert_int_equal(most, GLINT_MAX_CELLS);
 }
 
-/* Checks how far rays deviate from linear interpolation between grid points
- * (the sag). The barrel polynomial 0.5 + u^2 / 2 changes in u only, with a
- * second derivative of 4 across the box. So chords between n rays lie 4 / 12 /
+/* Checks the sag: how far exact rays lie from the chords between grid points.
+ * The barrel's value 0.5 + u^2 / 2 depends on u only. With u in units of the
+ * box width, its second derivative is 4, so the chords of n cells lie 4 / 12 /
  * n^2 above it in the mean. */
 TEST(sag_matches_the_second_derivative)
 {
@@ -752,8 +751,9 @@ TEST(sag_matches_the_second_derivative)
     assert_int_equal(planned.sag_q16[1], 0);
 }
 
-/* Checks that lights beyond the model's range of angles are not drawn, whatever
- * its polynomials give there, and need memory only if another light follows. */
+/* Checks that lights outside the model's range of angles are not drawn,
+ * whatever the polynomials give there, and need memory only if another light
+ * follows. */
 TEST(lights_outside_the_model_are_not_drawn)
 {
     const int32_t inside_q30 = 1 << 28, outside_q30 = 3 << 27;

@@ -56,8 +56,8 @@ draw_ghost_through_iris(const struct ghost *g, const struct glint_iris *iris,
 }
 
 /* Compares each pixel inside the stop with the ghost of a clean stop times the
- * transmission of IRIS. Returns the root mean square difference, divided by the
- * light of the clean ghost. */
+ * transmission of IRIS. Returns the RMS difference divided by the light of the
+ * clean ghost. */
 static double compare_with_clear_ghost(const struct ghost *g,
                                        const struct glint_iris *iris)
 {
@@ -166,7 +166,7 @@ TEST(white_and_black_masks_pass_all_or_nothing)
     assert_true(sum_channel_light(pixels, 0) == 0);
 }
 
-/* Checks that dust adds few edges: at most one patch of edges per cell. */
+/* Checks that dust adds few edges: at most one patch of them per cell. */
 TEST(dust_adds_few_edges)
 {
     const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
@@ -181,8 +181,8 @@ TEST(dust_adds_few_edges)
     assert_true(dusty < plain_edges + 16 * 16 * 10);
 }
 
-/* Checks a mask with one white half: all light of the white half passes, no
- * light of the black half, and the boundary is sharp. */
+/* Checks a mask with one white half: this half passes all light, the other half
+ * none, and the boundary is sharp. */
 TEST(half_mask_passes_half_of_the_light)
 {
     uint8_t mask[64 * 64];

@@ -58,7 +58,7 @@ static int count_wavelengths_of_ghost(struct glint_frame *frame, int ghost,
 }
 
 /* Sets ghosts[n] to the number of drawn ghosts with n wavelengths, and *BUNDLES
- * to the number of drawn bundles. */
+ * to the number of drawn ray bundles. */
 static void count_ghosts_by_wavelengths(struct glint_frame *frame,
                                         int ghosts[GLINT_MAX_WAVELENGTHS + 1],
                                         int *bundles)
@@ -76,7 +76,7 @@ static void count_ghosts_by_wavelengths(struct glint_frame *frame,
     }
 }
 
-/* -------------------------------------------------------------- the choice */
+/* --------------------------------------------------- number of wavelengths */
 
 static uint8_t picture[SAMPLES], other[SAMPLES], truth[SAMPLES];
 
@@ -193,7 +193,7 @@ TEST(too_little_memory_uses_the_first_set)
     draw_lamp_frame(&frame, &set, WIDTH, 100, picture);
     most = frame.cfg.max_bundles;
     frame.cfg.max_bundles = 4 * frame.setup->n_ghosts;
-    /* drawing has raised the capacity to more than 4 bundles per ghost */
+    /* drawing has raised the capacity to more than 4 ray bundles per ghost */
     assert_true(most > frame.cfg.max_bundles);
     bytes = glint_flare_bytes(&frame.cfg);
     assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
@@ -241,16 +241,15 @@ TEST(image_does_not_depend_on_workers)
     assert_memory_equal(picture, other, SAMPLES);
 }
 
-/* ------------------------------------------------------------- the picture */
+/* ------------------------------------------------------- colours of images */
 
 static int compare_ints(const void *a, const void *b)
 {
     return *(const int *)b - *(const int *)a;
 }
 
-/* Returns the hue step, codes, which only 0.1 % of all pairs of neighbouring
- * pixels exceed. The hue step of a pair is the error of the change of R - G or
- * B - G from one pixel to the other. */
+/* Returns the hue step, codes, that only 0.1 % of all pairs of neighbouring
+ * pixels exceed: the error of the change of R - G or B - G within the pair. */
 static int measure_hue_step(const uint8_t *rgb)
 {
     static int step[WIDTH * HEIGHT];
@@ -308,7 +307,7 @@ TEST(more_wavelengths_smooth_the_outlines)
     assert_true(step[1] <= 9 && 3 * step[1] < 2 * step[0]);
 }
 
-/* ------------------------------------------------------------------- words */
+/* ------------------------------------------------------------ option texts */
 
 TEST(parses_texts_of_wavelengths)
 {

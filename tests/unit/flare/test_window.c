@@ -14,14 +14,14 @@
 
 enum { ONE = 1 << 30, ACROSS = 240, DOWN = 120 };
 
-/* Polynomials of a ray's position in the stop, |x|, |y| <= 2, and of its
- * position in the barrel. */
+/* Polynomials of a ray's position in the stop, |x|, |y| <= 2, and of its radius
+ * r in the barrel aperture. */
 struct shape {
     const char *name;
     uint16_t x_power[3], y_power[3];
     double x[3], y[3];
-    /* The barrel's polynomial is (1 + r^2) / 2 = barrel[0] + barrel[1] u;
-     * barrel[0] = 0: there is no barrel. */
+    /* (1 + r^2) / 2 = barrel[0] + barrel[1] u; barrel[0] = 0: there is no
+     * barrel aperture */
     double barrel[2];
     /* max size of the window divided by the extent of passing rays */
     double slack;
@@ -64,9 +64,9 @@ static const struct shape shape[] = {
 };
 
 /* Shapes for lenses without rotational symmetry. Their pupil boxes have two
- * separate halves in y, which together have as many rows of rays as other
- * boxes. In the first shape, light passes a narrow strip over the full height
- * of the box, so its windows have the full height of 2^31. */
+ * separate halves in y, with as many rows of rays together as other boxes have.
+ * In the first shape, light passes a narrow strip over the full height of the
+ * box, so its windows have the full height of 2^31. */
 static const struct shape whole_shape[] = {
     {"a strip", {P(1, 0)}, {P(0, 1)}, {2}, {0.01}, {0}, 1.45},
     {"a strip aside",
@@ -158,9 +158,8 @@ static bool ray_passes_stop(const struct glint_transfer *t, double radius,
                   t->exponent[GLINT_OUT_BARREL_0]) <= 1);
 }
 
-/* Extent of the rays that pass a stop, found ray by ray. LEFT and RIGHT are -1
- * .. 1. LOW and HIGH are -1 .. 1 in a box with two halves in y, otherwise 0 ..
- * 1. */
+/* Extent of the rays that pass a stop, found ray by ray; coordinates of -1 ..
+ * 1. LOW and HIGH are 0 .. 1 except in a box with two halves in y. */
 struct seen {
     double left, right, low, high;
     int n;
