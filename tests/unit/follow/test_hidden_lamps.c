@@ -22,8 +22,8 @@ static void open_night_without_noise(int width, int height, double sigma)
     assert_true(night_open_tracker(&night));
 }
 
-/* Energies of successive frames: LAST is the energy of the last frame, MOST the
- * largest energy, and LARGEST the largest change from one frame to the next. */
+/* Energies of successive frames: LAST, the energy of the last frame; MOST, the
+ * largest energy; LARGEST, the largest change from one frame to the next. */
 struct steps {
     double last, most, largest;
     int n;
@@ -38,8 +38,8 @@ static void record_energy_step(struct steps *s, double energy)
 }
 
 /* Returns the total energy of all tracks in the lower half of the image. Checks
- * that these tracks have the id *ID. If *ID is 0, sets it to the id of the
- * first track. */
+ * that these tracks have the id *ID; if *ID is 0, sets it to the first track's
+ * id. */
 static double sum_energy_of_lower_half(const struct night *n, uint32_t *id)
 {
     double energy = 0;
@@ -56,10 +56,10 @@ static double sum_energy_of_lower_half(const struct night *n, uint32_t *id)
     return energy;
 }
 
-/* Moves a lamp behind a pole 20 pixels wide at several speeds. The energy of
- * its spot drops to 0 in one frame. Checks that the energy of its track changes
- * by less than a quarter per frame, and that the track keeps its id. With
- * N_LAMPS 2, there is also a stationary lamp. */
+/* Moves a lamp behind a pole 20 pixels wide at several speeds. The energy that
+ * the finder measures drops to 0 in one frame. Checks that the energy of the
+ * track changes by less than a quarter per frame and that the track keeps its
+ * id. N_LAMPS 2: there is also a stationary lamp. */
 static void move_lamp_behind_pole(int n_lamps)
 {
     static const double speeds[] = {0.7, 1, 2, 4, 6};

@@ -114,7 +114,7 @@ static double compute_mean(const struct moments *m)
 }
 
 /* Checks that the tracks of six lamps do not move in 300 frames with noise of 3
- * codes. Prints the deviation of spots and of tracks, in columns. */
+ * codes. Prints the deviation of spots (measured positions) and of tracks. */
 TEST(static_lamps_stay_in_place_in_noise)
 {
     static const struct night_lamp lamp[] = {
@@ -223,10 +223,10 @@ TEST(axes_are_steady_in_any_orientation)
     assert_true(lying < 1 && standing < 1);
 }
 
-/* In every EVERY-th frame, a different pixel of a dim lamp of 8 x 8 pixels
- * is 41 times as bright as the others (code 255 instead of 43, linear 1
- * instead of 0.0242). Returns the max distance, pixels, that the track of
- * the lamp moves. */
+/* Every EVERY-th frame, one pixel of a dim lamp of 8 x 8 pixels, each time
+ * another, is 41 times as bright as the others (code 255 instead of 43, linear
+ * 1 instead of 0.0242). Returns the max distance, pixels, that the lamp's track
+ * moves. */
 static double measure_motion_of_dim_lamp_px(int every, uint32_t seed)
 {
     double furthest = 0;
@@ -273,8 +273,8 @@ TEST(sparkle_moves_less_than_a_pixel)
 
 /* Checks a lamp whose brightest pixels are near the upper threshold, so that
  * its spot is often classified as faint: its track must continue. The test sets
- * the white level, because the lamp is the brightest object of its picture and
- * would not be faint relative to that. */
+ * the white level; otherwise it would be that of the lamp, the brightest
+ * object, which would then not be faint. */
 TEST(faint_spots_keep_a_track)
 {
     uint32_t id = 0;
@@ -300,9 +300,9 @@ TEST(faint_spots_keep_a_track)
     night_close_tracker(&night);
 }
 
-/* Checks that a spot that is faint from the start begins no track. A faint spot
- * much larger than a lamp, such as a wall, must not continue the track of a
- * lamp. */
+/* Checks that a spot (lamp found in one frame) that is faint from the start
+ * begins no track. A faint spot much larger than a lamp, such as a wall, must
+ * not continue the track of a lamp. */
 TEST(faint_spots_begin_no_track)
 {
     struct glint_spot spot[2] = {{.x_q8 = 100 << 8,
@@ -335,7 +335,7 @@ TEST(faint_spots_begin_no_track)
     night_close_tracker(&night);
 }
 
-/* --------------------------------------------------------------- exactness */
+/* -------------------------------------------- convergence to a still image */
 
 static bool track_equals_spot(const struct glint_lamp_track *t,
                               const struct glint_spot *s)
@@ -367,7 +367,7 @@ static bool tracks_equal_spots(void)
     return night.n_tracks >= n_lights;
 }
 
-/* Repeats an image after any noise or motion. Checks that tracks become exactly
+/* Repeats an image after noise or motion. Checks that tracks become exactly
  * equal to the spots after the attack time + 1 s or after five frames, at any
  * frame rate. */
 TEST(tracks_converge_exactly_to_a_still)
@@ -580,9 +580,9 @@ TEST(lamp_entering_in_a_pan_is_followed)
     }
 }
 
-/* Checks a lamp that is hidden for a second and returns 25 pixels from its last
- * position. In one frame a lamp may move 0.06 of 320, that is 19 pixels, so a
- * new track must fade in there. */
+/* Checks a lamp that is hidden for a second and returns 25 pixels away. Per
+ * frame a lamp may move 0.06 of 320 pixels, that is 19, so a new track must
+ * fade in there. */
 TEST(returning_lamp_gets_a_new_track)
 {
     for (int k = 0; k < 2; k++) {
@@ -640,7 +640,7 @@ TEST(passing_lamps_keep_their_ids)
 }
 
 /* Checks a fast lamp that leaves to the right: its track continues off-screen
- * at the same speed and fades out in 400 ms, by steps of at most 1 / 12. */
+ * at the same speed and fades out in 400 ms, by at most 1 / 12 per frame. */
 TEST(leaving_lamp_continues_and_fades)
 {
     double last_x = 0, last_power = 0;
@@ -716,8 +716,8 @@ TEST(rise_does_not_depend_on_the_frame_rate)
     assert_true(measure_level_after_switching_on(4 * 50000, 50000, 200) == 1);
 }
 
-/* Checks that if all lamps are at other positions in the next frame, old tracks
- * end and new tracks have full level immediately. */
+/* Checks a frame with all lamps at other positions: old tracks must end, and
+ * new ones have full level immediately. */
 TEST(cut_restarts_in_one_frame)
 {
     static const struct night_lamp before[] = {
@@ -753,9 +753,8 @@ TEST(cut_restarts_in_one_frame)
     night_close_tracker(&night);
 }
 
-/* Checks that three lamps vanishing or appearing together are treated as a
- * cut to or from a dark scene, while two, which may just be hidden, fade
- * instead. */
+/* Checks that three lamps vanishing or appearing together are treated as a cut
+ * to or from a dark scene, but that two, which may just be hidden, fade. */
 TEST(cut_to_a_dark_scene_is_detected)
 {
     static const struct night_lamp lamp[] = {
@@ -799,11 +798,11 @@ TEST(single_changes_are_not_cuts)
     night_close_tracker(&night);
 }
 
-/* -------------------------------------------------------------------- many */
+/* ----------------------------------------------- clipped and limited lamps */
 
-/* Returns the quantity that determines the star of a clipped lamp
- * (engine/frame/frame_star.c): the smaller of 32 times its power and the cube
- * of the width of its white spot. */
+/* Returns the power of the star of a clipped lamp (engine/frame/frame_star.c):
+ * the scaled cube of the width of its white spot, clamped to 1 .. 32 times its
+ * power. */
 static double compute_star_power_of_track(const struct glint_lamp_track *t)
 {
     const double photo_airy = 0.55e-3 * 22 / 43.27 * hypot(160, 120);
@@ -813,9 +812,9 @@ static double compute_star_power_of_track(const struct glint_lamp_track *t)
                      0.5 * pow(4.443 * t->size_q8 / 256, 3) / photo_airy));
 }
 
-/* Checks the power of a clipped lamp in noise of 8 codes, which is estimated
- * from the visible pixels of its rim. It must neither jump nor drift. If it is
- * halved for good, the tracks must adapt within a second. */
+/* Checks the power of a clipped lamp, estimated from the visible pixels of its
+ * rim, in noise of 8 codes: it must neither jump nor drift. When the lamp drops
+ * to a third of its light, the track must follow within a second. */
 TEST(power_of_a_clipped_lamp_is_steady_in_noise)
 {
     static const struct night_lamp lamps[] = {
@@ -858,8 +857,8 @@ TEST(power_of_a_clipped_lamp_is_steady_in_noise)
 }
 
 /* Checks that the same four of ten lamps are drawn in each frame, although
- * noise makes the finder rank different lamps fourth. A lamp that becomes much
- * brighter must fade in while another lamp fades out. */
+ * noise changes which lamp the finder ranks fourth. When another lamp becomes
+ * much brighter, it must fade in while one of the four fades out. */
 TEST(limited_lamps_do_not_flicker)
 {
     struct night_lamp lamp[10];

@@ -75,7 +75,7 @@ static void assert_tracks_are_valid(int n)
     }
 }
 
-/* Sets MIXED to the spots SPOT[N] in random order. */
+/* Copies the spots SPOT[N] to MIXED in random order. */
 static void shuffle_spots(struct glint_spot *mixed,
                           const struct glint_spot *spot, int n)
 {

@@ -55,8 +55,8 @@ static void place_seekers_and_spots_at_random(int n_seekers, int n_spots,
                                       .faint = rng_int_below(&seed, 4) == 0};
 }
 
-/* Returns the cost of pairing S with P by the definition in the header; -1: P
- * is out of reach. */
+/* Returns the cost, as the header defines it, of pairing seeker S with spot P,
+ * or -1 if P is too far away or a too large faint spot. */
 static int64_t compute_pairing_cost(const struct glint_seeker *s,
                                     const struct glint_spot *p)
 {
@@ -72,8 +72,8 @@ static int64_t compute_pairing_cost(const struct glint_seeker *s,
 }
 
 /* Pairs seekers and spots by repeatedly choosing the cheapest of all remaining
- * pairs. Sets PARTNER[i] to the spot of seeker i, or -1. Returns the number of
- * pairs. */
+ * pairs. Sets PARTNER[i] to the spot of seeker i, -1: none. Returns the number
+ * of pairs. */
 static int match_by_cheapest_pairs(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
@@ -128,7 +128,7 @@ TEST(pairs_match_the_slow_search)
     assert_true(n_matched > 1000);
 }
 
-/* Returns the number of spots nearer to S than spot AT. */
+/* Returns the number of spots that are nearer to S than spot AT is. */
 static int count_nearer_spots(const struct glint_seeker *s, int at)
 {
     int n = 0;
@@ -141,8 +141,9 @@ static int count_nearer_spots(const struct glint_seeker *s, int at)
     return n;
 }
 
-/* Checks the max number of seekers and spots, all within reach of each other:
- * no spot is used twice, and each seeker has one of its eight nearest spots. */
+/* Checks the max number of seekers and spots, every spot near enough to every
+ * seeker: no spot is used twice, and each seeker gets one of its eight nearest
+ * spots. */
 TEST(crowded_seekers_get_distinct_spots)
 {
     static uint8_t seen[MAX];
@@ -203,7 +204,7 @@ static void place_pairs_with_equal_costs(int n)
     }
 }
 
-/* Shuffles the first N elements of THINGS. BYTES: size of an element. */
+/* Shuffles the first N elements, of BYTES bytes each, of THINGS. */
 static void shuffle_items(void *things, int n, size_t bytes)
 {
     uint8_t *const at = things, kept[sizeof(struct glint_spot)];

@@ -76,8 +76,8 @@ TEST(decoding_is_monotone)
     }
 }
 
-/* Errors of codes after light was added to each code, compared with exact
- * results that are not rounded to codes. */
+/* Errors of codes after light was added to each code, against exact results
+ * that are not rounded. */
 struct errors {
     double worst, squares;
     int n;

@@ -158,7 +158,7 @@ static void assert_guard_bytes_unchanged(void)
     }
 }
 
-/* --------------------------------------------------------------- reference */
+/* ------------------------------------------- reference in double precision */
 
 /* Returns the change of the encoded value V (1 = white) when the linear light
  * LIGHT is added to it. */
@@ -310,7 +310,7 @@ static void check_image_with_added_light(double within)
     assert_guard_bytes_unchanged();
 }
 
-/* -------------------------------------------------------------------- cases */
+/* ------------------------------------------------------------------- tests */
 
 static const enum glint_pixel_format formats[5] = {
     GLINT_RGB24, GLINT_GREY, GLINT_I420, GLINT_I422, GLINT_I444};
@@ -332,8 +332,8 @@ static void fill_with_random_light(void)
         }
 }
 
-/* Selects the transfer curve, range and matrix of the image by the bits of
- * K. */
+/* Selects the transfer curve, code range and YCbCr matrix of the image by the
+ * bits of K. */
 static void set_coding_by_bits(int k)
 {
     fixture.image.transfer = k & 1 ? GLINT_TONE_BT709 : GLINT_TONE_SRGB;
@@ -457,9 +457,9 @@ TEST(codes_match_hand_computation)
     assert_int_equal(*address_of_sample(0, 2, 0), 137);
 }
 
-/* Checks chroma samples that several pixels share. One lit pixel of four
- * changes their sample by a quarter. In an image with odd sides, the last
- * sample has only one pixel, which changes it completely. */
+/* Checks chroma samples of several pixels. One lit pixel of four changes their
+ * common sample by a quarter. In an image with odd sides, the last sample has
+ * only one pixel, which changes it completely. */
 TEST(chroma_is_the_mean_of_existing_pixels)
 {
     make_guarded_image(GLINT_I420, 3, 3, 0);
@@ -504,8 +504,8 @@ TEST(dither_keeps_the_mean)
     }
 }
 
-/* Checks that the dither pattern contains each of its 64 thresholds once, and
- * that neighbouring thresholds differ strongly. */
+/* Checks that the dither pattern contains each of its 64 thresholds once, with
+ * large differences between neighbours. */
 TEST(dither_pattern_has_all_thresholds)
 {
     int seen[64] = {0};
@@ -621,9 +621,9 @@ TEST(layouts_give_the_same_codes)
         }
 }
 
-/* Checks that a row of packed pixels drawn in one long span equals the same row
- * drawn in spans of eight pixels. SIMD vectors do not divide the long span
- * evenly. */
+/* Checks that a row of packed pixels drawn in one long span, which is not a
+ * whole number of SIMD vectors, equals the row drawn in spans of eight
+ * pixels. */
 TEST(long_spans_equal_short_spans)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};
@@ -659,8 +659,8 @@ TEST(long_spans_equal_short_spans)
         }
 }
 
-/* Makes each block of 2 x 2 pixels of the image uniform. For such blocks, light
- * shared by the block is exact. */
+/* Makes each block of 2 x 2 pixels of the image uniform; for such blocks, one
+ * light value for all four pixels is exact. */
 static void make_2x2_blocks_uniform(void)
 {
     const struct glint_image *image = &fixture.image;
@@ -729,10 +729,10 @@ TEST(quads_of_uniform_blocks_are_exact)
         }
 }
 
-/* Checks blocks of 2 x 2 different pixels that share light. Bright pixels must
- * change less than dark ones, and no pixel may become darker or exceed white.
- * The order of the pixels must be preserved, and strong light must make all
- * four white. */
+/* Checks blocks of 2 x 2 different pixels with one light value for all. Bright
+ * pixels must change less than dark ones, and no pixel may become darker or
+ * exceed white. The order of the pixels must be preserved, and strong light
+ * must make all four white. */
 TEST(quads_of_edges_stay_ordered)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};
@@ -759,8 +759,8 @@ TEST(quads_of_edges_stay_ordered)
 }
 
 /* Makes images whose pixels differ by up to DIFFER codes within each block of 2
- * x 2 pixels. Returns the RMS difference, codes, between light that a block
- * shares and light computed per pixel. */
+ * x 2 pixels. Returns the RMS difference, codes, between light computed per
+ * block and light computed per pixel. */
 static double measure_rms_of_blocks_and_pixels(int differ)
 {
     static uint8_t want[PLANE_BYTES];
@@ -801,8 +801,8 @@ TEST(quads_are_near_single_pixels)
     assert_true(measure_rms_of_blocks_and_pixels(40) < 1.5);
 }
 
-/* Checks that one span of 2 x 2 blocks equals several short spans, for any
- * number of blocks that remain after the last SIMD vector. */
+/* Checks that one span of 2 x 2 blocks equals several short spans, whatever
+ * number of blocks remains after the last SIMD vector. */
 TEST(long_quad_spans_equal_short_spans)
 {
     static const enum glint_pixel_format some[] = {GLINT_YUYV, GLINT_UYVY,
@@ -845,8 +845,8 @@ TEST(long_quad_spans_equal_short_spans)
         }
 }
 
-/* Checks that all codes of RGB565 are unchanged without light, and reach the
- * max green code under strong green light. */
+/* Checks that without light all codes of RGB565 are unchanged, and that strong
+ * green light gives the max green code. */
 TEST(writes_rgb565)
 {
     static uint8_t mem[2 * 32 * 32], before_mem[2 * 32 * 32];
@@ -871,7 +871,6 @@ TEST(writes_rgb565)
     }
 }
 
-/* Checks that fixed images have the expected hashes on every machine. */
 TEST(images_match_their_hashes)
 {
     uint64_t hash = UINT64_C(14695981039346656037); /* FNV-1a */

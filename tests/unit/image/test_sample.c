@@ -70,8 +70,8 @@ TEST(samples_every_format)
     check_samples_of_format(GLINT_GREY, GLINT_RANGE_LIMITED);
 }
 
-/* Checks the samples of an image of three pixels, stored as BYTES[N], of which
- * the middle one is orange. */
+/* Checks the samples of an image of three pixels, stored as BYTES[N]; the
+ * middle pixel is orange. */
 static void check_orange_sample(enum glint_pixel_format format,
                                 const uint8_t *bytes, size_t n)
 {
@@ -100,8 +100,8 @@ TEST(samples_colours_of_every_layout)
     check_orange_sample(GLINT_RGB565, packed, 2);
 }
 
-/* Checks an image with fewer pixels than samples: each sample must be one of
- * its pixels. A linear image, which has no codes, must return 0. */
+/* Checks an image with fewer pixels than samples: each sample must be a pixel
+ * of the image. A linear image, which has no codes, must return 0. */
 TEST(samples_tiny_images)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 1, 1);

@@ -90,8 +90,8 @@ static double read_clock_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* Prints, if GLINT_BENCH is set, the min time of many rounds for the C
- * definition and for the variant. */
+/* If GLINT_BENCH is set, prints the min times of the C definition and of the
+ * variant over many rounds. */
 #define BENCH(what, name, of_c, of_variant)                                \
     do {                                                                   \
         double best[2] = {1e9, 1e9};                                       \
@@ -329,8 +329,8 @@ static void add_light_to_quads(const struct glint_quad_kernels *k,
         k->add(rows->luma, rows->chroma, rgb, n, mix, r, r_chroma);
 }
 
-/* Checks blocks of 2 x 2 pixels, including spans without light. The two rows
- * may be the same row, or share their chroma. */
+/* Checks blocks of 2 x 2 pixels, including spans without light. Both rows may
+ * be the same, or have common chroma. */
 static void check_2x2_block_kernel(const struct glint_quad_kernels *k,
                                    const char *name)
 {
@@ -527,8 +527,8 @@ static void check_turn_kernel(glint_turn_fn *turn, const char *name)
           turn(&t, x, y, out[1], lost[1]));
 }
 
-/* Checks convolutions with the largest taps and values that a baked translucent
- * medium may have. Their sums are below 2^31 in any order. */
+/* Checks convolutions with the largest kernels and values that a baked
+ * translucent medium may have: sums are below 2^31 in any order. */
 static void check_convolution_kernel(glint_convolve_fn *convolve,
                                      const char *name)
 {

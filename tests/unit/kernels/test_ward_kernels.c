@@ -139,8 +139,8 @@ static double read_clock_ns(void)
     return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
 }
 
-/* Prints the min time of many rounds of 8 samples, for the C definition and for
- * SUM. */
+/* Prints the min time, over many rounds of 8 samples, of the C definition and
+ * of SUM. */
 static void print_kernel_time(const char *name, glint_ward_sum_fn *sum,
                               struct glint_ward_lobe *l,
                               const struct glint_texels *t)

@@ -125,8 +125,8 @@ static int compute_rgb_brightness(int r, int g, int b)
 }
 
 /* Sets *LEAST and *MOST to the brightness of pixel (X, Y) as its format defines
- * it. They differ by 1 if the exact value is nearly half-way between two
- * integers, so that rounding up and rounding down are both correct. */
+ * it. If the exact value is nearly half-way between two integers, they differ
+ * by 1, so that both roundings are correct. */
 static void compute_brightness_range(const struct glint_image *image, int x,
                                      int y, int *least, int *most)
 {
@@ -224,8 +224,8 @@ TEST(scan_matches_a_test_of_every_pixel)
 }
 
 /* The search reads the last block of a row in complete words. Checks that the
- * padding of this block is cleared; create_bright_scanner() fills all memory
- * with 0x5a. */
+ * block's padding, which create_bright_scanner() fills with 0x5a, is
+ * cleared. */
 TEST(padding_is_cleared)
 {
     for (int width = 1; width <= 2 * BRIGHT_BLOCK; width++) {
@@ -246,8 +246,8 @@ TEST(padding_is_cleared)
     }
 }
 
-/* Checks that a single pixel exactly at the threshold is found anywhere, and a
- * pixel one code below is not. */
+/* Checks that a single pixel exactly at the threshold is found anywhere, and
+ * that a pixel one code darker is not. */
 TEST(finds_a_pixel_at_the_threshold)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 96, HEIGHT);
@@ -275,8 +275,8 @@ TEST(finds_a_pixel_at_the_threshold)
     free(image.plane[0]);
 }
 
-/* Checks that the one different code in a row of dim grey is detected, in the
- * four blocks that are tested together and in the fifth block. */
+/* Checks that the one different code in a row of dim grey is detected: in the
+ * four blocks that are tested together, and in the fifth block. */
 TEST(finds_a_differing_code_in_grey)
 {
     static const enum glint_pixel_format packed[] = {GLINT_YUYV, GLINT_UYVY};

@@ -168,9 +168,8 @@ TEST(finds_discs_within_a_sixteenth_pixel)
     }
 }
 
-/* Draws a lamp at (CX, CY) onto a grey image. It has four times the light of
- * white inside RADIUS; outside, the light falls by a factor e per FALL
- * pixels. */
+/* Draws a lamp at (CX, CY) onto a grey image: four times the light of white
+ * inside RADIUS; outside, the light falls by a factor e per FALL pixels. */
 static void draw_lamp_with_glare(const struct glint_image *image, double cx,
                                  double cy, double radius, double fall)
 {
@@ -189,8 +188,8 @@ static void draw_lamp_with_glare(const struct glint_image *image, double cx,
         }
 }
 
-/* Checks that the default configuration finds a lamp within 0.35 pixels. It
- * cuts off the lamp's rim at the same light on all sides. */
+/* Checks that the default configuration finds a lamp within 0.35 pixels: it
+ * cuts the lamp's rim off at the same light on all sides. */
 TEST(finds_discs_with_default_configuration)
 {
     for (int round = 0; round < 100; round++) {
@@ -437,7 +436,7 @@ TEST(sky_is_not_a_lamp)
 }
 
 /* Checks that a lit surface is not a lamp if fewer than one in 8 of its pixels
- * reach the upper threshold; in the glow of a lamp at least one in 8 does. */
+ * reach the upper threshold. In the glow of a lamp at least one in 8 does. */
 TEST(surface_with_few_bright_pixels_is_not_a_lamp)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 100);
@@ -455,8 +454,8 @@ TEST(surface_with_few_bright_pixels_is_not_a_lamp)
 }
 
 /* Checks a core with three rings around it. The first, bright ring belongs to
- * the lamp. The second, darker ring does not. The third ring is bright but
- * contains no pixel above the upper threshold, so it is no lamp. */
+ * the lamp; the second, darker one does not. The third is bright but not a
+ * lamp, as no pixel of it is above the upper threshold. */
 TEST(ring_around_a_core_belongs_to_the_lamp)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
@@ -618,8 +617,8 @@ TEST(ties_are_sorted_by_position)
     free(image.plane[0]);
 }
 
-/* Checks that two regions of nine and three white pixels, 4 pixels apart,
- * are merged into one lamp, whose centre is 1 pixel from that of the larger
+/* Checks that regions of nine and of three white pixels, 4 pixels apart, are
+ * merged into one lamp, centred 1 pixel from the centre of the larger
  * region. */
 TEST(near_regions_are_merged)
 {
@@ -671,9 +670,8 @@ TEST(merged_regions_keep_the_merge_distance)
     free(image.plane[0]);
 }
 
-/* Checks a limit of two lights for an image of four: the third light is near
- * the first and is merged with it; the fourth is far from all and is
- * dropped. */
+/* Checks a limit of two lights for an image of four: the third, near the first,
+ * is merged with it; the fourth, far from all, is dropped. */
 TEST(limit_keeps_the_brightest)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 64);

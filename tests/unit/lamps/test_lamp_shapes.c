@@ -212,8 +212,8 @@ TEST(clipped_core_gets_the_colour_of_its_rim)
     free(image.plane[0]);
 }
 
-/* Checks a lamp all of whose pixels have the same clipped channel: its colour
- * is the mean colour of its pixels. */
+/* Checks a lamp with the same clipped channel in all pixels: its colour is the
+ * mean of its pixels. */
 TEST(partly_clipped_lamp_has_its_mean_colour)
 {
     struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);

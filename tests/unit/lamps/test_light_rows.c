@@ -75,8 +75,8 @@ static void free_random_image(struct fixture *f)
     free(f->mem);
 }
 
-/* Reference of glint_row_light_add_run_to_region(): adds the pixels X0 .. X1 -
- * 1 to REGION one by one. */
+/* Adds the pixels X0 .. X1 - 1 to REGION one by one, as a reference for
+ * glint_row_light_add_run_to_region(). */
 static void add_light_by_pixel(const struct fixture *f,
                                struct glint_region *region, int x0, int x1,
                                int y)
@@ -101,7 +101,8 @@ static void add_light_by_pixel(const struct fixture *f,
     }
 }
 
-/* Checks the light of random runs in two spans of row Y, which may overlap. */
+/* Checks the light of random runs within two spans of row Y, which may
+ * overlap. */
 static void check_runs_of_row(struct fixture *f, int y)
 {
     const int from = rng_int_below(&seed, 20),
@@ -179,9 +180,9 @@ static struct glint_candidate make_random_candidate(void)
     return c;
 }
 
-/* The brief score saves time for candidates that are certainly no lamps. Checks
- * that it equals the full score if the full score is at least -SCORE_DOUBT.
- * Otherwise it must lie between the full score and -SCORE_DOUBT. */
+/* The brief score saves time for candidates that are certainly not lamps.
+ * Checks that it equals the full score if that is at least -SCORE_DOUBT;
+ * otherwise it must lie between the full score and -SCORE_DOUBT. */
 TEST(brief_score_bounds_the_full_score)
 {
     int n_kept = 0, n_brief = 0;

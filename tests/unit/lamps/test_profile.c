@@ -20,7 +20,7 @@ static double light[W * H], rgb[3 * W * H];
 static uint8_t codes[3 * W * H];
 static uint32_t seed = 1;
 
-/* --------------------------------------------------------------- by hand */
+/* ------------------------------ power, profile and colour of drawn lamps */
 
 /* Returns a lamp of SHAPE in the centre of the image; all other parameters have
  * typical values. */
@@ -232,9 +232,9 @@ TEST(clipped_lamp_gets_the_colour_of_its_fringe)
     }
 }
 
-/* Checks lamps of 2^4 .. 2^14 white pixels in several sizes and shapes: the
- * error of each estimated power is at most 4.5 stops, and half of the errors
- * are below one stop. */
+/* Checks lamps of 2^4 .. 2^14 white pixels in several sizes and shapes: each
+ * estimated power is right within a factor of 2^4.5, half of them within a
+ * factor of 2. */
 TEST(clipped_power_is_within_4_stops)
 {
     int n = 0, n_near = 0;
@@ -260,9 +260,9 @@ TEST(clipped_power_is_within_4_stops)
     assert_true(n > 40 && 2 * n_near > n);
 }
 
-/* Raises the exposure by 1/32 stop per step, from no clipping to complete
- * clipping. Checks that the estimated power never rises by 0.4 stops in one
- * step, nor falls by 0.1 stops. */
+/* Raises the exposure by 2^(1/32) per step, from no clipping to complete
+ * clipping. Checks that no step raises the estimated power by 2^0.4 or lowers
+ * it by 2^-0.1. */
 TEST(power_rises_smoothly)
 {
     for (int shape = 0; shape < POWER_SHAPES; shape++)
@@ -357,8 +357,8 @@ TEST(adjacent_lamps_have_single_powers)
                     0.7);
 }
 
-/* Checks that a white lamp gets nearly the same power in all formats: within
- * one stop in RGB565, within 0.1 stops in all others. */
+/* Checks that a white lamp gets nearly the same power in all formats: within a
+ * factor of 2 in RGB565, of 2^0.1 in all others. */
 TEST(power_is_the_same_in_all_formats)
 {
     static uint8_t px[4 * W * H];
@@ -475,8 +475,8 @@ TEST(results_stay_in_range_for_any_spots)
 }
 
 /* Checks the RMS extent of a lamp of radius 36, which is 18 pixels. If the lamp
- * lights its surroundings to half of white, up to twice that extent is
- * accepted. A point lamp whose glare clips out to the same radius must have a
+ * lights its surroundings to half of white, up to twice this extent is
+ * accepted. A point lamp whose glare clips within the same radius must have a
  * smaller extent. */
 TEST(width_excludes_a_lamps_own_light)
 {
@@ -495,9 +495,9 @@ TEST(width_excludes_a_lamps_own_light)
     }
 }
 
-/* Checks a ring with a dark middle that lights its surroundings. The dark
- * middle must not count as missing light at the rim, which would enlarge the
- * extent of the lamp. */
+/* Checks a ring with a dark middle that lights its surroundings. The middle
+ * must not count as missing light at the rim, which would enlarge the lamp's
+ * extent. */
 TEST(ring_is_not_widened_by_its_middle)
 {
     const struct power_lamp lamp = make_default_lamp(POWER_DISC, 50);

@@ -27,7 +27,8 @@ static uint32_t seed;
 static int n_before;
 /* number of lamps found in the last of these video frames */
 static int n_video;
-/* number of stops by which draw_and_find_lamps() lowers the thresholds, Q8 */
+/* log2 of the factor by which draw_and_find_lamps() lowers the thresholds,
+ * Q8 */
 static int n_lower;
 
 static struct settings make_settings(int width, int height, double light)
@@ -42,7 +43,7 @@ static struct settings make_settings(int width, int height, double light)
     return s;
 }
 
-/* Adds a lamp at (X, Y) with light LIGHT inside RADIUS; outside it the light
+/* Adds a lamp at (X, Y) with light LIGHT inside RADIUS; outside, the light
  * falls by a factor e per FALL. All lengths are fractions of the image
  * width. */
 static void add_lamp_with_glare(const struct settings *s, double x, double y,
@@ -60,7 +61,7 @@ static void add_lamp_with_glare(const struct settings *s, double x, double y,
         }
 }
 
-/* Fills a box with uniform LIGHT. Its coordinates are fractions of the image
+/* Fills a box with uniform LIGHT; coordinates are fractions of the image
  * width. */
 static void fill_box_with_light(const struct settings *s, double x0, double y0,
                                 double x1, double y1, double light)
@@ -176,8 +177,7 @@ static void assert_no_lamp_is_found(struct settings *s)
 /* -------------------------------------------------------------------- lamps */
 
 /* Checks that a lamp of any colour is found, and nothing else. Most colours
- * clip one or two channels; only the yellow and the white lamp have a luma near
- * white. */
+ * clip one or two channels; only yellow and white have a luma near white. */
 TEST(finds_lamps_of_every_colour)
 {
     static const double colours[][3] = {
@@ -230,7 +230,7 @@ TEST(finds_a_lamp_before_a_bright_wall)
 }
 
 /* Checks that the sun is found in haze: the sky is brighter than the glow of
- * any lamp, and its red is clipped far around the sun. */
+ * any lamp, and the sky's red is clipped far around the sun. */
 TEST(finds_the_sun_in_haze)
 {
     static const double sun[3] = {3, 3, 3}, haze[3] = {0.8, 0.35, 0.1};
@@ -263,7 +263,7 @@ TEST(finds_the_same_lamps_at_every_resolution)
     }
 }
 
-/* --------------------------------------------------------------- none there */
+/* ---------------------------------------------------- images without lamps */
 
 /* Draws lines of words whose ink has LIGHT. */
 static void draw_lines_of_text(const struct settings *s, double light)
@@ -340,8 +340,8 @@ TEST(test_patterns_give_no_lamp)
     }
 }
 
-/* Checks that snow gives no lamp. It is drawn as grains of every brightness,
- * many of which are white. */
+/* Checks that snow, drawn as grains of every brightness, many of them white,
+ * gives no lamp. */
 TEST(snow_gives_no_lamp)
 {
     struct settings s = make_settings(600, 400, 0.7);
@@ -384,11 +384,11 @@ TEST(noise_in_the_dark_gives_no_lamp)
     free(s.light);
 }
 
-/* ----------------------------------------------------------------- company */
+/* ------------------------------------------------------ limit of the score */
 
-/* Returns a candidate with the score SCORE_Q8 that was found at the threshold
- * level LEVEL. It is a box of 4 x 4 pixels at X, inside the boxes of candidates
- * of lower levels at the same X. */
+/* Returns a candidate with the score SCORE_Q8, found at the threshold level
+ * LEVEL: a box of 4 x 4 pixels at X, inside the boxes of candidates of lower
+ * levels at the same X. */
 static struct glint_candidate make_scored_candidate(int x, int level,
                                                     int32_t score_q8)
 {
@@ -414,7 +414,7 @@ static int32_t find_score_limit(struct glint_candidate *candidate, int n)
 }
 
 /* Checks that two sure lamps lower the score limit for other candidates, but
- * that one lamp does not, nor a lamp and its own core, nor a lamp and a faint
+ * that one lamp does not, nor a lamp with its own core, nor a lamp with a faint
  * one. */
 TEST(two_sure_lamps_lower_the_limit)
 {
@@ -452,9 +452,9 @@ TEST(best_candidate_passes_slightly_below_the_limit)
     assert_int_equal(find_score_limit(c, 0), 0);
 }
 
-/* Makes the wall behind a lamp brighter step by step. Checks that the lamp is
- * found longer in a still image than in a video, and that video frames before a
- * still image do not matter. */
+/* Makes the wall behind a lamp brighter step by step. Checks that a still image
+ * shows the lamp up to a brighter wall than a video does, and that video frames
+ * before a still image do not matter. */
 TEST(video_needs_a_higher_score)
 {
     static const double white[3] = {4, 4, 4};
@@ -476,8 +476,8 @@ TEST(video_needs_a_higher_score)
     assert_in_range(n_of_video, 1, n_alone - 1);
 }
 
-/* Checks that lower thresholds find a dim lamp in addition to two brighter
- * lamps. At these thresholds alone, the glow of the two would be one region. */
+/* Checks that lower thresholds find a dim lamp besides two brighter ones. With
+ * these thresholds alone, the glow of both would be one region. */
 TEST(lower_thresholds_find_more)
 {
     static const double white[3] = {4, 4, 4}, dim[3] = {0.7, 0.7, 0.7};

@@ -119,7 +119,7 @@ TEST(rejects_files_that_are_not_models)
     free(m.data);
 }
 
-/* -------------------------------------------------------------------- rules */
+/* ---------------------------------------------------------- validity rules */
 
 enum table { HEADER, GHOST, SYSTEM, OUTPUT, TERM, COEF, BOX };
 
@@ -373,8 +373,8 @@ TEST(accepts_a_model_without_ghosts)
     free(m.data);
 }
 
-/* Checks that a model whose systems share too many tables is rejected, as
- * checking it would take quadratic time. */
+/* Checks that a model whose systems use too many tables in common is rejected,
+ * as checking it would take quadratic time. */
 TEST(rejects_too_many_shared_tables)
 {
     enum { N = 1000 };
@@ -396,7 +396,7 @@ TEST(rejects_too_many_shared_tables)
     free(m.data);
 }
 
-/* ------------------------------------------------------------------- corpus */
+/* ---------------------------------------------------- corpus of the fuzzer */
 
 static void check_corpus_model(const char *path, struct model_image m)
 {
@@ -415,8 +415,7 @@ static void check_corpus_model(const char *path, struct model_image m)
     free(m.data);
 }
 
-/* Checks that the models in the corpus of the fuzzer have the present file
- * layout; GLINT_GOLDEN_UPDATE=1 rewrites them. */
+/* GLINT_GOLDEN_UPDATE=1 rewrites the models in the corpus of the fuzzer. */
 TEST(corpus_models_have_the_present_layout)
 {
     check_corpus_model("tests/fuzz/corpus/model/auto",

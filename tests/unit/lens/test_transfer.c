@@ -14,7 +14,7 @@
 #include "support/shuffle.h"
 #include "support/test.h"
 
-/* --------------------------------------------------------------------- rays */
+/* ------------------------------------------------------------- single rays */
 
 enum { ONE = MODEL_ONE_Q30 };
 
@@ -27,8 +27,8 @@ static struct glint_outputs evaluate_ray(const struct glint_transfer *t,
     return out;
 }
 
-/* Checks rays of the first range of angles, in which s is -1 .. 1 for sines of
- * 0 .. 1/4. */
+/* Checks rays of the first range of angles: sines of 0 .. 1/4, for which the
+ * polynomial variable s is -1 .. 1. */
 TEST(rays_match_hand_computation)
 {
     struct model_image m = model_make_three_ghosts();
@@ -51,7 +51,7 @@ TEST(rays_match_hand_computation)
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], 201326592); /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_STOP_X], 268435456);   /* 0.5 */
     assert_int_equal(out.at[GLINT_OUT_STOP_Y], 201326592);   /* 0.375 */
-    /* a barrel value of 1: the ray is at the rim */
+    /* barrel value 1: the ray is at the rim of the barrel aperture */
     assert_int_equal(out.at[GLINT_OUT_BARREL_0], 268435456);
     out = evaluate_ray(&t, -ONE, ONE / 2);
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], -58720256); /* -0.21875 mm */
@@ -67,10 +67,10 @@ TEST(rays_match_hand_computation)
     free(m.data);
 }
 
-/* Checks how energies are decoded. The file stores the root of an energy as a
- * polynomial: the energy is its value, its square or its fourth power, times
- * 2^head. A value of half the max must give 1/2, 1/4 or 1/16, and a negative
- * value 0. */
+/* Checks how energies are decoded. The file stores a root of the energy as a
+ * polynomial: the energy is the polynomial's value, the square or the fourth
+ * power of the value, times 2^head. A value of half the max must give 1/2, 1/4
+ * or 1/16, and a negative value 0. */
 TEST(energies_are_decoded_from_roots)
 {
     const int32_t half = (1 << 28) / 2; /* half of 2^(29 - head), head 1 */
@@ -125,7 +125,6 @@ static void convert_coefficients_to_int16(struct model_image *m,
     o->narrow_shift = (uint8_t)shift;
 }
 
-/* Checks that 16-bit coefficients give the same rays as 32-bit ones. */
 TEST(int16_coefficients_give_the_same_rays)
 {
     struct model_image wide = model_make_three_ghosts(),
@@ -162,8 +161,6 @@ TEST(int16_coefficients_give_the_same_rays)
     free(m.data);
 }
 
-/* Checks that a ray is evaluated by the system and box for its range of angles
- * and band of wavelengths. */
 TEST(uses_the_system_of_angle_and_wavelength)
 {
     struct model_image m = model_make_three_ghosts();
@@ -201,9 +198,9 @@ TEST(uses_the_system_of_angle_and_wavelength)
     free(m.data);
 }
 
-/* Checks a box whose half width is (s - 1/32)^2 - 1/2048. It is positive at all
- * values of s that the validity check tests, but negative between two of them.
- * There it must be clamped to 0. */
+/* Checks a box whose half width is (s - 1/32)^2 - 1/2048: positive at all
+ * values of s that the validity check tests, but negative between two of them,
+ * where it must be clamped to 0. */
 TEST(half_width_below_0_is_clamped)
 {
     struct model_image m = model_make_three_ghosts();
@@ -282,7 +279,7 @@ TEST(extreme_coefficients_stay_in_range)
     free(m.data);
 }
 
-/* ----------------------------------------------------------------- vertices */
+/* ------------------------------------------------------- grids of vertices */
 
 /* Returns a sensor-to-image transform: 64 pixels per mm, origin at pixel (1000,
  * 500), no rotation. */

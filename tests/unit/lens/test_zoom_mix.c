@@ -20,7 +20,7 @@ enum { ONE = MODEL_ONE_Q30, MOST = 3, EXPONENT = -28 };
 
 #define P(u, v) MODEL_POWER(u, v, 0, 0)
 
-/* Polynomial of a barrel's value at a pupil position: constant, and
+/* Polynomial of a barrel aperture's value at a pupil position: constant, and
  * coefficients of u and v^2. */
 struct barrel {
     double middle, u, v2;
@@ -46,8 +46,8 @@ struct stop {
 static const struct stop usual = {0, 0.5, 0.5};
 static struct stop stop = {0, 0.5, 0.5};
 
-/* Makes a system with N barrels. Sensor x is SENSOR times u, mm; the polynomial
- * of the energy is ENERGY, which is squared if there are roots. */
+/* Makes a system with N barrel apertures. Sensor x is SENSOR times u, mm; the
+ * polynomial of the energy is ENERGY, which is squared if there are roots. */
 static struct glint_model_system
 make_system(struct model_image *m, double sensor, double energy,
             uint8_t head_bits, const struct barrel *barrel, uint32_t n)
@@ -114,8 +114,8 @@ static void interpolate_models(const struct glint_lens *a,
                      1);
 }
 
-/* Interpolates between a model with the barrels A[N_A] (PART 0) and a model
- * with the barrels B[N_B] (PART 1). */
+/* Interpolates between models with the barrel apertures A[N_A] (PART 0) and
+ * B[N_B] (PART 1). */
 static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
                                 const struct barrel *b, uint32_t n_b,
                                 double part)
@@ -175,8 +175,8 @@ TEST(outputs_are_interpolated)
     }
 }
 
-/* Checks that each barrel is matched to the most similar barrel of the other
- * position, whatever their order. */
+/* Checks that each barrel aperture is matched to the most similar one of the
+ * other position, whatever the order. */
 TEST(barrels_match_the_most_similar)
 {
     const struct barrel a[] = {right, left};
@@ -191,8 +191,8 @@ TEST(barrels_match_the_most_similar)
     }
 }
 
-/* Checks a barrel that the first position lacks: it clips completely from a
- * quarter of the way on, and opens to 1/2 before that. */
+/* Checks a barrel aperture that the first position lacks: towards this position
+ * it opens to 1/2; from a quarter of the way on it clips completely. */
 TEST(missing_first_barrel_closes_gradually)
 {
     const struct barrel a[] = {right}, b[] = {more_right, high};
@@ -206,18 +206,18 @@ TEST(missing_first_barrel_closes_gradually)
     check_barrel_values(1, (struct barrel){0.35, 0, 0.6});
     interpolate_barrels(a, 1, twice, 2, 0.5);
     check_barrel_values(0, (struct barrel){0.32, 0.52, 0.1});
-    /* A barrel that is added begins as a copy of the most similar barrel. */
+    /* An added barrel aperture begins as a copy of the most similar one. */
     check_barrel_values(1, (struct barrel){0.32, 0.52, 0.1});
     interpolate_barrels(a, 1, other, 1,
                         /* the only other barrel is not similar, so it is not
-                         * used */
+                         * copied */
                         0.5);
     check_barrel_values(0, right);
     check_barrel_values(1, left);
 }
 
-/* Checks a barrel that the second position lacks: it opens after three quarters
- * of the way. */
+/* Checks a barrel aperture that the second position lacks: it opens after three
+ * quarters of the way. */
 TEST(missing_second_barrel_opens_gradually)
 {
     const struct barrel a[] = {high, right}, b[] = {more_right};
@@ -229,9 +229,9 @@ TEST(missing_second_barrel_opens_gradually)
     check_barrel_values(0, (struct barrel){0.35, 0, 0.6});
 }
 
-/* Interpolates between a model without barrels, whose stop positions are OURS
- * (PART 0), and a model with the barrel B, whose stop positions are THEIRS
- * (PART 1). With TURNED, the two models are exchanged. */
+/* Interpolates between a model without barrel apertures, whose stop positions
+ * are OURS (PART 0), and a model with the barrel B, whose stop positions are
+ * THEIRS (PART 1). TURNED: the two models are exchanged. */
 static void interpolate_stops(const struct stop *ours,
                               const struct stop *theirs, struct barrel b,
                               double part, bool turned)
@@ -266,10 +266,10 @@ static void check_clipped_fraction(struct stop ours, struct stop theirs,
     }
 }
 
-/* Checks a barrel that one position lacks. Where it is added, it must clip the
- * same fraction of the stop as at the other position. It must clip the same
- * fraction of the pupil box instead if that is less, or if the stop position
- * moves by more than half a box. */
+/* Checks a barrel aperture that one position lacks. Where it is added, it must
+ * clip the fraction of the stop that it clips at the other position; or the
+ * fraction of the pupil box, if that is less or if the stop position moves by
+ * more than half a box. */
 TEST(missing_barrel_clips_as_much_of_the_stop)
 {
     const struct stop wide = {-0.1, 0.8, 0.8}, aside = {0.3, 0.5, 0.5};
@@ -289,8 +289,8 @@ TEST(missing_barrel_clips_as_much_of_the_stop)
                            (struct stop){0, 1.6, 0.5}, r, r);
 }
 
-/* Checks that the two most similar barrels are matched, in either order. A
- * barrel that is left over must begin as a copy of the most similar barrel. */
+/* Checks that the two most similar barrel apertures are matched, in either
+ * order. One that is left over must begin as a copy of the most similar one. */
 TEST(most_similar_barrels_are_matched)
 {
     const struct barrel one[] = {right};
@@ -304,8 +304,8 @@ TEST(most_similar_barrels_are_matched)
     check_barrel_values(1, (struct barrel){0.33, 0.53, 0.1});
 }
 
-/* Checks that interpolated energies stay in their range if the heads (scale
- * bits) of both positions differ: they have the range of the smaller head. */
+/* Checks that interpolated energies stay in range if the heads (scale bits) of
+ * both positions differ: the smaller head sets the range. */
 TEST(energies_keep_the_smaller_head)
 {
     const double value = 0.375;
@@ -324,11 +324,12 @@ TEST(energies_keep_the_smaller_head)
     roots = head[0] = head[1] = 0;
 }
 
-/* -------------------------------------------------------------------- boxes */
+/* ------------------------------------------------------ moving pupil boxes */
 
 /* Writes a model to M and opens it. Its pupil box is centred at MIDDLE and has
- * the half sides HALF and RISE, mm. Its sensor x and y are the pupil
- * coordinates times SLOPE. Its barrel is a circle of 4 mm in the pupil. */
+ * the half sides HALF and RISE, mm; its sensor x and y are the pupil
+ * coordinates times SLOPE; its barrel aperture is a circle of 4 mm in the
+ * pupil. */
 static struct glint_lens open_model_with_pupil_box(struct model_image *m,
                                                    double middle, double half,
                                                    double rise, double slope)
@@ -367,9 +368,9 @@ static struct glint_lens open_model_with_pupil_box(struct model_image *m,
     return model_open_image(m);
 }
 
-/* Checks outputs that are linear in the pupil position. At each pupil position,
- * they must be interpolated exactly, even if the boxes of both models differ in
- * position and size. */
+/* Checks outputs that are linear in the pupil position: at each pupil position
+ * they must be interpolated exactly, even if the pupil boxes of both models
+ * differ in position and size. */
 TEST(outputs_are_interpolated_across_moving_boxes)
 {
     struct model_image at[2];
@@ -394,8 +395,8 @@ TEST(outputs_are_interpolated_across_moving_boxes)
     free(at[1].data);
 }
 
-/* Checks that the first barrel is the circle of 4 mm at (U, V), which is the
- * pupil position (X, Y), mm. The tolerance is large, as the boxes of both
+/* Checks that the first barrel aperture is the circle of 4 mm at (U, V), the
+ * pupil position (X, Y), mm. The tolerance is large, as the pupil boxes of both
  * models differ much. */
 static void check_first_barrel_is_circle(double u, double v, double x, double y)
 {
@@ -423,9 +424,9 @@ TEST(barrels_move_with_their_box)
     free(at[1].data);
 }
 
-/* Checks that barrels of equal shape in the pupil are matched even if their
- * boxes, and so their polynomials, differ much; a barrel in a distant box is
- * not matched. */
+/* Checks that barrel apertures of equal shape in the pupil are matched even if
+ * their pupil boxes, and so their polynomials, differ much; one in a distant
+ * box is not matched. */
 TEST(barrels_match_by_shape_in_the_pupil)
 {
     struct model_image at[3];
@@ -446,8 +447,8 @@ TEST(barrels_match_by_shape_in_the_pupil)
         free(at[k].data);
 }
 
-/* Writes a model with one barrel to M and opens it. Its pupil box BOX is in
- * units of 2^EXPONENT, which are unrealistically coarse. */
+/* Writes a model with one barrel aperture to M and opens it. Its pupil box BOX
+ * is in units of 2^EXPONENT, which are unrealistically coarse. */
 static struct glint_lens
 open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
                            int16_t exponent,
@@ -473,7 +474,7 @@ open_model_with_coarse_box(struct model_image *m, const int32_t box[3],
 }
 
 /* Checks a pupil box half a unit wide. Rounding moves positions by more than
- * this width, but barrels must still be evaluated inside the box. */
+ * this width, but barrel apertures must still be evaluated inside the box. */
 TEST(narrow_boxes_evaluate_barrels_inside)
 {
     static const int32_t wide[3] = {0, 5, 5};
@@ -498,13 +499,13 @@ TEST(narrow_boxes_evaluate_barrels_inside)
     free(at[1].data);
 }
 
-/* ------------------------------------------------------------------- ghosts */
+/* ---------------------------------------------------- visibility of ghosts */
 
 enum { WHOLE = 2 };
 
-/* A ghost, or one part of its pupil. I and J are its pair of surfaces, and
- * ANNULUS is the annulus of its box. Its sensor x is SENSOR u; with SENSOR 0,
- * the ghost is dark. */
+/* A ghost, or one part of its pupil. I and J are the ghost's pair of surfaces;
+ * ANNULUS is that of the pupil box. Sensor x is SENSOR times u; with SENSOR 0,
+ * the ghost is dark (it has no polynomials). */
 struct part {
     int i, j;
     double sensor;
@@ -516,8 +517,8 @@ static bool is_ghost_dark(double sensor)
     return !(sensor < 0 || sensor > 0);
 }
 
-/* Writes a model of N ghosts and parts to M and opens it; all energies are
- * 1/4. */
+/* Writes a model of N ghosts and pupil parts to M and opens it; all energies
+ * are 1/4. */
 static struct glint_lens open_model_of_ghosts_and_parts(struct model_image *m,
                                                         const struct part *part,
                                                         uint32_t n)
@@ -543,8 +544,9 @@ static struct glint_lens open_model_of_ghosts_and_parts(struct model_image *m,
 
 static struct glint_zoom_lens zoom;
 
-/* The expected state of GHOST where the zoom is set to PART, 0 .. 1: its sensor
- * x is SENSOR u, and its energy ENERGY. With SENSOR 0, the ghost is dark. */
+/* The expected state of GHOST at the zoom position PART, 0 .. 1: sensor x is
+ * SENSOR times u, the energy ENERGY. With SENSOR 0, the ghost is dark (not
+ * drawn). */
 struct sight {
     int ghost;
     double part, sensor, energy;
@@ -568,8 +570,8 @@ static void check_interpolated_ghosts(const struct sight *sight, size_t n)
 #define SHOWS(sights) \
     check_interpolated_ghosts(sights, sizeof(sights) / sizeof *(sights))
 
-/* A position of the zoom, at ALONG of 0 .. 1. Its model contains the N ghosts
- * and pupil parts PART, whose boxes are centred at MIDDLE. */
+/* A zoom position ALONG, 0 .. 1. Its model contains the N ghosts and pupil
+ * parts PART, whose pupil boxes are centred at MIDDLE. */
 struct position {
     double along;
     const struct part *part;
@@ -603,8 +605,8 @@ static void free_position_models(const struct model_image *at, int n)
         free(at[k].data);
 }
 
-/* Checks that a ghost that is dark at one zoom position fades out towards that
- * position. */
+/* Checks that a ghost without polynomials at one zoom position (a dark ghost)
+ * fades out towards that position. */
 TEST(dark_ghosts_fade)
 {
     static const struct part a[] = {{0, 1, 0.5, 0}, {0, 2, 0, 0}};
@@ -649,8 +651,9 @@ TEST(ghosts_are_extrapolated_into_the_dark)
 }
 
 /* Checks that a ghost is extrapolated by at most the distance between the two
- * positions that define its motion; and not at all if its pupil is divided into
- * parts, whose number may change, or if its boxes are too far apart. */
+ * positions that define its motion. It must not be extrapolated if its pupil is
+ * divided into parts, whose number may change, or if its pupil boxes are too
+ * far apart. */
 TEST(unsafe_ghosts_are_not_extrapolated)
 {
     static const struct part a[] = {
@@ -701,9 +704,9 @@ TEST(extrapolated_sums_stay_in_range)
     free_position_models(at, 3);
 }
 
-/* Checks two zoom positions that divide a pupil differently: the parts of the
- * nearer position must be drawn. Parts must be interpolated with parts of the
- * same ghost, in any order. */
+/* Checks two zoom positions that divide a pupil differently: the pupil parts of
+ * the nearer position must be drawn. In any order, parts must be interpolated
+ * with parts of the same ghost. */
 TEST(parts_are_interpolated_with_their_ghost)
 {
     static const struct part a[] = {

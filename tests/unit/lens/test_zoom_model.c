@@ -79,7 +79,6 @@ TEST_CLOSE
 
 static const int32_t middle_q24 = (int32_t)(1e6 / (532. * 532.) * (1 << 24));
 
-/* Checks that the zoom at a position equals its model bit by bit. */
 TEST(zoom_at_a_position_equals_its_model)
 {
     static struct glint_transfer a, b;
@@ -112,9 +111,8 @@ TEST(zoom_at_a_position_equals_its_model)
     }
 }
 
-/* RMS errors of those rays of the zoom that pass the stop, compared with exact
- * rays: of the position, pixels of an image 1920 wide, and of the energy,
- * relative. */
+/* RMS errors, against exact rays, of the zoom's rays that pass the stop: of the
+ * position, pixels of an image 1920 wide, and of the energy, relative. */
 struct off {
     double pixels, energies;
 };
@@ -191,8 +189,7 @@ TEST(interpolation_is_accurate_between_positions)
                 measure_error_at_position(0.52).pixels < 1);
 }
 
-/* --------------------------------------------------------------- some ghosts
- */
+/* -------------------------------------------------- partly baked positions */
 
 /* Checks that ghost G is equal in the zooms A and B at the positions 1/8, 2/8
  * .. 7/8. */
@@ -217,7 +214,7 @@ static void check_ghosts_are_equal(struct glint_zoom_lens *a,
 }
 
 /* Checks that if only one ghost is baked at the middle position, this ghost is
- * interpolated between three positions, the others between two. */
+ * interpolated between three positions and the others between two. */
 TEST(partly_baked_position_interpolates_its_ghosts)
 {
     static struct glint_zoom_lens some, two;
@@ -255,7 +252,7 @@ TEST(partly_baked_position_interpolates_its_ghosts)
     free(of_two);
 }
 
-/* ----------------------------------------------------------------- refusals */
+/* ---------------------------------------------------------- rejected files */
 
 static void expect_open_error(const char *cause)
 {
