@@ -15,10 +15,10 @@
 
 enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
 
-/* Returns a cosine where the ray through (X, Y), Q8 pixels from the image
- * centre, enters a ball: the cosine between the ray and the surface normal. The
- * ball has the radius RADIUS and the centre C in camera coordinates. Returns -1
- * if the ray misses the ball. */
+/* Returns the cosine between the surface normal of a ball and the ray through
+ * (X, Y), Q8 pixels from the image centre, where the ray enters the ball; -1 if
+ * the ray misses it. The ball has the radius RADIUS and the centre C in camera
+ * coordinates. */
 static double compute_cosine_to_normal(const struct glint_scene *s,
                                        const int32_t c[3], double radius,
                                        double x_q8, double y_q8)
@@ -36,7 +36,8 @@ static double compute_cosine_to_normal(const struct glint_scene *s,
     return square > 1 || along <= 0 ? -1 : sqrt(1 - square);
 }
 
-/* Returns the coverage of pixel (X, Y) by shell L, 0 .. 1. */
+/* Returns the coverage of pixel (X, Y) by shell L (a transparent sphere), 0 ..
+ * 1. */
 static double compute_shell_coverage(const struct glint_scene *s,
                                      const struct glint_motion_layer *l, int x,
                                      int y)
@@ -60,7 +61,7 @@ static double compute_shell_coverage(const struct glint_scene *s,
                     2);
 }
 
-/* Returns the coverage of pixel (X, Y) by line L, 0 .. 1. */
+/* Returns the coverage of pixel (X, Y) by line L (a trajectory), 0 .. 1. */
 static double compute_line_coverage(const struct glint_scene *s,
                                     const struct glint_motion_layer *l, int x,
                                     int y)
@@ -141,8 +142,9 @@ TEST(layers_are_as_defined)
         }
 }
 
-/* Checks a food (landmark) that no sensor detects, in front of the shell of a
- * detected food or inside it: the food occludes the shell. */
+/* Checks a food (landmark) that no sensor detects, in front of the shell
+ * (transparent sphere) of a detected food or inside it: the food occludes the
+ * shell. */
 TEST(nearer_objects_hide_layers)
 {
     double food[3][3] = {{5, 0, 0}, {5, 3, 3}, {0, -9, 9}};

@@ -175,8 +175,8 @@ TEST(row_d6_error_depends_weakly_on_food_distance)
     }
 }
 
-/* Checks that two foods (landmarks) may vanish in one frame if five were seen,
- * which leaves three, and one food if four were seen. */
+/* Checks that two foods (landmarks) may vanish in one frame if five were
+ * detected, which leaves three, and one food if four were. */
 TEST(two_foods_may_vanish_at_once)
 {
     struct track_options o = make_track_options(0, 0, 0);
@@ -208,8 +208,8 @@ TEST(two_foods_may_vanish_at_once)
         "four foods"));
 }
 
-/* Foods are landmarks. Checks that collinear foods are rejected, and with the
- * method of four foods also coplanar ones. The limit must be exact to 2^-20. */
+/* Checks that collinear foods (landmarks) are rejected, and with the method of
+ * four foods also coplanar ones. The limit must be exact to 2^-20. */
 TEST(rejects_collinear_and_coplanar_foods)
 {
     const double line[4][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}};

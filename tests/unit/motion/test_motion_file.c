@@ -185,8 +185,8 @@ TEST(damage_is_found)
 
             found = glint_motion_frame(&streamed, k, &f) != GLINT_OK;
         }
-        /* Bytes 12 .. 15, the checksum of the whole file, are not checked when
-         * reading by blocks. */
+        /* Bytes 12 .. 15, the checksum of the whole file, are not checked by
+         * blocks. */
         assert_true(found || (at >= 12 && at < 16 && at < header));
         baked.data[at] = was;
     }
@@ -199,8 +199,8 @@ TEST(damage_is_found)
 }
 
 /* Checks a motion that is read by blocks. A name with control characters must
- * be rejected as in memory. A frame that needs an unreadable block must return
- * an error, whichever block it is. */
+ * be rejected as it is in memory. A frame that needs an unreadable block must
+ * return an error, whichever block it is. */
 TEST(blocks_are_validated)
 {
     static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));

@@ -148,8 +148,8 @@ TEST(rejects_invalid_recordings)
     bake_must_fail("{\"a\": , }", "expected a JSON value");
 }
 
-/* Foods are landmarks. Checks that a recording with collinear foods is
- * rejected, and a recording in which three foods vanish in one frame. */
+/* Checks that recordings are rejected whose foods (landmarks) are collinear, or
+ * that lose three foods in one frame. */
 TEST(rejects_recordings_that_cannot_be_localised)
 {
 #define LINE                                                             \
@@ -215,9 +215,9 @@ static char *write_recording_file(const struct track_options *o, bool is_second)
     return text;
 }
 
-/* Checks that both sets of key names give the same motion, and that `reset` in
- * the first frame has no effect. Checks the sums of rv and tv (requirement
- * D11). */
+/* Checks that both sets of key names give the same motion, that `reset` in the
+ * first frame has no effect, and the sums of the fields rv (rotation) and tv
+ * (translation), requirement D11. */
 TEST(both_sets_of_key_names_are_equal)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};
@@ -254,8 +254,8 @@ TEST(both_sets_of_key_names_are_equal)
     free(second);
 }
 
-/* Checks that a food that moves without a `reset` in the recording is reported
- * as a residual. */
+/* Checks that a food (landmark) that moves without a `reset` in the recording
+ * is reported as a residual. */
 TEST(moving_food_is_reported)
 {
     struct baked baked;

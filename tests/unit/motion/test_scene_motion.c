@@ -40,8 +40,7 @@ static uint64_t hash_image(const struct moving *d)
     return hash;
 }
 
-/* -------------------------------------------------------------------- row D8
- */
+/* ---------------------------------------------------------- any frame (D8) */
 
 /* Requirement D8: checks that a frame is the same whether it is reached by
  * playing, by single steps or by jumps, for all tile sizes. */
@@ -83,8 +82,7 @@ TEST(row_d8_seek_is_play)
     }
 }
 
-/* -------------------------------------------------------------------- row D7
- */
+/* ------------------------------------------- detection by brute force (D7) */
 
 /* Sets AT to vector V rotated by the unit quaternion Q. */
 static void rotate_vector(const double q[4], const double v[3], double at[3])
@@ -97,9 +95,9 @@ static void rotate_vector(const double q[4], const double v[3], double at[3])
     at[2] = v[2] + 2 * (q[0] * c[2] + q[1] * c[1] - q[2] * c[0]);
 }
 
-/* Returns the angle, radians, by which food F of FRAME is inside the
- * detection angle of sensor S, by the formula of requirement D7. Negative: F
- * is outside. */
+/* Returns by which angle, radians, food F (a landmark) of FRAME is inside the
+ * detection angle of sensor S, by the formula of requirement D7. Negative: F is
+ * outside. */
 static double compute_detection_margin(const struct glint_motion_frame *frame,
                                        double size, int s, int f)
 {
@@ -125,8 +123,8 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
 }
 
 /* Requirement D7: compares detection by angle, and by angle and intensity, with
- * brute force. There are 10 000 frames of random steps, rotations and foods,
- * with six sensors and five foods. */
+ * brute force, for 10 000 frames of random steps, rotations and foods
+ * (landmarks), with six sensors and five foods. */
 TEST(row_d7_detection_is_brute_force)
 {
     enum { N = 10000 };
@@ -207,17 +205,16 @@ TEST(angles_are_compared_exactly)
     assert_true(seen > 50000 && seen < 150000);
 }
 
-/* ------------------------------------------------------------------- control
- */
+/* ----------------------------------------------------------- control lines */
 
 #define METALS                                                             \
     "material dark ward diffuse 0 0 0 specular .2 .2 .2 alpha .1 .1\n"     \
     "material light ward diffuse .5 .5 .5 specular .2 .2 .2 alpha .1 .1\n" \
     "sphere a at 0 8 0 radius 1 material dark\n"
 
-/* Checks that a control line that fails changes nothing: neither the camera,
- * whether it is in a sensor or free, nor the look of objects. The next line
- * must be executed. */
+/* Checks that a control line that fails changes neither the camera, whether in
+ * a sensor or free, nor the materials of objects, and that the next line is
+ * executed. */
 TEST(failed_control_lines_change_nothing)
 {
     static const struct control_line bright = {
@@ -261,8 +258,7 @@ TEST(failed_control_lines_change_nothing)
     moving_close_scene(d);
 }
 
-/* -------------------------------------------------------------------- row D9
- */
+/* ------------------------------------------------- camera in a sensor (D9) */
 
 /* Returns the mean column of the pixels with more red than blue; -1: there are
  * none. Sets *N to their number. */
@@ -282,12 +278,13 @@ static double compute_mean_column_of_red(const struct moving *d, int *n)
     return *n ? sum / *n : -1;
 }
 
-/* Requirement D9: checks a camera in a sensor. The object ahead must be in the
- * image centre, and the field of view must be that of the sensor. Leaving the
- * sensor must restore the previous image. */
+/* Requirement D9: checks a camera placed in a sensor. The object ahead must be
+ * in the image centre, and the field of view must be that of the sensor.
+ * Leaving the sensor must restore the previous image. */
 TEST(row_d9_camera_in_a_sensor)
 {
-    /* foods: one ahead of sensor 0, one ahead of sensor 1, and two others */
+    /* foods (landmarks): one ahead of sensor 0, one ahead of sensor 1, and two
+     * others */
     double food[4][3] = {{6, 0, 0}, {0, 6, 0}, {0, -3, 7}, {-9, 1, 2}};
     uint64_t outside;
     struct moving *d;
@@ -326,11 +323,10 @@ TEST(row_d9_camera_in_a_sensor)
     moving_close_scene(d);
 }
 
-/* ------------------------------------------------------------------- row D10
- */
+/* ---------------------------------------------------- detected foods (D10) */
 
-/* Requirement D10: checks detections of foods: three foods by one sensor each,
- * two by all sensors, and two by two sensors. */
+/* Requirement D10: checks detections of foods (landmarks): three foods by one
+ * sensor each, two by all sensors, and two by two sensors. */
 TEST(row_d10_detections)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -390,9 +386,9 @@ TEST(object_types_can_be_hidden_and_resized)
     moving_close_scene(d);
 }
 
-/* Checks a shell over black: it has the fraction of light that its material
- * does not transmit, and half of that in its middle. A food inside the shell
- * must be visible through it. */
+/* Checks a shell (transparent sphere): in its middle it covers half of the
+ * light that its material does not transmit. A food (landmark) inside it must
+ * be visible through it. */
 TEST(shells_let_light_pass)
 {
     double food[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
@@ -420,8 +416,8 @@ TEST(shells_let_light_pass)
 }
 
 /* Checks that lines that leave the widest image are drawn until their whole
- * width is off-screen. An edge of the box, 200 pixels wide, leaves the image at
- * an angle. */
+ * width is off-screen: an edge of the box, 200 pixels wide, leaves at an
+ * angle. */
 TEST(wide_lines_are_drawn_until_off_screen)
 {
     enum { WIDE = 8192, LOW = 16 };
@@ -498,7 +494,7 @@ TEST(lamps_move_with_the_body)
     moving_close_scene(d);
 }
 
-/* ------------------------------------------------------------------ hostile */
+/* ---------------------------------------------------------- extreme scenes */
 
 TEST(missing_module_is_named)
 {

@@ -36,8 +36,8 @@ static void write_2_at_exit(void)
 }
 
 /* Runs DIE(NUMBER) in a child process that has registered two functions. Checks
- * the exit code CODE, as a shell reports it (128 + N for signal N), and that
- * the functions have written TEXT. */
+ * that the child's exit code, as a shell reports it (128 + N for signal N), is
+ * CODE, and that the functions have written TEXT. */
 static void expect_end_of_child(void (*die)(int), int number, int code,
                                 const char *text)
 {

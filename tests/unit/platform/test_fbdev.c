@@ -24,7 +24,7 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
-/* ---------------------------------------------------------------- scenery */
+/* ------------------------------------------------------- fake framebuffer */
 
 /* Sets the fake framebuffer to 8 x 6 pixels of XRGB8888, 40 bytes per row,
  * without off-screen rows. */
@@ -138,7 +138,7 @@ static void expect_screen_rows(size_t first, int code)
         }
 }
 
-/* ------------------------------------------------------------------- tests */
+/* --------------------------------------------------------- pages and modes */
 
 /* In a child process: shows the second page, then ends by signal HOW, or by
  * exit() if HOW is 0. */
@@ -411,7 +411,6 @@ TEST(adopts_changed_modes)
     fb.sink.close(&fb.sink);
 }
 
-/* Checks that XRGB8888 is assumed if a driver reports no bit fields. */
 TEST(missing_bit_fields_mean_xrgb8888)
 {
     static const struct fb_bitfield none;
@@ -430,7 +429,7 @@ TEST(missing_bit_fields_mean_xrgb8888)
     fb.sink.close(&fb.sink);
 }
 
-/* ---------------------------------------------------------------- refusals */
+/* -------------------------------------------------------- rejected devices */
 
 static void expect_open_fails(const char *part)
 {
@@ -541,8 +540,8 @@ TEST(console_mode_is_set_and_restored)
     check_console_modes(false, KD_TEXT, KD_TEXT);
 }
 
-/* Checks that a console that was released is not changed at the end of the
- * process, even if another file has got its descriptor. */
+/* Checks that a released console is not changed at the end of the process, even
+ * if its file descriptor belongs to another file by then. */
 TEST(released_console_is_not_touched)
 {
     int how;
@@ -561,7 +560,7 @@ TEST(released_console_is_not_touched)
     assert_int_equal(fake_fb->tty_mode, KD_GRAPHICS);
 }
 
-/* ---------------------------------------------------------------- failures */
+/* ----------------------------------------------------------- failing calls */
 
 /* Draws three frames of two sizes. Returns false if a call failed; the sink
  * must then give an error message. */

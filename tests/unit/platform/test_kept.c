@@ -63,8 +63,8 @@ static void check_rewritten_file_is_identical(const char *name,
                       data, bytes);
 }
 
-/* Checks that comments, bit depth, byte order and bytes after the image survive
- * an edit in place. */
+/* Checks that comments, bit depth, byte order and bytes after the image are
+ * unchanged by an edit in place. */
 TEST(comments_and_depth_are_preserved)
 {
     check_rewritten_file_is_identical("x.ppm",
@@ -91,8 +91,8 @@ TEST(light_is_added_to_float_files)
     expect_file_bytes("y.ppm", BYTES("P6 1 1 65535\n\xbc\x40\xbc\x40\xff\xff"));
 }
 
-/* Checks conversion to another file type: the bit depth is changed to one that
- * the type supports, and losses are reported. */
+/* Checks conversion to another file type: the bit depth becomes one that the
+ * type supports, and losses are reported. */
 TEST(converts_to_other_file_types)
 {
     struct glint_kept kept;

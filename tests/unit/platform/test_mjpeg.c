@@ -132,7 +132,8 @@ encode_jpeg_frame(const struct coding *c,
     return exact;
 }
 
-/* Returns the offset of the first segment with marker MARKER at or after AT. */
+/* Returns the offset of the first JPEG segment with marker MARKER at or after
+ * AT. */
 static size_t find_jpeg_segment(const struct bytes *b, int marker, size_t at)
 {
     while (at + 1 < b->n && (b->data[at] != 0xff || b->data[at + 1] != marker))
@@ -166,7 +167,7 @@ static void remove_jpeg_segments(struct bytes *b, int marker, int times)
     }
 }
 
-/* ----------------------------------------------------------------- checking */
+/* --------------------------------------------------- decoding and checking */
 
 static struct glint_mjpeg *open_mjpeg_decoder(int width, int height)
 {
@@ -176,7 +177,6 @@ static struct glint_mjpeg *open_mjpeg_decoder(int width, int height)
     return d;
 }
 
-/* Decodes frame B, checks that this succeeds, and returns the image. */
 static struct glint_image decode_valid_frame(struct glint_mjpeg *d,
                                              const struct bytes *b)
 {
@@ -552,7 +552,7 @@ TEST(open_rejects_invalid_sizes)
     glint_mjpeg_close(NULL);
 }
 
-/* ------------------------------------------------------------------- damage */
+/* ---------------------------------------------------------- damaged frames */
 
 static void check_every_truncation(struct coding c)
 {
@@ -660,7 +660,8 @@ TEST(rejects_random_bytes)
             noise[i] = n % 3 ? (uint8_t)(rng_bits32(&seed) >> 8) : 0;
         replace_bytes(&b, 0, 0, noise, n);
         expect_decoding_fails(d, &b, GLINT_E_FORMAT, "");
-        /* noise after a start-of-image marker may look like a large frame */
+        /* random bytes after a start-of-image marker may look like a large
+         * frame */
         if (n > 2) {
             struct glint_image image;
 

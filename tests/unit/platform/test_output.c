@@ -203,8 +203,6 @@ TEST(temporary_file_is_locked)
     close(fd);
 }
 
-/* Checks that an existing file with the name of the temporary file is not
- * overwritten. */
 TEST(existing_temporary_name_is_not_overwritten)
 {
     struct glint_error error;
@@ -228,8 +226,8 @@ TEST(existing_temporary_name_is_not_overwritten)
     unlink(path);
 }
 
-/* Checks that flushed data is in the file before the commit, and is not written
- * again by the commit. */
+/* Checks that flushed data is in the file before the commit, which must not
+ * write it again. */
 TEST(flushed_data_is_in_the_file)
 {
     struct glint_error error;
@@ -388,7 +386,6 @@ TEST(closed_pipe_is_an_error)
     close(fd[1]);
 }
 
-/* Checks that all data reaches a non-blocking pipe with a slow reader. */
 TEST(nonblocking_pipe_gets_all_data)
 {
     static uint8_t data[300000];

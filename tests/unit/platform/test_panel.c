@@ -17,7 +17,7 @@
 static const struct glint_pixel_layout xrgb8888 = {
     4, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
 
-/* ------------------------------------------------------------------ colours */
+/* ------------------------------------------------------------ YCbCr to RGB */
 
 /* Coefficients of the standards for YCbCr to RGB, full range, 6 digits: Cr to
  * R', Cb to G', Cr to G', Cb to B'. */
@@ -51,7 +51,7 @@ struct tally {
 };
 
 /* Converts a row of all luma codes with chroma (CB, CR), compares each pixel
- * with compute_rgb_of_ycc(), and adds the differences to T. */
+ * with compute_rgb_of_ycc(), and adds the differences to the tally T. */
 static void check_row_of_all_luma_codes(struct tally *t,
                                         struct glint_row_rgb *row,
                                         struct glint_image *image, int cb,
@@ -113,7 +113,7 @@ TEST(every_colour_is_converted_right)
     check_ycc_to_rgb_conversion(GLINT_MATRIX_BT709, GLINT_RANGE_LIMITED);
 }
 
-/* ------------------------------------------------------------------- bars */
+/* ---------------------------------------------------------- panel layouts */
 
 /* Panel layouts, with the words expected for red, green, blue, white, black
  * and mid grey. */
@@ -479,7 +479,7 @@ TEST(draws_every_format)
     }
 }
 
-/* ----------------------------------------------------------------- geometry */
+/* ---------------------------------------------------- scaling and position */
 
 static void expect_image_area_on_panel(int panel_width, int panel_height,
                                        int width, int height,

@@ -51,7 +51,7 @@ static enum glint_status read_pfm_copy(struct glint_float_image *floats,
     return status;
 }
 
-/* --------------------------------------------------------------------- PNM */
+/* ------------------------------------------------------------- reading PNM */
 
 static void expect_pnm_pixels(const char *data, size_t bytes,
                               enum glint_pixel_format format, int width,
@@ -98,8 +98,8 @@ TEST(scales_samples_to_255)
     expect_pnm_pixels(BYTES("P5 4 1 2 \x00\x01\x02\x03"), GLINT_GREY, 4, 1,
                       "\x00\x80\xff\xff");
     expect_pnm_pixels(BYTES("P5 2 1 1 \x00\x01"), GLINT_GREY, 2, 1, "\x00\xff");
-    /* 16-bit samples: 128 of 65535 is 0.498 of an 8-bit step and rounds down;
-     * 129 is 0.502 and rounds up */
+    /* 16-bit samples: 128 of 65535 is 0.498 of an 8-bit step, so it rounds
+     * down; 129 is 0.502 and rounds up */
     expect_pnm_pixels(
         BYTES("P5 5 1 65535 \x00\x80\x00\x81\xff\xff\x80\x80\x00\x00"),
         GLINT_GREY, 5, 1, "\x00\x01\xff\x80\x00");
@@ -162,7 +162,7 @@ TEST(rejects_truncated_pnm)
     free(image.plane[0]);
 }
 
-/* --------------------------------------------------------------------- PFM */
+/* ------------------------------------------------------------- reading PFM */
 
 /* PFM stores the bottom row first: two_pixels, as a 1 x 2 image, is stored
  * as 0, 3, 4, then 1, -2, 0.5. These macros are little-endian floats; TWO is
@@ -314,8 +314,8 @@ TEST(writes_pfm)
                         BYTES("PF\n1 2\n-1.0\n" ZERO THREE FOUR ONE TWO HALF));
 }
 
-/* Checks that an image of odd width is unchanged after writing and reading. It
- * has more rows than are encoded at a time. */
+/* Checks that an image of odd width, with more rows than are encoded at a time,
+ * is unchanged after writing and reading. */
 TEST(pfm_round_trip)
 {
     enum { W = 333, H = 3, N = W * H * 3 };

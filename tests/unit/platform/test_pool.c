@@ -119,7 +119,6 @@ TEST(rejects_invalid_numbers_of_workers)
     assert_null(workers);
 }
 
-/* Checks that a pool of default size has one worker per online processor. */
 TEST(default_pool_has_a_worker_per_processor)
 {
     const long n = sysconf(_SC_NPROCESSORS_ONLN);
@@ -130,7 +129,7 @@ TEST(default_pool_has_a_worker_per_processor)
     glint_pool_destroy(workers);
 }
 
-/* ------------------------------------------------------------------ threads */
+/* --------------------------------------------------------- missing threads */
 
 /* number of threads that pthread_create() can still start; -1: no limit */
 static int threads_left = -1;
@@ -149,8 +148,6 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr,
     return __real_pthread_create(thread, attr, start, arg);
 }
 
-/* Checks that a pool that could not start all its threads still runs all
- * jobs. */
 TEST(missing_threads_do_not_lose_jobs)
 {
     for (int left = 0; left < 4; left++) {
@@ -171,7 +168,7 @@ TEST(missing_threads_do_not_lose_jobs)
     }
 }
 
-/* ------------------------------------------------------------------- stacks */
+/* -------------------------------------------------------------- stack size */
 
 /* Uses as much stack as a bake may need. The function is not inlined, as its
  * callers would then need as much stack themselves. */

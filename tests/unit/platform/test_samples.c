@@ -83,7 +83,6 @@ TEST(tone_curves_match_hand_computation)
     assert_true(fabs(glint_tone_curve_decode(&t, 0.5) - 0.31451) < 1e-5);
 }
 
-/* Writes V as a big-endian word of an ICC profile. */
 static void write_be32(uint8_t *at, uint32_t v)
 {
     for (int i = 0; i < 4; i++)
@@ -203,8 +202,8 @@ TEST(floats_keep_their_range)
     assert_true(isnan(mem[2]));
 }
 
-/* Checks that transparent pixels count as dark unless colours are premultiplied
- * by alpha, and that alpha is preserved. */
+/* Checks that transparent pixels count as dark, unless their colours are
+ * premultiplied by alpha, and that alpha is preserved. */
 TEST(transparent_pixels_count_as_dark)
 {
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};

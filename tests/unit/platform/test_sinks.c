@@ -38,8 +38,8 @@ static struct glint_image make_image_over_memory(enum glint_pixel_format format,
 
 /* ------------------------------------------------------------------ planes */
 
-/* Converts the 3 x 3 pixels FROM, which have the format FORMAT, to the format
- * PLANAR. Checks that the resulting planes, one after the other, equal WANT. */
+/* Converts 3 x 3 pixels FROM of FORMAT to the format PLANAR. Checks that the
+ * resulting planes, one after the other, equal WANT. */
 static void expect_converted_planes(enum glint_pixel_format format,
                                     const uint8_t *from,
                                     enum glint_pixel_format planar,
@@ -209,7 +209,7 @@ TEST(writes_y4m)
 }
 
 /* Checks that images in a format that Y4M supports are written without a copy,
- * and that RGB images are converted and declared as limited range. */
+ * and that RGB images are converted and declared as limited code range. */
 TEST(y4m_writes_supported_formats_without_copy)
 {
     static const char planes[] = "YUV4MPEG2 W2 H2 F0:0 Ip A1:1 C420jpeg "

@@ -81,8 +81,8 @@ TEST(rate_without_size_keeps_the_size)
 }
 
 /* Checks that two frame intervals match a request of 30 frames per second:
- * 1001/30000 s, and 333334 units of 100 ns, as some USB cameras report. 24
- * frames per second must not match 25. */
+ * 1001/30000 s, and 333334 units of 100 ns, as some USB cameras report. A
+ * camera with 24 frames per second must not match 25. */
 TEST(nearly_equal_rates_match)
 {
     static const struct fake_mode usb[] = {
@@ -119,7 +119,6 @@ TEST(chooses_from_stepwise_sizes)
     must_close_camera();
 }
 
-/* Checks that MJPG is not chosen in a build without libjpeg. */
 TEST(mjpg_needs_libjpeg)
 {
     fake_lacks_jpeg = true;
@@ -146,8 +145,6 @@ TEST(rejects_unsupported_formats)
         "does not support NV12 (the driver returns YUYV instead)");
 }
 
-/* Checks that the source uses the format that the camera sets, even if another
- * was requested. */
 TEST(uses_the_format_that_the_camera_sets)
 {
     struct glint_v4l2_config wish = any_camera;
@@ -243,7 +240,7 @@ TEST(limits_the_device_name)
     must_close_camera();
 }
 
-/* ------------------------------------------------------------------- layout */
+/* ------------------------------------------------------- planes and blocks */
 
 static void set_camera_format(uint32_t fourcc, bool multiplanar)
 {
@@ -254,8 +251,8 @@ static void set_camera_format(uint32_t fourcc, bool multiplanar)
         camera.caps = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
 }
 
-/* Checks that PLANE begins OFFSET bytes after BLOCK, and that its rows are
- * STRIDE bytes apart. */
+/* Checks that PLANE begins OFFSET bytes after BLOCK, with STRIDE bytes per
+ * row. */
 static void expect_plane_offset_and_stride(int plane, const uint8_t *block,
                                            ptrdiff_t offset, ptrdiff_t stride)
 {
@@ -348,7 +345,6 @@ TEST(reads_planes_in_several_blocks)
     must_close_camera();
 }
 
-/* Checks that data that the driver places before the image is skipped. */
 TEST(skips_data_before_the_image)
 {
     struct fake_frame *f;
@@ -397,7 +393,7 @@ TEST(rejects_too_small_buffers)
     must_refuse_to_open(NULL, GLINT_E_UNSUPPORTED, "pictures of ");
 }
 
-/* ------------------------------------------------------------------- frames */
+/* ---------------------------------------- damaged, lent and dropped frames */
 
 static void deliver_frame_of_bytes(uint32_t sequence, uint32_t bytesused)
 {
@@ -489,8 +485,8 @@ TEST(time_stamps_are_never_in_the_future)
     must_close_camera();
 }
 
-/* The source lends the buffer of a frame to the caller. Checks that this frame
- * does not change while other frames arrive. */
+/* The source lends the buffer of a frame to the caller. Checks that other
+ * frames that arrive do not change the lent frame. */
 TEST(lent_frame_is_unchanged)
 {
     struct glint_source_frame kept;
@@ -510,9 +506,9 @@ TEST(lent_frame_is_unchanged)
     must_close_camera();
 }
 
-/* Checks when streaming starts. An open camera has its format locked but must
- * not stream before start(). The same must hold after a restart. A call of
- * next() must start streaming, too. */
+/* Checks when streaming starts. An open camera, also after a restart, has its
+ * format locked but must not stream before start(). A call of next() must start
+ * streaming, too. */
 TEST(streams_only_when_started)
 {
     assert_int_equal(
@@ -659,8 +655,8 @@ TEST(every_memory_type_is_used)
     check_chosen_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
 }
 
-/* Checks the message for a memory type that the device does not support: it
- * must say so instead of naming a failed request. */
+/* Checks that the message for a memory type that the device does not support
+ * says so, instead of naming a failed request. */
 TEST(reports_a_missing_memory_type)
 {
     assert_int_equal(try_open_camera(NULL, GLINT_V4L2_READ), GLINT_E_DEVICE);

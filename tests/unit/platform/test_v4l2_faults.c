@@ -10,7 +10,7 @@
 #include <linux/videodev2.h>
 #include "jpeg/mjpeg.h"
 
-/* ---------------------------------------------------------------- requests */
+/* -------------------------------------------------------- failing requests */
 
 TEST_BEFORE
 {
@@ -218,7 +218,6 @@ TEST(failed_restart_ends_with_a_message)
     }
 }
 
-/* Checks that each delivered frame restarts the time limit for restarts. */
 TEST(delivered_frame_resets_the_restart_limit)
 {
     must_open_camera(NULL);
@@ -262,9 +261,8 @@ TEST(reports_an_unplugged_camera)
     }
 }
 
-/* Checks that a stream of nothing but damaged frames ends with a message.
- * AS_JPEG: frames cannot be decoded; otherwise the driver marks them as
- * damaged. */
+/* Checks that a stream of only damaged frames ends with a message. AS_JPEG:
+ * frames cannot be decoded; otherwise the driver marks them as damaged. */
 static void check_stream_of_damaged_frames(bool as_jpeg)
 {
     static const char garbage[] = "not a JPEG at all";
@@ -322,8 +320,6 @@ TEST(one_intact_frame_in_30_is_enough)
     must_close_camera();
 }
 
-/* Checks that the source restarts the stream if the driver returns a buffer
- * that was not queued. */
 TEST(unqueued_buffer_causes_a_restart)
 {
     struct glint_source_frame kept;
@@ -338,8 +334,8 @@ TEST(unqueued_buffer_causes_a_restart)
     assert_int_equal(next(), GLINT_OK);
     kept = frame;
     fake_camera_add_frame(1, 2);
-    /* returned_index is 1 plus a buffer index: buffer 0 is returned, which is
-     * lent to the caller. */
+    /* returned_index is 1 plus a buffer index. Buffer 0, which is lent to the
+     * caller, is returned. */
     camera.returned_index = 1;
     must_get_no_frame();
     assert_int_equal(v4l2.source.n_restarts, 2);
@@ -352,7 +348,7 @@ TEST(unqueued_buffer_causes_a_restart)
     must_close_camera();
 }
 
-/* ----------------------------------------------------------------- silence */
+/* ---------------------------------------------------------- missing frames */
 
 TEST(missing_frames_cause_a_restart)
 {
@@ -391,7 +387,7 @@ TEST(slow_camera_is_not_restarted)
     must_close_camera();
 }
 
-/* ------------------------------------------------------------------ source */
+/* ---------------------------------------------------- changed input signal */
 
 TEST(changed_source_causes_a_restart)
 {
@@ -474,8 +470,8 @@ TEST(timings_without_signal_are_used)
 }
 
 /* Checks a signal that is repeatedly lost and found again without a frame, as
- * happens while a cable is plugged in. The stream must survive this for longer
- * than the time limit for restarts. */
+ * while a cable is plugged in. The stream must survive this for longer than the
+ * time limit for restarts. */
 TEST(wavering_signal_is_not_a_failure)
 {
     int failed_ms;

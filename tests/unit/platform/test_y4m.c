@@ -55,7 +55,7 @@ static enum glint_status parse_header(struct glint_y4m_header *header,
     return glint_y4m_header_parse(header, line, "x.y4m", &error);
 }
 
-/* ------------------------------------------------------------------ header */
+/* ----------------------------------------------------------- stream header */
 
 TEST(parses_a_header_of_ffmpeg)
 {
@@ -224,7 +224,7 @@ TEST(prints_a_header)
         printed, "YUV4MPEG2 W5 H1080 F0:0 Ip A1:1 Cmono XCOLORRANGE=FULL\n");
 }
 
-/* ----------------------------------------------------------------- reading */
+/* ---------------------------------------------------------- reading frames */
 
 TEST(reads_frames_in_pieces)
 {
@@ -557,8 +557,6 @@ static double decode_transfer_code(enum glint_transfer_curve curve, double v)
     }
 }
 
-/* Checks the tables of transfer curves against the formulas in the
- * standards. */
 TEST(transfer_tables_match_the_standards)
 {
     for (int t = 0; t < GLINT_TRANSFERS; t++)

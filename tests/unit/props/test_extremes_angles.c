@@ -23,8 +23,8 @@ static uint8_t codes[3][3 * W * H];
 #define DEGREE 0.017453292519943295
 
 /* Max difference, codes, between the means of 8 x 8 pixels in two images of the
- * same light that have different grids. Grids of images in codes have 3/4 of
- * the cells in each direction, so they may displace an outline by 0.1 / (3/4)^2
+ * same light with different grids. Grids for images of pixel codes have 3/4 of
+ * the cells in each direction, so an outline may be displaced by 0.1 / (3/4)^2
  * = 0.18 pixel. Along one side of a block, this changes the mean by 255 * 0.18
  * / 8 codes. */
 #define GRID_CODES 5.7
@@ -51,7 +51,7 @@ static double compare_model_with_exact(struct stage *s,
     return stage_compare_images(s, exact, test).psnr_db;
 }
 
-/* -------------------------------------------------------------------- axis */
+/* ---------------------------------------------------- lights near the axis */
 
 /* Checks that an image with a light on the axis has a PSNR of at least 45 dB,
  * as elsewhere at this size. A light 1e-6 degrees off the axis must give the
@@ -106,9 +106,9 @@ TEST(azimuth_on_the_axis_rotates_the_grid_only)
 
 /* ---------------------------------------------------------------- azimuths */
 
-/* Checks that if all light falls inside the image, its sum does not depend on
- * the azimuth: within 0.5 %, because irradiance is rounded to steps, and
- * outlines of ghosts ten pixels wide are approximated by chords. */
+/* Checks that if all light falls inside the image, its sum is the same at all
+ * azimuths within 0.5 %: irradiance is rounded to steps, and the outlines of
+ * ghosts ten pixels wide are chords. */
 TEST(flux_does_not_depend_on_azimuth)
 {
     double least = HUGE_VAL, most = 0;
@@ -167,7 +167,7 @@ TEST(quarter_turn_of_the_light_rotates_the_image)
                    "codes");
 }
 
-/* ------------------------------------------------------------------- zones */
+/* -------------------------------------------------------- borders of zones */
 
 /* Returns a lamp of power POWER at the angle whose sine is SINE_Q30. */
 static struct glint_lamp make_light_at_sine(int32_t sine_q30, double power)
@@ -219,11 +219,12 @@ static double measure_jump_of_block_means(int32_t sine_q30, double *flux)
     return jump;
 }
 
-/* Checks the borders of angular zones. Neighbouring zones are fitted separately
- * (energy within 0.6 %, interpolation between rays 1 %). So an almost white
- * flat part of a ghost may change by 2 codes at the border, and by 2 more if
- * one side rounds to the next irradiance step. Where a ghost appears or
- * vanishes, it is outside the image, so such a border must be invisible. */
+/* Checks the borders of zones, ranges of angles with polynomials of their own.
+ * Neighbouring zones are fitted separately (energy within 0.6 %, interpolation
+ * between rays 1 %), so an almost white flat part of a ghost may change by 2
+ * codes at the border, and by 2 more if one side rounds to the next irradiance
+ * step. A ghost appears or vanishes outside the image, so such a border must be
+ * invisible. */
 TEST(zone_borders_cause_no_jump)
 {
     const struct glint_lens *lens;

@@ -57,9 +57,8 @@ static void draw_lamp_in_format(enum glint_pixel_format format, int width,
 
 /* Draws a small image. Returns the number of its samples that differ from the
  * middle of the larger image LARGE, which has the same scale and parity of
- * sides. Samples may differ only if one image drops a ghost as invisible that
- * the other draws: in the larger image, light outside the small one counts as
- * visible. */
+ * sides. Samples may differ only if one image drops a ghost that the other
+ * draws: in LARGE, light outside the small image counts as visible. */
 static int count_differing_samples(int width, int height, const uint8_t *large,
                                    int large_w, int large_h, double px_mm)
 {

@@ -84,7 +84,7 @@ static void bake_opened_lens(double max_deg)
     stage_set_view(&stage, W, H, 0);
 }
 
-/* ---------------------------------------------------------------- the stop */
+/* --------------------------------------------- f-numbers, blades, outlines */
 
 TEST(extreme_f_numbers_match_exact_rays)
 {
@@ -152,10 +152,10 @@ TEST(outline_of_a_round_stop_shows_no_chords)
                     "dB");
 }
 
-/* Checks that barrels that clip half of the light need few cells: their outline
- * with 8 cells is nearly that with 128, as its chords lie on both sides of the
- * exact outline. The limit of 48 dB lies between the 46.0 dB of chords inside
- * the outline and the 49.9 dB of chords on both sides. */
+/* Checks that barrel apertures that clip half of the light need few cells: the
+ * outline with 8 cells is nearly that with 128, as its chords lie on both sides
+ * of the exact outline. The limit of 48 dB lies between the 46.0 dB of chords
+ * inside the outline and the 49.9 dB of chords on both sides. */
 TEST(barrel_outline_needs_few_cells)
 {
     static const char narrow[] = "name narrow\nf-number 5.6\nfilm 36 24\n"
@@ -185,7 +185,7 @@ TEST(barrel_outline_needs_few_cells)
                     "dB");
 }
 
-/* ----------------------------------------------------------------- lengths */
+/* ----------------------------------------------- sensors and focal lengths */
 
 /* Checks sensors of several sizes. A model is valid for the image size in its
  * lens table plus a tenth, so a larger sensor needs another model, baked as in
@@ -296,7 +296,7 @@ TEST(extreme_focal_lengths_match_exact_rays)
     assert_true(report_worst_errors("focal lengths of 1 mm to 10 m", worst));
 }
 
-/* ------------------------------------------------------------------- radii */
+/* ------------------------------------------------------ radii of curvature */
 
 TEST(smallest_ball_lens_matches_exact_rays)
 {
@@ -348,7 +348,7 @@ TEST(almost_plane_surface_matches_exact_rays)
     assert_at_least("lenses: radii of 1e7 mm against planes", db, 70, "dB");
 }
 
-/* ---------------------------------------------------------------- surfaces */
+/* ----------------------------------------------------- numbers of surfaces */
 
 /* Makes a lens of N surfaces with a focal length of about 100 mm, the stop
  * behind the first SPLIT surfaces, and the sensor at the focus. */

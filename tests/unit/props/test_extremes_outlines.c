@@ -29,9 +29,9 @@ struct offsets {
 };
 
 /* Returns the position of an outline, pixels from the start of a window of
- * pixels across it. The position is the sum of light in the window divided by
- * the light of the last pixel before the window. AT is the last pixel inside
- * the outline; STEP is the offset to the next pixel outwards. */
+ * pixels across it: the sum of light in the window divided by the light of the
+ * last pixel before the window. AT is the last pixel inside the outline; STEP
+ * is the offset to the next pixel outwards. */
 static double find_outline_position(const float *rgb, int at, int step)
 {
     double sum = 0;
@@ -126,9 +126,9 @@ static void add_offsets_at_light_angle(double theta_deg, struct offsets *o)
     }
 }
 
-/* Checks the errors of all outlines. As grids depend on the mean bend of a
- * ghost, an outline may be displaced by up to 1.5 times --error plus 1/20
- * pixel. Most outlines are far more exact, so the mean offset must be at most a
+/* Checks the errors of all outlines. Grids are chosen for the mean bend of a
+ * ghost, so an outline may be displaced by up to 1.5 times --error plus 1/20
+ * pixel. Most outlines are far more exact: the mean offset must be at most a
  * fifth of --error. */
 static void check_outline_offsets(const char *lens)
 {

@@ -28,11 +28,10 @@ TEST_OPEN
 
 /* ------------------------------------------------------------- linear light */
 
-/* Checks that linear images are proportional to the power of the lamp. They are
- * drawn at a scale that is a power of two. So for powers of two each image
- * equals that of power 1 bit by bit. For powers of ten, irradiance rounds to
- * other steps of 1 %, and pixels may deviate by half a step; their sum must be
- * within 0.1 %. */
+/* Checks that linear images are proportional to the power of the lamp, at a
+ * scale that is a power of two. For powers of two each image equals that of
+ * power 1 bit by bit. For powers of ten, irradiance rounds to other steps of 1
+ * %: pixels may deviate by half a step, their sum by 0.1 %. */
 TEST(image_is_linear_in_power)
 {
     const struct glint_lamp lamp = stage_make_lamp(7.5, 33, 1);
@@ -62,7 +61,7 @@ TEST(image_is_linear_in_power)
                    "");
 }
 
-/* ------------------------------------------------------------------- codes */
+/* ------------------------------------------------------------- pixel codes */
 
 /* Raises the power by factors of 4 (above 1e9 by 10 000), from below one code
  * to saturation. Checks that no sample becomes darker than the background or
@@ -100,8 +99,8 @@ TEST(more_power_never_darkens_codes)
                     (double)white / lit, 0.999, "");
 }
 
-/* Checks that a power of 0, below 0 or NaN draws nothing, whether alone or next
- * to another light, in codes and in linear light. */
+/* Checks that a power of 0, below 0 or NaN draws nothing, alone or next to
+ * another light, as pixel codes and as linear light. */
 TEST(invalid_powers_draw_nothing)
 {
     const double none[] = {
@@ -128,7 +127,7 @@ TEST(invalid_powers_draw_nothing)
                    changed, 0, "samples");
 }
 
-/* ------------------------------------------------------------------- files */
+/* -------------------------------------------------------- files with lamps */
 
 static enum glint_status read_lamp_list_text(const char *text,
                                              struct lamp_list *list,

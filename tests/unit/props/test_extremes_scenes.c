@@ -134,8 +134,8 @@ static void compare_renderers(const char *text, int width, int height,
     free(light_q20);
 }
 
-/* Prints the errors in WORST and their limits, for scenes of type WHAT, and
- * checks them. */
+/* Prints and checks the errors in WORST against their limits, for scenes of
+ * type WHAT. */
 static void check_worst_errors(const char *what, const struct outcome *worst)
 {
     char name[96];

@@ -51,8 +51,8 @@ TEST(ten_thousand_lights_at_one_position_add_up)
 }
 
 /* Checks that lights distributed over the frame are merged to 128 without loss
- * of light. 3 % are allowed, as merged lights draw their ghosts in one place,
- * which moves some light out of the frame. */
+ * of light. 3 % are allowed, as merged lights draw their ghosts in one
+ * position, which moves some light out of the frame. */
 TEST(spread_lights_are_merged_without_loss)
 {
     const int n = extreme_is_long_run() ? LIGHTS : 1000;
@@ -96,15 +96,15 @@ TEST(ten_thousand_suns_give_white)
                    "samples");
 }
 
-/* ----------------------------------------------------------------- bundles */
+/* ------------------------------------------------------------- ray bundles */
 
 enum { SIDE = 64, MANY = 1 << 15 };
 
-/* Draws COUNT bundles of 2^LOG2 times white over the whole image, in codes and
- * in linear light. Returns the linear light of the pixels, or -1 if pixels
- * differ or codes are not white. Sets HELD[0] to the number of cells whose
- * light was clamped before it was added, and HELD[1] to the number of clamped
- * samples. */
+/* Draws COUNT ray bundles of 2^LOG2 times white over the whole image, as pixel
+ * codes and as linear light. Returns the linear light of the pixels, or -1 if
+ * pixels differ or codes are not white. Sets HELD[0] to the number of cells
+ * whose light was clamped before it was added, and HELD[1] to the number of
+ * clamped samples. */
 static double draw_overlapping_bundles(int count, int log2, int held[2])
 {
     struct glint_flare_config c = {.width = SIDE,
@@ -160,11 +160,10 @@ static double draw_overlapping_bundles(int count, int log2, int held[2])
     return value;
 }
 
-/* Checks that pixels of linear light are exact up to the limit, which is
- * just under 2048 times white, and saturate above. There are two clamps, and
- * both must be counted. One cell adds at most 2048 to a pixel, and all cells
- * together at most 2^24; more light is clamped before it is added
- * (by_edges.c). */
+/* Checks that pixels of linear light are exact up to the limit, just under 2048
+ * times white, and saturate above. Both clamps must be counted: one cell adds
+ * at most 2048 to a pixel, and all cells together at most 2^24; more light is
+ * clamped before it is added (by_edges.c). */
 TEST(piled_light_saturates)
 {
     static const struct {
@@ -200,7 +199,7 @@ TEST(piled_light_saturates)
                    "of 15");
 }
 
-/* ------------------------------------------------------------------- traps */
+/* ------------------------------------------------------------ range checks */
 
 /* Calls F in a child process. Returns whether a trap ended the process. */
 static int call_ends_in_trap(void (*f)(void))

@@ -33,9 +33,9 @@ static struct glint_scene *draw_scene_with_statistics(int edge_samples,
 }
 
 /* Checks the number of intersection tests. A lamp of four points lights a ball
- * that fills the picture. Each pixel needs 3 tests for the box of the ball and
- * 4 for the lamp. With shadows, each of four shadow rays is tested against both
- * balls. The count saturates at its limit. */
+ * that fills the picture: each pixel needs 3 tests for the box of the ball and
+ * 4 for the lamp. With shadows, each of four shadow rays is also tested against
+ * both balls. The count saturates at its limit. */
 TEST(counts_intersection_tests)
 {
     static const int32_t at[3] = {0, 0, 0};
@@ -90,9 +90,8 @@ TEST(counts_the_outcome_of_each_object)
 }
 
 /* Checks the counts of pixels and rays. A ball of radius 1 at the distance 4
- * covers a circle with the tangent 1 / sqrt 15, which has 2095 pixels if the
- * tangent 1 is 100 pixels wide. A lamp lights the complete circle, a sun half
- * of it. */
+ * covers a circle of tangent 1 / sqrt 15, which is 2095 pixels if the tangent 1
+ * is 100 pixels wide. A lamp lights the complete circle, a sun half of it. */
 TEST(counts_pixels_and_rays)
 {
     static const int32_t toward_q30[3] = {1 << 30, 0, 0};

@@ -21,8 +21,8 @@ static struct scene_file file;
 static size_t bytes;
 static int32_t light_q20[BYTES], drawn_q20[BYTES];
 
-/* Returns the value of the test image at (X, Y), each -1 .. 1. It is linear, so
- * that the cells of the environment interpolate it exactly. */
+/* Returns the value of the test image at (X, Y), each -1 .. 1. The image is
+ * linear, so that the cells of the environment interpolate it exactly. */
 static double compute_test_image_value(int channel, double x, double y)
 {
     static const double across[3] = {.4, -.3, 0}, down[3] = {0, .2, -.4};

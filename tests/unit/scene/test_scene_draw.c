@@ -101,7 +101,7 @@ static void fill_image_with_pattern(uint8_t *px, size_t n)
         px[i] = (uint8_t)(40 + i * 7 / 2 % 90);
 }
 
-/* -------------------------------------------------------------- invariance */
+/* --------------------------------------------------- scheduling and format */
 
 static void draw_scene(struct glint_scene_config cfg,
                        enum glint_pixel_format format, int workers,
@@ -151,7 +151,7 @@ TEST(image_does_not_depend_on_job_order)
     }
 }
 
-/* ------------------------------------------------------------------- cover */
+/* ---------------------------------------------------------- covered pixels */
 
 TEST(invisible_objects_change_nothing)
 {
@@ -502,9 +502,9 @@ TEST(shadow_grid_equals_brute_force)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
-/* Checks a square mesh that is perpendicular to each axis in turn, and so
- * coincides with a side of its triangle grid. For points behind it, on either
- * side, it must occlude a lamp. */
+/* Checks a square mesh perpendicular to each axis in turn, which coincides with
+ * a side of its triangle grid. For points behind it, on either side, it must
+ * occlude a lamp. */
 TEST(flat_mesh_shadows_a_lamp)
 {
     static const uint32_t t[2][3] = {{0, 1, 2}, {0, 2, 3}};
@@ -544,9 +544,8 @@ TEST(flat_mesh_shadows_a_lamp)
         }
 }
 
-/* Checks two shortcuts: shadow catchers are shaded only where shadows may fall,
- * and small balls have a single depth. Images must equal images drawn without
- * these shortcuts. */
+/* Checks that two shortcuts do not change images: shadow catchers are shaded
+ * only where shadows may fall, and small balls have a single depth. */
 TEST(confined_shading_equals_full_shading)
 {
     static uint8_t px[2][BYTES];
@@ -604,9 +603,8 @@ static double real_to_double(struct glint_real x)
     return glint_real_value(x);
 }
 
-/* Checks the position and power of the lights that the scene passes to the
- * flare, against double precision. They must be those of lights seen through a
- * pinhole. */
+/* Checks position and power of the lights that the scene passes to the flare
+ * against those seen through a pinhole, in double precision. */
 TEST(lights_for_the_lens_match_double_precision)
 {
     const struct glint_scene_config cfg = make_scene_config();
@@ -648,9 +646,9 @@ TEST(lights_for_the_lens_match_double_precision)
         glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp), 0);
 }
 
-/* Checks that scene and flare agree on the direction of a light. The scene
- * reports the pixel of the light. The flare's pinhole camera must convert this
- * pixel to the direction that the light has in the scene. */
+/* Checks that scene and flare agree on the direction of a light: the flare's
+ * pinhole camera must convert the pixel of the light, as the scene reports it,
+ * to the direction that the light has in the scene. */
 TEST(lens_and_scene_agree_on_directions)
 {
     struct model_image image = model_make_three_ghosts();
@@ -716,8 +714,6 @@ TEST(setting_sun_is_occluded_gradually)
     assert_true(last == 0 && levels >= 6);
 }
 
-/* Checks that objects in front of lamps in the image dim these lamps by their
- * coverage. */
 TEST(lamps_are_dimmed_by_coverage)
 {
     static uint8_t px[BYTES];

@@ -84,7 +84,7 @@ static void open_scene_text(struct drawn *d, const char *text,
     drawn_open_scene(d, text, &files, dials, &tool);
 }
 
-/* --------------------------------------------------------------- reference */
+/* ------------------------------------------- comparison with the reference */
 
 #define STAGE                                                     \
     "camera fov 50 at 0 1 4 toward 0 .3 0\n"                      \
@@ -129,7 +129,7 @@ TEST(image_equals_the_reference)
     }
 }
 
-/* ------------------------------------------------------------------- texts */
+/* ----------------------------------------- scene texts, changes of a scene */
 
 /* Requirement B7: checks that an anisotropy ratio above 10 is clamped to 10,
  * and that the parser warns of this. */
@@ -152,8 +152,8 @@ TEST(clamped_anisotropy_is_warned_of)
     free(s);
 }
 
-/* Checks two conditions for opening a scene model: the program must provide the
- * module that the scene needs, and the scene's environment must be intact. */
+/* Checks that a scene is rejected if the program lacks the module that the
+ * scene needs, or if the scene's environment is damaged. */
 TEST(missing_module_is_rejected)
 {
     static const struct scene_dials dials = {

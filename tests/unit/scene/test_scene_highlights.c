@@ -59,7 +59,6 @@ static void close_scene(void)
     glint_description_free(&description);
 }
 
-/* Draws the scene on black and finds its highlights. */
 static void draw_and_find_highlights(void)
 {
     static int32_t light_q20[3 * PIXELS];
@@ -86,7 +85,7 @@ static double highlight_power(int i)
 #define BRIGHT "light sun direction .5 .6 1 colour 2e6 2e6 1e6\n"
 #define BALL   "sphere s at 0 0 0 radius .44 material m\n"
 
-/* --------------------------------------------------------------- reference */
+/* ------------------------------------------- comparison with the reference */
 
 TEST(highlights_equal_the_reference)
 {
@@ -143,7 +142,7 @@ TEST(highlights_equal_the_reference)
     }
 }
 
-/* ------------------------------------------------------------------- moves */
+/* ------------------------------------------------------- moving highlights */
 
 /* Moves the ball by (DX, DY) pixels from its original position. */
 static void move_ball_by_pixels(double dx, double dy)
@@ -157,10 +156,10 @@ static void move_ball_by_pixels(double dx, double dy)
     assert_ok(glint_scene_set_pose(frame.scene, 0, at, o->turn_q30));
 }
 
-/* Moves a ball by steps smaller than a pixel. Checks that the power of its
- * highlight varies by at most 5 %, and that the position follows the ball. In
- * the last text, the highlight is barely above white; its power may vary more,
- * as it is too faint for a visible flare. */
+/* Moves a ball by steps smaller than a pixel. Checks that the power of the
+ * ball's highlight varies by at most 5 %, and that its position follows the
+ * ball. In the last text, the highlight is barely above white and may vary
+ * more, as it is too faint for a visible flare. */
 TEST(highlights_are_steady_in_motion)
 {
     enum { TEXTS = 5 };
@@ -202,7 +201,6 @@ TEST(highlights_are_steady_in_motion)
         }
 }
 
-/* Checks that highlights are bit-identical for any tiles and workers. */
 TEST(highlights_are_bit_identical)
 {
     static const char text[] = CAMERA STEEL(".03 .2") SUN BALL
@@ -241,8 +239,7 @@ TEST(highlights_are_bit_identical)
             }
 }
 
-/* ------------------------------------------------------------------- what is
- */
+/* -------------------------------------------- which objects are highlights */
 
 static int count_found_highlights(const char *text)
 {
@@ -253,8 +250,8 @@ static int count_found_highlights(const char *text)
 }
 
 /* Checks bright objects that are not highlights: visible lights, backgrounds,
- * shadow catchers and pixels below white. If no highlights are requested, none
- * must be searched. */
+ * shadow catchers and pixels below white. Without a request for highlights,
+ * none must be found. */
 TEST(other_bright_objects_are_no_highlights)
 {
     assert_int_equal(count_found_highlights(CAMERA STEEL(".05 .05") SUN BALL),
@@ -324,8 +321,8 @@ TEST(near_highlights_are_merged)
 /* ---------------------------------------------------------------- extremes */
 
 /* Checks that the power of a highlight is proportional to the light, up to
- * saturation. If the ball is one pixel, or its highlight is at the image
- * border, the highlight must have the power of its visible part. */
+ * saturation. A highlight on a ball of one pixel, or at the image border, must
+ * have the power of its visible part. */
 TEST(power_is_linear_up_to_saturation)
 {
     static char text[400];

@@ -275,8 +275,7 @@ TEST(rejects_invalid_objects)
 }
 
 /* Sets one word at a time to arbitrary values, with a valid checksum. Checks
- * that opening the file terminates and reads nothing outside the file
- * (ASan). */
+ * that opening the file ends and reads nothing outside the file (ASan). */
 TEST(any_word_is_rejected_or_harmless)
 {
     static const uint32_t value[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff};

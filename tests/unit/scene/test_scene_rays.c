@@ -68,7 +68,7 @@ static struct glint_scene_ray make_ray_from_doubles(const double from[3],
     return ray;
 }
 
-/* ------------------------------------------------------------- A1, A2, A3 */
+/* ------------------------------------------ vectors and planes (A1 to A3) */
 
 TEST(a1_unit_vectors)
 {
@@ -180,7 +180,7 @@ TEST(a3_plane_intersection)
     assert_int_equal(spot.t, 90 * ONE);
 }
 
-/* ------------------------------------------------------------- A4 and A5 */
+/* ---------------------------------------------------- triangles (A4, A5) */
 
 static double compute_double_area(const double a[3], const double b[3],
                                   const double c[3])
@@ -193,9 +193,9 @@ static double compute_double_area(const double a[3], const double b[3],
                 pow(u[0] * w[1] - u[1] * w[0], 2));
 }
 
-/* Tests a point by the area test, a simpler method. A point of the plane is
- * inside a triangle if the three triangles between the point and the sides
- * together have the area of the triangle, within .005. */
+/* Tests a point by the area test, a simpler method: a point of the plane is
+ * inside a triangle if the areas of the three triangles between the point and
+ * the sides sum to the area of the triangle, within .005. */
 static int is_inside_by_areas(const double v[9], const double p[3])
 {
     const double s = compute_double_area(v, v + 3, v + 6);
@@ -304,7 +304,7 @@ TEST(rays_through_edges_hit)
     }
 }
 
-/* ----------------------------------------------------------- A9, A12, A14 */
+/* ----------------------------- mirrored, refracted, missed (A9, A12, A14) */
 
 TEST(a9_mirrored_direction)
 {
@@ -392,7 +392,7 @@ TEST(a14_degenerate_triangles_are_missed)
     assert_false(ray_hits_triangle(&ahead, v, &spot));
 }
 
-/* --------------------------------------------------------------------- A15 */
+/* ----------------------------------------------------------- spheres (A15) */
 
 TEST(a15_sphere_intersections)
 {
@@ -473,7 +473,7 @@ TEST(a15_rays_at_the_rim)
     }
 }
 
-/* ------------------------------------------------------------------- leaks */
+/* --------------------------------------------------- rays in closed meshes */
 
 enum {
     SIDES = 12,
@@ -501,8 +501,7 @@ static void make_bumpy_ball_mesh(double at[BALL][3], uint32_t t[TRIANGLES][3],
     assert_int_equal(scene_make_ball(RINGS, SIDES, t), TRIANGLES);
 }
 
-/* Plain Q16.16, a simpler method: the intersection of [Moller97] in 32-bit
- * fixed point. */
+/* The intersection of [Moller97] in plain 32-bit Q16.16, a simpler method. */
 static int32_t mul_q16(int32_t a, int32_t b)
 {
     return (int32_t)(((int64_t)a * b) >> 16);

@@ -65,7 +65,7 @@ static int32_t shade_ray_red_q15(const struct glint_scene *s,
     return to.rgb_q15[0];
 }
 
-/* -------------------------------------------------------------------- A5 */
+/* --------------------------------------------------- nearest object (A5) */
 
 /* Checks three triangles, one behind the other, in any order: the nearest must
  * be visible. A triangle that the ray misses must never be the nearest. */
@@ -103,7 +103,7 @@ TEST(a5_nearest_triangle_is_visible)
     }
 }
 
-/* -------------------------------------------------------------------- A6 */
+/* ------------------------------------------------------ camera rays (A6) */
 
 TEST(a6_corner_rays)
 {
@@ -160,7 +160,7 @@ TEST(projection_inverts_pixel_rays)
     }
 }
 
-/* ---------------------------------------------------------------- A7, A8 */
+/* ----------------------------------- diffuse and specular light (A7, A8) */
 
 TEST(a7_diffuse_light_of_a_lamp)
 {
@@ -241,7 +241,7 @@ TEST(a8_phong_matches_double_precision)
     }
 }
 
-/* --------------------------------------------------------------------- A10 */
+/* ----------------------------------------------------------- shadows (A10) */
 
 /* Returns the light on a floor below a lamp at height 4. Unless HIDDEN is set,
  * a ball of radius 1 with its centre at height H is between the lamp and the
@@ -359,7 +359,7 @@ TEST(a10_penumbra_is_monotone)
         shade_ray_red_q15(s, make_ray_from_doubles(.1, .2, 10, 0, -1, 0)), 0);
 }
 
-/* ---------------------------------------------------------------- A11, A12 */
+/* ---------------------------------- transparency and refraction (A11, A12) */
 
 static void make_material_transparent(struct glint_scene_material *m)
 {
@@ -415,11 +415,10 @@ TEST(a11_transparent_ball_occludes_nothing)
     assert_true(behind > 3000 && within > behind + 3000);
 }
 
-/* A simpler method for the second hit of a ball, which fails. It computes
- * the point where a ray enters the ball of RADIUS, in floats. Returns
- * whether the point seems to be outside the ball, with a squared distance
- * from the centre that exceeds the squared radius by more than MORE. The
- * right answer is false. */
+/* A simpler method for the second hit of a ball, which fails: it computes in
+ * floats the point where a ray enters the ball of RADIUS. Returns whether this
+ * point seems to be outside the ball, with a squared distance from the centre
+ * above the squared radius by more than MORE. The right answer is false. */
 static int is_second_hit_outside(const double middle[3], double radius,
                                  const double d[3], double more)
 {
@@ -545,9 +544,9 @@ TEST(a12_glass_ball_refracts)
     assert_true(n > 2500);
 }
 
-/* Checks that rays inside a ball of index 1.5 that hit its surface beyond the
- * critical angle of 41.8 degrees are totally reflected, so that nothing is
- * visible. */
+/* Checks that rays inside a ball of refractive index 1.5 that hit its surface
+ * above the critical angle of 41.8 degrees are totally reflected, so that
+ * nothing is visible. */
 TEST(a12_total_reflection_inside_a_ball)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -576,7 +575,7 @@ TEST(a12_total_reflection_inside_a_ball)
     assert_in_range(dark, 33, 34);
 }
 
-/* --------------------------------------------------------------------- A13 */
+/* ---------------------------------------------------------- textures (A13) */
 
 TEST(a13_texture_coordinates)
 {

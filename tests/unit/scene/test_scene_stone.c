@@ -137,7 +137,7 @@ static const struct scene_dials one_sample = {
     "material a translucent a.glint fresnel off colour 1 .8 .6\n"             \
     "material grey phong .05 .6 .35\n"
 
-/* The scene with camera and sun on the other side, at negative z. */
+/* Camera and sun of STAGE mirrored to negative z. */
 #define STAGE_LEFT                                \
     "camera fov 40 at 0 1.4 -4.5 toward 0 .4 0\n" \
     "light sun direction .5 .7 -.6 colour 4e4 3.6e4 3e4\n" LOOKS
@@ -153,7 +153,7 @@ static const struct scene_dials one_sample = {
     "sphere c at 1.1 .5 .2 radius .5 turn 0 1 0 -100 material a\n" \
     "plane p at 0 0 0 normal 0 1 0 material grey\n"
 
-/* --------------------------------------------------------------- reference */
+/* ------------------------------------------- comparison with the reference */
 
 /* Material with a coat whose reflectance would exceed 1 at grazing angles. */
 #define BRIGHT(specular)                                                 \
@@ -197,7 +197,7 @@ TEST(image_equals_the_reference)
     }
 }
 
-/* -------------------------------------------------------------------- maps */
+/* -------------------------------------------------------------- light maps */
 
 /* Returns the PSNR between A and B, dB. */
 static double compute_psnr(const int32_t *a, const int32_t *b)
@@ -210,8 +210,8 @@ static double compute_psnr(const int32_t *a, const int32_t *b)
 }
 
 /* Checks the seams of light maps. The texture repeats twice around a ball, and
- * each repetition is symmetric. So the image must not change if the ball is
- * rotated by quarter turns, which shows the seam of the map or its interior. */
+ * each repetition is symmetric. So quarter turns of the ball, which show the
+ * seam of the map or its interior, must not change the image. */
 TEST(seams)
 {
     static int32_t first[3 * PIXELS], light[3 * PIXELS];
@@ -234,8 +234,8 @@ TEST(seams)
     }
 }
 
-/* Checks texture charts that are stretched, sheared or mirrored. Each texel
- * must be lit, and seen, at its position on the surface. */
+/* Checks texture charts that are stretched, sheared or mirrored: each texel
+ * must be lit and drawn at its position on the surface. */
 TEST(stretch)
 {
     static const char *const places[] = {
@@ -284,7 +284,7 @@ TEST(kernel_beyond_map)
     kernel = 15;
 }
 
-/* -------------------------------------------------------------------- bits */
+/* -------------------------------------------------------------- scheduling */
 
 #define MIXED                       \
     STAGE "environment sky\n" BALLS \
@@ -317,8 +317,7 @@ TEST(image_is_bit_identical)
     }
 }
 
-/* ------------------------------------------------------------------- updates
- */
+/* ----------------------------------------------------- incremental updates */
 
 /* Rotates the camera about the origin by ANGLE, radians, and draws the
  * scene. */
@@ -338,8 +337,8 @@ static void draw_from_rotated_camera(struct drawn *d, double angle,
 }
 
 /* Rotates the camera step by step. Checks that each texel is computed once,
- * when it becomes visible, and that no others are. All images must equal those
- * of a newly opened scene. */
+ * when it becomes visible, and that all images equal those of a newly opened
+ * scene. */
 TEST(updates)
 {
     static int32_t turned[3 * PIXELS], fresh[3 * PIXELS];
@@ -477,8 +476,7 @@ TEST(albedo_0_and_1)
     side = 64;
 }
 
-/* ------------------------------------------------------------------ refusals
- */
+/* --------------------------------------------------------- rejected scenes */
 
 static void expect_scene_is_rejected(const char *text, const char *reason)
 {

@@ -64,7 +64,7 @@ static struct glint_ward_material make_metal_material(double x, double y)
 
 static const struct glint_ward_options eight = {8, GLINT_WARD_CONSTANT, 0, 0};
 
-/* ----------------------------------------------------------------- furnace */
+/* ------------------------------------------------- albedo in uniform light */
 
 /* Returns the albedo of the lobe with normalisation NORM in uniform light of 1,
  * integrated in double precision. NO: cosine of the angle between normal and
@@ -125,7 +125,7 @@ TEST(furnace_albedo_is_1)
     free(m.data);
 }
 
-/* --------------------------------------------------------------- reference */
+/* --------------------------------------------- lookups in double precision */
 
 static double decode_texel(const struct glint_environment *e, int k, size_t i,
                            int c)
@@ -168,8 +168,8 @@ static double look_up_between_levels(const struct glint_environment *e,
                                 look_up_level_in_double(e, k + 1, toward, c);
 }
 
-/* Sets SLOPE to the slopes of N half vectors that sample the lobe of alpha 1,
- * all with the same footprint. Returns b, the factor of the footprints. */
+/* Sets SLOPE to the slopes of N half vectors that sample Ward's lobe of alpha
+ * 1, all with the same footprint. Returns the factor of the footprints. */
 static double compute_half_vector_slopes(int n, const double alpha[2],
                                          double slope[GLINT_WARD_SAMPLES][2])
 {
@@ -264,7 +264,7 @@ TEST(samples_approximate_the_sum_over_texels)
     assert_true(least >= 60);
 }
 
-/* -------------------------------------------------------------------- rows */
+/* --------------------------------------------------- requirements B1 to B8 */
 
 /* Sets TO to the ball's image, averaged over N uniform directions of the
  * hemisphere. Each is looked up in the mipmap level that matches its solid
@@ -443,8 +443,8 @@ TEST(b6_more_samples_come_closer)
     free(m.data);
 }
 
-/* Checks extreme environments: black, one texel of 1e9, and scales of 1e-6 ..
- * 1e9. The image of a ball must only be scaled by them. */
+/* Checks that extreme environments (black, one texel of 1e9, scales of 1e-6 ..
+ * 1e9) only scale the image of a ball. */
 TEST(extreme_environments_only_scale_the_image)
 {
     static ward_picture one, got;

@@ -90,7 +90,7 @@ TEST(more_products_approximate_better)
     }
 }
 
-/* ---------------------------------------------------------------- refusals */
+/* ---------------------------------------------------------- rejected files */
 
 /* Damages the file of an intact translucent medium; the test seals the checksum
  * afterwards. */
@@ -102,7 +102,8 @@ static int16_t *kernel_taps(const struct glint_translucent_header *h,
     return (int16_t *)(void *)(data + h->tap_at);
 }
 
-/* Sets column taps that are in their range, but whose sum is too large. */
+/* Sets column taps (kernel entries) that are in range, but with too large a
+ * sum. */
 static void set_too_large_column_taps(struct glint_translucent_header *h,
                                       unsigned char *data)
 {

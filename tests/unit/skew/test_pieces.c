@@ -11,8 +11,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
-/* A ray of a piece: start point and direction of the ray, and its position W in
- * the wavelength band. */
+/* A ray of a piece (range of light directions): start point, direction, and
+ * position W in the wavelength band. */
 struct entry {
     double x_mm, y_mm, direction[2], w;
 };

@@ -68,15 +68,15 @@ static void free_model(void)
     data = NULL;
 }
 
-/* A bundle of the model, the exact path of the same ghost, and sums of the
- * errors of the bundle. */
+/* A ray bundle of the model, the exact path of the same ghost, and sums of the
+ * bundle's errors. */
 struct meter {
     struct glint_transfer t;
     struct glint_path path;
     double direction[3];
     int n; /* number of compared rays that pass the lens */
-    /* THROUGH: exact rays that pass; LOST: how many of them no bundle
-     * contains */
+    /* THROUGH: exact rays that pass; LOST: those of them outside the pupil
+     * box */
     int through, lost;
     double places2, stops2, energies2;
     /* max distance between a grid vertex and its exact ray, pixels */
@@ -116,8 +116,8 @@ static bool ray_passes_stop(const struct meter *m, double x_mm, double y_mm,
 }
 
 /* Traces a grid of rays over the front element. Counts the rays that pass, and
- * how many of them are outside the pupil box. Without a bundle, all rays that
- * pass count as outside. */
+ * those of them outside the pupil box. Without a ray bundle, all count as
+ * outside. */
 static void count_passing_rays(struct meter *m, bool has_bundle)
 {
     const double x = m->t.sign, y = m->t.side ? -m->t.sign : m->t.sign;
@@ -170,7 +170,7 @@ static void compare_grid_ray(struct meter *m, int i, int j,
     m->n++;
 }
 
-/* Compares bundles of random ghosts, directions and wavelengths. */
+/* Compares ray bundles of random ghosts, directions and wavelengths. */
 static void compare_random_bundles(struct meter *m)
 {
     static struct glint_vertex vertex[NODES * NODES];

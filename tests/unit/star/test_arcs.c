@@ -16,8 +16,8 @@
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
-/* Returns the mean of the pattern over the frequencies q of 0.8 to 1.2 times
- * AT, in the direction PHI: |F|^2 / A^2, times q^3 / AT^3, where F is the
+/* Returns the mean of the diffraction pattern |F|^2 / A^2 times q^3 / AT^3 over
+ * the frequencies q of 0.8 to 1.2 times AT, in the direction PHI. F is the
  * amplitude and A the area of the stop. */
 static double
 mean_scaled_pattern(double (*f)(const struct glint_arcs *, double, double),

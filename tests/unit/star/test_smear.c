@@ -72,7 +72,7 @@ static void draw_star_of_stop(const struct stop *s, double power_log2,
     star_canvas_close(&canvas);
 }
 
-/* ------------------------------------------------------------------ direct */
+/* -------------------------------------------------------- direct summation */
 
 /* Samples the amplitudes of the stop, and integrates their squares. */
 static void set_stop_amplitudes(const struct stop *s)
@@ -225,7 +225,6 @@ TEST(total_light_does_not_depend_on_size)
     }
 }
 
-/* Checks that tiles and workers do not change any bit of the image. */
 TEST(image_is_bit_identical)
 {
     const struct glint_iris iris = {.dust = 0.05, .dust_seed = 3};

@@ -65,7 +65,7 @@ static double read_green_light_at(double x, double y)
     return star_canvas_green(linear_q20, WIDTH, x, y);
 }
 
-/* ------------------------------------------------------------------- shape */
+/* ---------------------------------------------- spikes, rings, total light */
 
 /* Returns the number of peaks on a circle of RADIUS pixels that are brighter
  * than twice the mean of the circle. */
@@ -385,9 +385,9 @@ static int count_lit_pixels(void)
     return n;
 }
 
-/* Checks the predicted number of pixels of a star. For a round stop, it must be
- * 0.75 to 1.2 times the number of lit pixels. For six blades, it may be 1 to 2
- * times, as pixels of spikes are counted twice. */
+/* Checks the predicted number of pixels of a star: for a round stop, 0.75 to
+ * 1.2 times the number of lit pixels; for six blades, 1 to 2 times, as pixels
+ * of spikes are counted twice. */
 TEST(predicts_the_number_of_pixels)
 {
     static const double place[][2] = {{48, 41}, {0, 0}, {-20, 60}};

@@ -27,7 +27,7 @@ static const struct glint_real all = {0, 0};
 /* FAINTEST: light of 1 / 26357, which changes a code near black by 1/8 */
 static const struct glint_real eighth = {0x4f8f7a00, -45};
 
-/* ------------------------------------------------------------------ bits */
+/* ------------------------------------------------- scheduling and hashes */
 
 /* Draws LIGHTS[N_LIGHTS] in tiles of 2^TILE_LOG2 pixels. */
 static void draw_stars(const struct glint_star_light *lights, int n_lights,
@@ -124,10 +124,10 @@ TEST(images_match_their_hash)
 
 /* -------------------------------------------------------------- extremes */
 
-/* Raises the power from invisible to saturated. Checks that no pixel becomes
- * darker, except by one code due to rounding, for a light at a pixel's
- * centre, at its corner, on the image border, and 1000 px off two sides of
- * the image. */
+/* Raises the power from invisible to saturated, for a light at a pixel's
+ * centre, at its corner, on the image border, and 1000 px off two sides of the
+ * image. Checks that no pixel becomes darker, except by one code due to
+ * rounding. */
 TEST(more_power_never_darkens_codes)
 {
     static const int place_q8[][2] = {{48 * 256 + 128, 41 * 256 + 128},

@@ -200,8 +200,7 @@ TEST(blends_codes)
         }
 }
 
-/* Checks two rows: where one is completely covered, the other is not
- * covered. */
+/* Checks two rows, each completely covered where the other is not. */
 TEST(blends_two_rows)
 {
     struct stripes s = make_grey_stripes(64, 9000);

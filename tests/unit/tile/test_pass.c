@@ -207,7 +207,7 @@ static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
     free(m.data);
 }
 
-/* two images, in linear light (Q20) or in codes at the same addresses */
+/* two images, as linear light (Q20) or as pixel codes at the same addresses */
 static int32_t one_q20[BYTES / 4], other_q20[BYTES / 4];
 static uint8_t *const one = (uint8_t *)one_q20, *const other =
                                                     (uint8_t *)other_q20;

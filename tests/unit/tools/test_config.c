@@ -94,7 +94,7 @@ static void expect_stderr_message(const char *want)
     assert_string_equal(text, want);
 }
 
-/* ----------------------------------------------------------------- taking */
+/* ---------------------------------------------------------- valid entries */
 
 static void expect_applied_options(const char *text, size_t bytes,
                                    const char *log)
@@ -191,7 +191,7 @@ TEST(values_outlive_the_text)
     config_free(&config);
 }
 
-/* --------------------------------------------------------------- mistakes */
+/* ------------------------------------------------------- rejected entries */
 
 static void expect_config_error(const char *text, size_t bytes,
                                 const char *want)
@@ -250,9 +250,9 @@ TEST(reports_mistakes_with_their_line)
                         "x.ini:1: contains a control character");
 }
 
-/* Checks an error that the command itself reports. Its message must be
+/* Checks an error that the command itself reports: its message must be
  * preserved and get the line number. Earlier entries must be applied, later
- * ones must not. */
+ * ones not. */
 TEST(bad_value_keeps_the_commands_message)
 {
     struct config config = make_empty_config();
@@ -321,8 +321,6 @@ static void write_config_file(const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
-/* Checks that options of the command line override those of the file, which are
- * applied first. */
 TEST(command_line_overrides_the_file)
 {
     char *line[] = {"live",     "--grid", "32",         "in", "--conf",

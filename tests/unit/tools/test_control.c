@@ -254,8 +254,8 @@ TEST(file_lines_are_applied_in_order)
     controls_close(&input);
 }
 
-/* Checks that lines from a pipe are applied as soon as they are complete, and
- * that invalid lines are counted but do not end reading. */
+/* Checks that lines from a pipe are applied once complete, and that invalid
+ * lines are counted but do not end reading. */
 TEST(pipe_lines_are_applied_when_complete)
 {
     int to;

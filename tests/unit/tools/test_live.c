@@ -71,9 +71,9 @@ static void write_live_config(const char *text)
 }
 
 /* Runs `glint live -d FAKE -o null -q LINE` with standard error in a file.
- * Returns the exit code. The stop is a circle unless LINE contains the option
- * stop: computing the starburst of rounded blades at each start and reload
- * would take 100 times as long as the rest of the test. */
+ * Returns the exit code. Without the option stop in LINE, the stop is a circle:
+ * the starburst of rounded blades, computed at each start and reload, would
+ * take 100 times as long as the rest of the test. */
 static int run_live_command(const char *line)
 {
     static char words[1024];
@@ -122,7 +122,7 @@ static void expect_closed_without_leaks(void)
     assert_int_equal(fake_camera_count_leaks(), 0);
 }
 
-/* ------------------------------------------------------------------ frames */
+/* ------------------------------------------------------- frames and memory */
 
 static int asked[200], blocks[200];
 
@@ -158,8 +158,8 @@ static void count_allocations_at_stream_start(void)
 }
 
 /* Runs LINE and calls FOLLOW at each wait. Checks that streaming was started
- * N_STARTS times, and that all memory was allocated before each start: between
- * start number i and the wait number wait[i], nothing may be allocated. */
+ * N_STARTS times, each time after all memory was allocated: between start
+ * number i and the wait number wait[i], nothing may be allocated. */
 static void check_allocations_before_streaming(const char *line,
                                                void (*follow)(int wait),
                                                const int *wait, int n_starts)
@@ -375,7 +375,7 @@ TEST(snapshot_waits_for_the_next_frame)
     assert_int_equal(unlink(path), 0);
 }
 
-/* -------------------------------------------------------------- lost again */
+/* ------------------------------------------- unplugged and changed cameras */
 
 TEST(unplugged_camera_ends_the_run)
 {
@@ -408,7 +408,7 @@ TEST(adapts_to_changed_camera_sizes)
     assert_int_equal(blocks[149], blocks[29]);
 }
 
-/* ---------------------------------------------------------------- failures */
+/* ----------------------------------------------- failing calls and signals */
 
 /* Makes each call fail once. Checks that frames continue, or that the run ends
  * with an exit code and a message. */

@@ -22,9 +22,9 @@ static struct seen {
     double first_down_s, last_change_s;
 } seen;
 
-/* Simulates SECONDS of a machine on which a frame of quality step S takes
- * cost_ms[S]. A frame that takes longer than a period misses the frames that
- * arrive meanwhile. */
+/* Simulates SECONDS on a machine that draws a frame of quality step S in
+ * cost_ms[S]. A frame that takes longer than a frame period misses the frames
+ * that arrive meanwhile. */
 static void simulate_machine_for_seconds(const double *cost_ms, double seconds)
 {
     double now_s = 0;
@@ -148,7 +148,6 @@ TEST(slow_step_is_tried_less_and_less)
     assert_true(seen.n_missed < seen.n_frames / 100);
 }
 
-/* Checks that a finer step that was too slow once is tried again later. */
 TEST(slow_step_is_tried_again_later)
 {
     static const double heavy[8] = {70, 50, 40, 12, 8, 6, 5, 4};

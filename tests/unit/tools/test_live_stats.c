@@ -109,7 +109,7 @@ TEST(full_bin_halves_all_bins)
     assert_true(live_stats_latency_ms(&stats.total, 67) == 2000);
 }
 
-/* -------------------------------------------------------------------- sums */
+/* ----------------------------------------------------- sums, printed lines */
 
 static const struct live_frame_times frames[] = {
     {.shown = true,

@@ -83,7 +83,6 @@ TEST(poses_are_sorted_by_frame)
     poses_close(&poses);
 }
 
-/* Checks that a pose is mirrored in a scene of the other handedness. */
 TEST(other_handedness_mirrors_poses)
 {
     static const char text[] = "0,ball,1,2,3,2,.4,.6,.8\n0,sun,1,2,2\n";
@@ -144,8 +143,6 @@ TEST(rejects_wrong_lines)
                      GLINT_E_IO);
 }
 
-/* Checks that poses from a pipe are returned as soon as their lines are
- * complete. */
 TEST(pipe_returns_complete_lines)
 {
     static const char parts[4][64] = {"0,ba",
@@ -191,8 +188,6 @@ TEST(pipe_returns_complete_lines)
     unlink(scratch_file);
 }
 
-/* Checks that a pipe that is written without pause is read only up to a limit
- * per frame. */
 TEST(pipe_is_read_up_to_a_limit_per_frame)
 {
     static char lines[1 << 18];

@@ -110,8 +110,9 @@ TEST(long_work_prints_an_estimate_once)
                         "with a larger --tolerance\n");
 }
 
-/* Checks a clock that starts at the first report: it does not include the time
- * before. On request, the estimate must be printed for short work, too. */
+/* Checks an estimate whose clock starts at the first report, so that it does
+ * not include the time before. On request, it must be printed for short work,
+ * too. */
 TEST(clock_of_first_report)
 {
     struct tool_progress p = start_fake_progress(false, false);

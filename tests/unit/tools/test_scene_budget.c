@@ -143,7 +143,6 @@ TEST(finest_fitting_level_is_reached)
     assert_int_equal(b.level, 1);
 }
 
-/* Checks that a level that is too slow is tried again only rarely. */
 TEST(slow_level_is_rarely_tried)
 {
     struct scene_budget b = make_scene_budget();
@@ -167,7 +166,7 @@ TEST(single_slow_frame_changes_nothing)
 /* Simulates 200 frames of a scene and a flare with a common budget of 60 ms.
  * The flare uses the time that the scene leaves, at least LEAST_MS (quality 0)
  * and at most MOST_MS (quality 1). Checks that the scene ends at LEVEL, and
- * that at most 10 frames after the first 20 are late. */
+ * that at most 10 frames are late after the first 20. */
 static void check_budget_shared_with_flare(double least_ms, double most_ms,
                                            int level)
 {

@@ -66,9 +66,9 @@ TEST(measures_db_above_the_quality_levels)
     assert_true(fabs(sweep_compute_gain_above_front(mean, n, 8) + 2) < 1e-9);
 }
 
-/* Checks the Pareto front of many settings. No setting may dominate a setting
- * on the front, and each setting off the front must be dominated by one on it.
- * Values are taken from a few numbers, so that many are equal. */
+/* Checks the Pareto front of many settings: no setting may dominate one on the
+ * front, and one on the front must dominate each other setting. Values are few
+ * numbers, so that many are equal. */
 TEST(pareto_front_of_many_settings)
 {
     enum { N = 60 };

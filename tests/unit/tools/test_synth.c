@@ -124,8 +124,6 @@ TEST(random_numbers_are_independent)
     assert_true(synth_ranges_parse(&ranges, "star=0", &why));
 }
 
-/* Checks that the variance of sensor noise is that of photon noise plus read
- * noise. */
 TEST(noise_is_photon_and_read_noise)
 {
     enum { SIDE = 256, N = 3 * SIDE * SIDE };

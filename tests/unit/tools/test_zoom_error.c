@@ -70,8 +70,8 @@ TEST_CLOSE
 }
 
 /* Measures the errors of those ghosts whose first error is below 0, at the zoom
- * position ALONG with the lens table LENS. Lights are at angles up to MAX_DEG,
- * shifted by the fraction SHIFT of their spacing. */
+ * position ALONG, for the lens table LENS. Lights are at angles up to MAX_DEG,
+ * shifted by SHIFT times their spacing. */
 static void measure_errors_up_to_angle(double max_deg,
                                        const struct glint_prescription *lens,
                                        double along, double shift,
@@ -166,8 +166,8 @@ TEST(angles_where_ghosts_vanish_are_measured)
 }
 
 /* Checks that lights are measured up to 1.5 times the half diagonal of the
- * image. The model of this test was baked for smaller angles. So at the last
- * angles, the error of a ghost is the complete ghost. */
+ * image. The model of this test was baked for smaller angles, so at the last
+ * angles the whole light of a ghost is its error. */
 TEST(lights_reach_beyond_the_corner)
 {
     const double corner_mm = 0.5 * hypot(24, 16);

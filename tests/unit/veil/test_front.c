@@ -48,7 +48,7 @@ make_front_table(const struct glint_front_dirt *dirt,
     return table;
 }
 
-/* ---------------------------------------------------------------- the table */
+/* ----------------------------------------------- fraction of dirt per node */
 
 TEST(table_has_the_dust_fractions)
 {
@@ -76,10 +76,10 @@ TEST(table_has_the_dust_fractions)
     glint_front_free(dirt);
 }
 
-/* Checks how the lens mirrors a mask over the left half of the front (seen from
- * the sensor, x right). It must cover the right half of the image, whose light
- * passes the left half of the front. The upper side of the mask must be the
- * upper side of the front. */
+/* Checks how the lens mirrors a mask over the left half of the front element
+ * (seen from the sensor, x right): it must cover the right half of the image,
+ * whose light passes the left half of the element. The upper side of the mask
+ * must be the upper side of the element. */
 TEST(mask_is_mirrored_by_the_lens)
 {
     static const uint8_t left[4] = {0, 255, 0, 255}, high[4] = {0, 0, 255, 255};
@@ -120,7 +120,7 @@ TEST(rejects_invalid_dirt)
     glint_front_free(NULL);
 }
 
-/* ---------------------------------------------------------------- the light */
+/* ------------------------------------------------------- light of the haze */
 
 /* A table of random fractions, and haze whose light is the same in all
  * cells. */
@@ -215,9 +215,9 @@ TEST(linear_light_is_interpolated_between_nodes)
     close_haze_scene(&s);
 }
 
-/* Checks images in codes. Tiles, workers and order must not change any bit, for
- * dim light and for light above white. More light must make no pixel darker,
- * and every machine must draw the same image. */
+/* Checks images of pixel codes. Tiles, workers and order must not change any
+ * bit, for dim light and for light above white. More light must make no pixel
+ * darker, and every machine must draw the same image. */
 TEST(codes_are_bit_identical)
 {
     const uint64_t want = UINT64_C(0x5b5e6baa4b36eb8a);

@@ -188,10 +188,10 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     close_veil_canvas(&c);
 }
 
-/* Checks, in each format, that the veil of uniform white is uniform. The veil
- * in a black spot must have the fraction V of the light of the white around it;
- * V is the veiling glare index of ISO 9358. For this, the spread function has
- * the fraction V / (1 - V) of the light. */
+/* Checks, in each format, that the veil of uniform white is uniform, and that
+ * the veil in a black spot has the fraction V of the light of the white around
+ * it; V is the veiling glare index of ISO 9358. For this, the spread function
+ * has the fraction V / (1 - V) of the light. */
 TEST(black_spot_has_the_veiling_glare_index)
 {
     static uint8_t codes[4 * MAX_WIDTH * MAX_HEIGHT];
@@ -268,7 +268,7 @@ TEST(veil_of_an_image_has_its_colours)
     close_veil_canvas(&c);
 }
 
-/* ------------------------------------------------------------------ flicker */
+/* ------------------------------------------------------------ moving lamps */
 
 /* Moves a lamp by 0.05 px per frame. Checks that the total light of the veil
  * does not change, and that no pixel changes by more than the slope of the
@@ -306,7 +306,7 @@ TEST(moving_lamp_keeps_the_veil_steady)
     close_veil_canvas(&c);
 }
 
-/* --------------------------------------------------------------------- bits */
+/* --------------------------------------------------- scheduling and hashes */
 
 /* Sets the spread function S to random numbers, without floating point. */
 static void set_random_spread(struct glint_veil_spread *s,

@@ -20,10 +20,10 @@ enum {
     MAX_DEG = 9,
     GHOSTS = 7,
     CUT = 3,  /* index of a ghost that has no light above 7 degrees */
-    UNCUT = 2 /* index of a ghost that no barrel clips */
+    UNCUT = 2 /* index of a ghost that no barrel aperture clips */
 };
 
-/* A zoom lens whose second group moves by 12 mm together with its barrels. The
+/* A zoom lens whose second group moves by 12 mm with its barrel apertures. The
  * first column is the position at the end of the zoom. */
 static const char table[] = "name t\n"
                             "f-number 8\n"
@@ -79,7 +79,7 @@ static bool is_in_a_range(double (*range)[2], int n, double lo, double hi)
 }
 
 /* Checks that common ranges of angles cover every range of both positions, and
- * that each common range begins and ends where a range of one position does. */
+ * that they begin and end where a range of one position does. */
 TEST(ranges_cover_those_of_both_positions)
 {
     int wider = 0;
@@ -153,8 +153,8 @@ TEST(touching_ranges_are_joined)
     assert_true(full[0][0] == 0 && full[0][1] == 0.1);
 }
 
-/* Returns the index in RAYS of the ray that has the position of ray I of OF;
- * -1: there is none. */
+/* Returns the index of the ray in RAYS that has the position of ray I of OF, or
+ * -1 if there is none. */
 static int find_ray_at_position(const struct glint_zone_rays *rays,
                                 const struct glint_zone_rays *of, int i)
 {
@@ -173,8 +173,8 @@ static double compute_ray_margin(const struct glint_zone_rays *rays, int i)
 }
 
 /* Checks rays that are traced for both positions: they land where they do at a
- * single position. Their distance outside the rims is the smaller one of both
- * positions. */
+ * single position. Their distance outside the rims is the smaller of the
+ * two. */
 TEST(rays_land_as_at_a_single_position)
 {
     static struct glint_visible_profile profile;
@@ -239,7 +239,7 @@ TEST(boxes_contain_those_of_both_positions)
 }
 
 /* Returns the number of green rays that pass GHOST at DEGREES in the model
- * DATA; -1: the model has no polynomials there. */
+ * DATA, or -1 if the model has no polynomials there. */
 static int count_passing_green_rays(const unsigned char *data, size_t bytes,
                                     int ghost, double degrees)
 {
@@ -274,7 +274,7 @@ static int count_passing_green_rays(const unsigned char *data, size_t bytes,
     return n;
 }
 
-/* Checks that the model contains a barrel that clips only at the other
+/* Checks that the model contains a barrel aperture that clips only at the other
  * position: the rear one, which is a fifth as wide there. */
 TEST(barrel_of_the_other_position_is_chosen)
 {
@@ -306,8 +306,8 @@ TEST(barrel_of_the_other_position_is_chosen)
 }
 
 /* Checks a ghost that is visible only at the other zoom position. A model baked
- * together with that position must have polynomials for the ghost. Its barrels
- * must block all light at its own position. */
+ * together with that position must have polynomials for the ghost, whose barrel
+ * apertures must block all light at the model's own position. */
 TEST(ghost_visible_at_the_other_position_is_baked)
 {
     const bool ghosts[GHOSTS] = {[CUT] = true};
@@ -336,7 +336,6 @@ TEST(ghost_visible_at_the_other_position_is_baked)
         free(data[k]);
 }
 
-/* Checks that a table of a different lens is rejected as the other position. */
 TEST(rejects_a_different_lens)
 {
     struct glint_prescription other = at[1];

@@ -44,8 +44,8 @@ TEST(wide_angle_ghosts_are_marked_far)
     assert_false(visible.far);
 }
 
-/* Makes the zone of GHOST between the angles DEG and finds its barrels, by the
- * rules for lights beyond 60 degrees if FAR, otherwise by the normal rules. */
+/* Makes the zone of GHOST between the angles DEG and chooses its barrel
+ * apertures. FAR: by the rules for lights beyond 60 degrees. */
 static void find_barrels_of_zone(int ghost, const double deg[2], bool far,
                                  struct glint_zone_rays *rays)
 {
@@ -65,9 +65,9 @@ enum { GRAZED = 61 };
 static const double grazed_deg[2] = {82.85, 83.25};
 
 /* Checks a ghost whose rays pass the second surface, almost a hemisphere,
- * within 0.003 of its rim. Rays outside the rim are invalid. The barrel at this
- * surface must be found, as it blocks a part of the light, although no ray
- * passes more than 1e-3 outside. */
+ * within 0.003 of its rim. Rays outside the rim are invalid. The barrel
+ * aperture there must be found, as it blocks a part of the light, although no
+ * ray passes more than 1e-3 outside. */
 TEST(grazed_barrel_is_found)
 {
     static struct glint_zone_rays rays;
@@ -80,10 +80,10 @@ TEST(grazed_barrel_is_found)
     assert_true(rays.missed_cut > 1e-4);
 }
 
-/* Checks that the barrel that blocks most of the rays that pass the glass is
- * chosen first, even if other barrels block more rays in total. A ray that
- * misses a surface counts as outside its rim, so the barrel there can block it:
- * four barrels block all such rays. */
+/* Checks that the barrel aperture that blocks most of the rays that pass the
+ * glass is chosen first, even if others block more rays in total. Rays that
+ * miss a surface count as outside its rim: here four barrel apertures block all
+ * such rays. */
 TEST(barrel_that_blocks_most_is_first)
 {
     static struct glint_zone_rays rays;
@@ -115,9 +115,9 @@ static const struct glint_tolerance tolerance = {.sensor_mm = 7.5e-4,
                                                  .brightness = &brightness};
 static struct glint_zone_buffers buffers;
 
-/* Fits the zone of the grazed barrel, by the rules for lights beyond 60 degrees
- * if FAR is set. One in STOPPED rays is marked as blocked for a reason that the
- * fit cannot represent; STOPPED 0: no ray is. */
+/* Fits the zone of the grazed barrel aperture. FAR: by the rules for lights
+ * beyond 60 degrees. One in STOPPED rays is marked as blocked for a reason that
+ * the fit cannot represent; STOPPED 0: none is. */
 static void fit_zone_of_grazed_barrel(bool far, int stopped,
                                       struct glint_fitted_system *system,
                                       struct glint_zone_errors *errors)
@@ -149,7 +149,8 @@ static void free_fitted_system(struct glint_fitted_system *system)
         free(system->output[--system->n_outputs].coef);
 }
 
-/* Returns the RMS error of the fitted barrel over the rays that graze it. */
+/* Returns the RMS error of the fitted barrel aperture over the rays that graze
+ * it. */
 static double compute_barrel_rms_error(const struct glint_fitted_system *system)
 {
     const struct glint_fitted_output *o =
@@ -176,10 +177,10 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
     return sqrt(sum / n);
 }
 
-/* The complete ghost lies within 0.003 of the barrel's rim. Checks that the
- * rules for lights beyond 60 degrees fit the grazed barrel with an error below
- * a hundredth of that range. The rules for lights nearer to the axis must fit
- * it less precisely, as such barrels matter little there. */
+/* The complete ghost lies within 0.003 of the rim of the barrel aperture.
+ * Checks that the rules for lights beyond 60 degrees fit the grazed aperture
+ * with an error below a hundredth of this. Those for lights nearer to the axis
+ * must fit it less precisely, as it matters little there. */
 TEST(grazed_barrel_is_fitted_within_its_margin)
 {
     struct glint_fitted_system system;
@@ -192,9 +193,9 @@ TEST(grazed_barrel_is_fitted_within_its_margin)
     }
 }
 
-/* Checks the rules for lights beyond 60 degrees: rays that pass although
- * barrels should block them count as errors of the outline. Here these are a
- * tenth of the visible rays, which is five times the tolerance. */
+/* Checks the rules for lights beyond 60 degrees: rays that pass although barrel
+ * apertures should block them count as errors of the outline. Here these are a
+ * tenth of the visible rays, five times the tolerance. */
 TEST(leaking_rays_count_as_outline_errors)
 {
     struct glint_fitted_system system;

@@ -72,8 +72,8 @@ static void set_transfer_curve(int fd)
     must_ioctl(fd, VIDIOC_S_FMT, &format, "VIDIOC_S_FMT");
 }
 
-/* Returns the index of the HDMI output, which is the first that accepts DV
- * timings; -1: there is none, as with v4l2loopback. */
+/* Returns the index of the HDMI output, the first that accepts DV timings, or
+ * -1 if there is none, as with v4l2loopback. */
 static int find_hdmi_output(int fd)
 {
     struct v4l2_output output = {.index = 0};
@@ -197,7 +197,7 @@ static uint32_t wait_for_free_buffer(const struct feed *feed, long i)
     return buffer.index;
 }
 
-/* Writes a frame by write(), for v4l2loopback, which does not count queued
+/* Writes a frame by write() to v4l2loopback, which does not count queued
  * frames. */
 static void write_frame(int fd, const struct frame *frame)
 {
