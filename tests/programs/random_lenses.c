@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * random_lenses SEED NUMBER [--table] - bakes a random but valid lens
- * (support/random_lens.h) as a draft. Compares an image of its model, in linear
- * light and in codes, with the exact image.
+ * (support/random_lens.h) as a draft. Compares an image of its model, as linear
+ * light and as pixel codes, with the exact image.
  *
  * Prints a line: number of the lens; result (drawn; dark in both images;
  * rejected by the bake); number of invalid random tables before this lens;

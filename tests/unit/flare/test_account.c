@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the frame statistics of ray bundles. Each outcome of a bundle (drawn,
- * closed, faint, ...) must have its own cause, and counts must equal those of
- * the drawn frame. The images of single ghosts, lights and wavelengths must add
- * up to the complete image.
+ * Tests the frame statistics of ray bundles. Each outcome of a bundle (drawn;
+ * closed, as no ray passes; faint; ...) must have its own cause, and counts
+ * must equal those of the drawn frame. The images of single ghosts, lights and
+ * wavelengths must add up to the complete image.
  */
 #include <math.h>
 #include <stdlib.h>

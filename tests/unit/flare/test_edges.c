@@ -2,7 +2,7 @@
  *
  * Compares the light that an edge adds to each pixel with the area of the pixel
  * to the right of the edge, computed by hand. The area is rounded to 1/256
- * pixel for images in codes, to 1/65536 for linear images.
+ * pixel for images of pixel codes, to 1/65536 for linear images.
  */
 #include <stdint.h>
 #include <stdlib.h>

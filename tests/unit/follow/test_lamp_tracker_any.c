@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests tracking with random input: results stay within limits and do not
- * depend on the order of spots.
+ * depend on the order of spots (lamps found in one frame).
  */
 #include "glint/lamp_tracker.h"
 

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Checks how the tracker pairs seekers (tracks that need a spot) with spots,
- * cheapest pair first. The reference is a slow search of all pairs.
+ * Checks how the tracker pairs seekers (tracks that need a spot) with spots
+ * (lamps found in one frame), cheapest pair first. The reference is a slow
+ * search of all pairs.
  */
 #include "support/rng.h"
 #include "follow/match.h"

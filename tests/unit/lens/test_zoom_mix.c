@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests the interpolation of two positions of a zoom lens, with models whose
- * polynomials can be interpolated by hand. Each barrel must be matched to a
- * similar barrel of the other position. A barrel without a match must open
+ * polynomials can be interpolated by hand. Each barrel aperture must be matched
+ * to a similar one of the other position. One without a match must open
  * gradually towards the position that lacks it. Energies must be interpolated
  * as the roots that the file stores.
  */

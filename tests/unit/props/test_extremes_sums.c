@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests sums of light at their limits: thousands of lights, bundles that sum
- * to the max value of an image and above it, and the range checks of
+ * Tests sums of light at their limits: thousands of lights, ray bundles that
+ * sum to the max value of an image and above it, and the range checks of
  * CONFIG=qcheck.
  */
 #include <math.h>

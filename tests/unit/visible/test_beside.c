@@ -2,8 +2,8 @@
  *
  * Tests a ghost that is baked together with the same ghost at a nearby zoom
  * position. Its ranges of angles and pupil boxes must contain the light that is
- * visible at either position. Its model must contain the barrels that clip at
- * either position.
+ * visible at either position. Its model must contain the barrel apertures that
+ * clip at either position.
  */
 #include <math.h>
 #include <stdint.h>

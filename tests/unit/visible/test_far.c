@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Checks the special rules for lights beyond 60 degrees: for which lenses they
- * apply, and how they treat barrels that the light of a fisheye grazes.
+ * apply, and how they treat barrel apertures that the light of a fisheye
+ * grazes.
  */
 #include <math.h>
 #include <stdint.h>
