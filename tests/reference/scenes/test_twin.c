@@ -82,7 +82,7 @@ static void assert_vec_near(const double *a, double x, double y, double z,
     "material y phong 1 0 0 colour 1 1 0\n" \
     "material z phong 1 0 0 colour 0 0 1\n"
 
-TEST(a1_length)
+TEST(a1_unit_vectors_have_length_1)
 {
     double a[3] = {0, 6, 8};
 
@@ -92,7 +92,7 @@ TEST(a1_length)
 
 /* A2, A3: checks the normal of the tutorial's triangle, and the point where a
  * ray hits the triangle. */
-TEST(a2_a3_triangle)
+TEST(a2_a3_triangle_has_its_normal_and_hit)
 {
     struct stage *s = open_reference_for_text(
         TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
@@ -109,7 +109,7 @@ TEST(a2_a3_triangle)
 /* A4: a ray through a point in the plane of the tutorial's triangle hits the
  * triangle if and only if the point is inside it, at any size. A test by
  * comparing areas fails for most small triangles (see test_scene_rays). */
-TEST(a4_inside)
+TEST(a4_points_inside_a_triangle_are_hit)
 {
     static const double corner[3][3] = {
         {0, 40, 120}, {30, -40, 60}, {-30, -40, 60}};
@@ -151,7 +151,7 @@ TEST(a4_inside)
 }
 
 /* A5: of three triangles behind each other, the nearest is visible. */
-TEST(a5_nearest)
+TEST(a5_nearest_triangle_is_visible)
 {
     struct stage *s = open_reference_for_text(
         TUTORIAL "triangle u 0 30 40 40 -30 120 -40 -30 120 material u\n"
@@ -173,7 +173,7 @@ TEST(a5_nearest)
 
 /* A6: checks that rays of corner pixels have the directions (-8, 4.5, 10) and
  * (8, -4.5, 10). */
-TEST(a6_corners)
+TEST(a6_corner_rays_have_their_directions)
 {
     const struct twin_view view = {160, 90, 0, 1};
     struct stage *s = open_reference_for_text(
@@ -214,7 +214,7 @@ static void assert_rgb_light(struct twin_pixel p, double r, double g, double b)
 /* A7: the diffuse light of a floor at (0, 0, 30) under a lamp at (0, 40, 0). At
  * the lamp's distance, 50, its irradiance is 1. The cosine is .8, so the code
  * is 204 of 255. */
-TEST(a7_diffuse)
+TEST(a7_floor_is_lit_by_the_cosine)
 {
     const struct twin_pixel p =
         trace_ray_in_text("hand left\nmaterial m phong 0 1 0 colour 1 0 0\n"
@@ -230,7 +230,7 @@ TEST(a7_diffuse)
  * terms have their max: .1 + .6 times the material's colour, and .3 times the
  * light's colour. For other view directions the specular term decreases with
  * its exponent. */
-TEST(a8_phong)
+TEST(a8_phong_terms_match_hand_computation)
 {
     static const char text[] =
         "hand left\nmaterial m phong .1 .6 .3 colour 1 .5 0 power 2\n"
@@ -251,7 +251,7 @@ TEST(a8_phong)
 
 /* A9: checks that mirroring a direction twice gives the same direction, and
  * that a mirror shows objects in the mirrored direction. */
-TEST(a9_mirror)
+TEST(a9_mirror_shows_the_mirrored_direction)
 {
     static const char text[] = "hand left\nmaterial m phong 0 0 0 reflect .5\n"
                                "material w phong 1 0 0 colour .2 .4 .8\n"
@@ -268,7 +268,7 @@ TEST(a9_mirror)
 /* A10: a ball between a point and a lamp at height 5 shadows the point. Balls
  * below the point, above the lamp or beside the ray do not. Some balls nearly
  * reach the lamp, and one contains it. */
-TEST(a10_shadow)
+TEST(a10_ball_before_a_lamp_casts_a_shadow)
 {
     static const struct {
         const char *ball;
@@ -295,7 +295,7 @@ TEST(a10_shadow)
 
 /* A10: no shadow acne. Checks that a ball lit from the camera's position has no
  * dark pixel. */
-TEST(a10_acne)
+TEST(a10_lit_ball_has_no_shadow_acne)
 {
     struct stage *s = open_reference_for_text(
         "hand left\ncamera fov 40 at 0 0 -4 toward 0 0 0\n"
@@ -324,7 +324,7 @@ TEST(a10_acne)
  * straight through the ball, scaled by the transmitted fraction. Where there is
  * no object, the background picture is visible. The image is bit-identical with
  * and without "refract 1". */
-TEST(a11_pass)
+TEST(a11_transparent_ball_shows_what_is_behind)
 {
     static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
                                           "material w\n";
@@ -354,7 +354,7 @@ TEST(a11_pass)
  * index 1.5. The ray enters at 30 degrees to the normal and continues at
  * asin(1/3) = 19.4712 degrees. It is deflected by twice the difference, and
  * crosses the axis .8949 behind the ball. */
-TEST(a12_refract)
+TEST(a12_glass_ball_refracts_by_snells_law)
 {
     struct stage *s = open_reference_for_text(
         GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n");
@@ -394,7 +394,7 @@ TEST(a12_refract)
 
 /* A12: a ball of lower refractive index than its surroundings reflects all
  * light whose angle of incidence exceeds 14.48 degrees. */
-TEST(a12_outside)
+TEST(a12_ball_of_lower_index_reflects_totally)
 {
     static const char text[] =
         GLASS("refract .25") "sphere w at 4 0 -5 radius .5 material w\n";
@@ -422,7 +422,7 @@ TEST(a12_outside)
 
 /* A13: each corner of a triangle shows its texel. Light is interpolated
  * linearly between texel centres. The texture repeats outside 0 .. 1. */
-TEST(a13_texture)
+TEST(a13_corners_of_a_triangle_show_their_texels)
 {
     static const char text[] =
         "hand left\ntexture t x\nmaterial w phong 1 0 0 texture t\n"
@@ -439,7 +439,7 @@ TEST(a13_texture)
 
 /* A14: a ray misses a triangle without area. It also misses an object if the
  * ray lies in the object's plane. */
-TEST(a14_misses)
+TEST(a14_degenerate_objects_are_missed)
 {
     static const struct {
         const char *text;
@@ -470,7 +470,7 @@ TEST(a14_misses)
 
 /* A15: a ray finds both intersections with a ball, from outside and from
  * inside. A grazing ray finds its single intersection. */
-TEST(a15_sphere)
+TEST(a15_ray_finds_both_hits_of_a_ball)
 {
     struct stage *s =
         open_reference_for_text("hand left\nmaterial m phong 1 0 0\n"
@@ -495,7 +495,7 @@ TEST(a15_sphere)
 
 /* A shadow catcher of strength .6 removes .6 of the occluded light from the
  * picture. Where no light arrives, it leaves the picture unchanged. */
-TEST(catcher)
+TEST(shadow_catcher_removes_occluded_light)
 {
     static const char text[] =
         "hand left\nmaterial m phong 1 0 0\n"

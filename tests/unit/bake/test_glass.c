@@ -99,7 +99,7 @@ static void check_index_is_near(double got, double want)
     assert_true(fabs(got - want) < 1.5e-5);
 }
 
-TEST(printed_indices)
+TEST(indices_match_the_printed_ones)
 {
     struct glint_error error = {""};
 
@@ -120,7 +120,7 @@ TEST(printed_indices)
     }
 }
 
-TEST(printed_dispersions)
+TEST(dispersions_match_the_printed_ones)
 {
     struct glint_error error = {""};
 

@@ -49,7 +49,7 @@ static double compute_bare_reflectance(double n1, double n2, double cosine)
     return glint_reflectance(n1, n2, cosine, NULL, 0);
 }
 
-TEST(bare_boundary_reflectance)
+TEST(bare_boundaries_reflect_by_fresnel)
 {
     assert_near(compute_bare_reflectance(1.0, 1.5, 1.0), 0.04, 1e-16);
     assert_near(compute_bare_reflectance(1.5, 1.0, 1.0), 0.04, 1e-16);
@@ -221,7 +221,7 @@ static struct glint_prescription make_biconvex_lens(void)
 #define BICONVEX_F    (1.0 / 0.0196)
 #define BICONVEX_BACK (0.96 / 0.0196)
 
-TEST(biconvex_with_stop_behind)
+TEST(stop_behind_a_biconvex_lens_matches)
 {
     const struct glint_prescription lens = make_biconvex_lens();
     struct glint_optics optics;
@@ -244,7 +244,7 @@ TEST(biconvex_with_stop_behind)
                 1e-11);
 }
 
-TEST(biconvex_with_stop_in_front)
+TEST(stop_before_a_biconvex_lens_matches)
 {
     struct glint_prescription lens = make_biconvex_lens();
     struct glint_optics optics;

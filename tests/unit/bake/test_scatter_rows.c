@@ -272,7 +272,7 @@ TEST(medium_of_one_texel_has_one_entry)
     glint_scatter_close(&rows);
 }
 
-TEST(rejects_invalid_stones)
+TEST(rejects_invalid_media)
 {
     struct glint_scatter_rows rows;
     struct glint_error error;

@@ -32,7 +32,7 @@ static void set_observer_responses(double all[ALL][3])
             all[j][c] /= sum[c];
 }
 
-TEST(wavelength_positions)
+TEST(wavelengths_are_sorted_and_visible)
 {
     for (int n = 1; n <= GLINT_MAX_WAVELENGTHS; n++) {
         glint_spectrum(n, nm, rgb, share);

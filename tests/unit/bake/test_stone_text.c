@@ -135,7 +135,7 @@ static const struct {
     {"data\n", "the name of the rows is missing"},
 };
 
-TEST(rejects_mistakes)
+TEST(rejects_wrong_lines)
 {
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         struct glint_error error = {.text = ""};

@@ -69,7 +69,7 @@ TEST(zoom_at_a_column_equals_its_table)
 /* Checks that focal lengths between the columns of a table are monotonic and
  * the image stays in focus, and that glint_prescription_zoom_to() finds the
  * position of each focal length. */
-TEST(monotone_between_columns)
+TEST(focal_length_is_monotone_between_columns)
 {
     enum { STEPS = 40 };
 
@@ -263,7 +263,7 @@ TEST(rejects_wrong_columns)
 /* Checks that the lens at a zoom position does not depend on the position set
  * before, even if the table states a single last gap while each column has
  * another focus distance. */
-TEST(result_is_independent_of_history)
+TEST(position_does_not_depend_on_the_previous_one)
 {
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\n" FRONT "4/6/7" BACK;

@@ -11,7 +11,7 @@
 #include "glint/workers.h"
 #include "support/test.h"
 
-TEST(measure_and_place)
+TEST(allocates_what_it_has_measured)
 {
     /* glint_arena_init_in_memory() leaves the alignment of the memory to the
      * caller. */

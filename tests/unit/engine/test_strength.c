@@ -83,7 +83,7 @@ TEST_BEFORE
     glint_strength_set_defaults(&strength);
 }
 
-TEST(a_quarter_of_white_by_default)
+TEST(peak_is_a_quarter_of_white_by_default)
 {
     const struct glint_response r = make_lens_response(0, 7);
 
@@ -93,7 +93,7 @@ TEST(a_quarter_of_white_by_default)
     assert_true(flare_peak_of_still(0, &r, 5, common) == 0);
 }
 
-TEST(rises_with_strength)
+TEST(peak_rises_with_strength)
 {
     const struct glint_response r = make_lens_response(3, 4);
     double last = 0;

@@ -262,7 +262,7 @@ TEST(sparkle_does_not_move_a_light)
 /* Checks the darkest lamp that can be found, in which one hot pixel is 40 times
  * brighter than the other 63 pixels. The hot pixel changes the lamp's position
  * by less than a pixel. */
-TEST(hot_pixel_among_dim_ones)
+TEST(hot_pixel_hardly_moves_a_dim_lamp)
 {
     struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
     struct glint_lamp_finder_config cfg =

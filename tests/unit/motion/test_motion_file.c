@@ -81,7 +81,7 @@ static int read_motion_block(void *ctx, uint32_t block, uint8_t *to)
     return 1;
 }
 
-TEST(poses_are_the_true_ones)
+TEST(poses_match_the_simulated_track)
 {
     struct baked baked;
     double at = 0, turn = 0;
@@ -154,7 +154,7 @@ TEST(any_frame_needs_few_blocks)
 
 /* Checks that a changed byte is detected: when the file is opened in memory, or
  * when the block that contains the byte is read. */
-TEST(damage_is_found)
+TEST(detects_any_changed_byte)
 {
     static uint32_t words[GLINT_MOTION_BLOCK / 4];
     uint8_t *const buffer = (uint8_t *)words;
@@ -201,7 +201,7 @@ TEST(damage_is_found)
 /* Checks a motion that is read by blocks. A name with control characters must
  * be rejected as it is in memory. A frame that needs an unreadable block must
  * return an error, whichever block it is. */
-TEST(blocks_are_validated)
+TEST(rejects_invalid_blocks)
 {
     static uint8_t buffer[GLINT_MOTION_BLOCK] __attribute__((aligned(8)));
     struct baked baked;

@@ -44,7 +44,7 @@ static uint64_t hash_image(const struct moving *d)
 
 /* Requirement D8: checks that a frame is the same whether it is reached by
  * playing, by single steps or by jumps, for all tile sizes. */
-TEST(row_d8_seek_is_play)
+TEST(row_d8_seeking_equals_playing)
 {
     enum { N = 40 };
     uint64_t played[N];
@@ -125,7 +125,7 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
 /* Requirement D7: compares detection by angle, and by angle and intensity, with
  * brute force, for 10 000 frames of random steps, rotations and foods
  * (landmarks), with six sensors and five foods. */
-TEST(row_d7_detection_is_brute_force)
+TEST(row_d7_detection_matches_brute_force)
 {
     enum { N = 10000 };
     struct moving *d[2];
@@ -281,7 +281,7 @@ static double compute_mean_column_of_red(const struct moving *d, int *n)
 /* Requirement D9: checks a camera placed in a sensor. The object ahead must be
  * in the image centre, and the field of view must be that of the sensor.
  * Leaving the sensor must restore the previous image. */
-TEST(row_d9_camera_in_a_sensor)
+TEST(row_d9_camera_is_placed_in_a_sensor)
 {
     /* foods (landmarks): one ahead of sensor 0, one ahead of sensor 1, and two
      * others */
@@ -327,7 +327,7 @@ TEST(row_d9_camera_in_a_sensor)
 
 /* Requirement D10: checks detections of foods (landmarks): three foods by one
  * sensor each, two by all sensors, and two by two sensors. */
-TEST(row_d10_detections)
+TEST(row_d10_sensors_detect_their_foods)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};
     double corner[4][3] = {{5, 5, 0}, {-5, 5, 0}, {5, -5, 7}, {3, 3, -8}};

@@ -583,7 +583,7 @@ static void check_every_truncation(struct coding c)
     glint_mjpeg_close(d);
 }
 
-TEST(every_truncation)
+TEST(rejects_frames_truncated_anywhere)
 {
     struct coding c = {33, 17, {{2, 1}, {1, 1}, {1, 1}}, 0, 0, 1};
 

@@ -168,7 +168,7 @@ TEST(abort_leaves_no_file)
     assert_int_equal(scratch_count_entries(scratch_dir), 0);
 }
 
-TEST(replaces_at_commit)
+TEST(commit_replaces_the_old_file)
 {
     struct glint_error error;
     struct glint_output out;

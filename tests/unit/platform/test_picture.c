@@ -59,7 +59,7 @@ static void expect_load_fails(enum glint_status status, const char *data,
     unlink(scratch_make_path("a.x"));
 }
 
-TEST(refuses_to_load)
+TEST(rejects_files_that_are_not_pictures)
 {
     struct glint_image image;
 

@@ -234,7 +234,7 @@ static void expect_float_near(float is, double wanted)
 /* An object of coverage 0.5 and light 0.5 is composited over a pixel of alpha
  * 0.25 and light 0.2. Checks the alpha and the light of the result, for
  * straight and for premultiplied alpha. */
-TEST(alpha_after_compositing)
+TEST(compositing_updates_alpha)
 {
     const double behind = 0.25 * 0.2, light = 0.5 * behind + 0.5 * 0.5;
     const double rgb[3] = {light, light, light}, alpha = 1 - 0.75 * 0.5;

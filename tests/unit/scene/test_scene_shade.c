@@ -279,7 +279,7 @@ TEST(a10_ball_shadows_a_floor)
 
 /* Checks that surfaces that no object occludes have the same light with and
  * without shadows, bit by bit. */
-TEST(a10_no_acne)
+TEST(a10_open_surfaces_have_no_shadow_acne)
 {
     static const int32_t at[4][3] = {{-90000, -70000, 600000},
                                      {80000, -60000, 610000},

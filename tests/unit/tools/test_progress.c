@@ -113,7 +113,7 @@ TEST(long_work_prints_an_estimate_once)
 /* Checks an estimate whose clock starts at the first report, so that it does
  * not include the time before. On request, it must be printed for short work,
  * too. */
-TEST(clock_of_first_report)
+TEST(clock_starts_at_the_first_report)
 {
     struct tool_progress p = start_fake_progress(false, false);
 
