@@ -19,7 +19,7 @@ static const struct glint_lens *read_model_file(const char *path)
     static struct glint_lens lens;
     FILE *const file = fopen(path, "rb");
     const size_t bytes = file ? fread(data, 1, sizeof data, file) : 0;
-    const char *reason = "not readable";
+    const char *reason = "cannot be read";
 
     if (file)
         fclose(file);

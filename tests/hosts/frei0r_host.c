@@ -53,7 +53,7 @@ static void find_plugin_symbol(void *library, const char *name, void *to)
     void *const at = dlsym(library, name);
 
     if (!at)
-        exit_with_error("no entry", name);
+        exit_with_error("the plug-in lacks the function", name);
     memcpy(to, &at, sizeof at);
 }
 
@@ -67,7 +67,7 @@ static void set_and_verify_parameter(void *instance, const struct setting *s)
 
     for (;; i++) {
         if (i == plugin.n_params)
-            exit_with_error("no parameter", s->name);
+            exit_with_error("the plug-in has no parameter", s->name);
         param_info(&info, i);
         if (strcmp(info.name, s->name) == 0)
             break;
@@ -80,7 +80,7 @@ static void set_and_verify_parameter(void *instance, const struct setting *s)
         get_value(instance, &got, i);
     }
     if (info.type == F0R_STRING ? strcmp(back, word) != 0 : got != number)
-        exit_with_error("is not what was set:", s->name);
+        exit_with_error("the plug-in changed the value of", s->name);
 }
 
 static void *filter_frames(void *out)
@@ -88,7 +88,7 @@ static void *filter_frames(void *out)
     void *const instance = construct(width, height);
 
     if (!instance)
-        exit_with_error("no instance", NULL);
+        exit_with_error("the plug-in creates no instance", NULL);
     for (size_t i = 0; i < n_frames; i++) {
         for (int k = 0; k < n_settings; k++)
             if (setting[k].frame == (int)i)
@@ -108,7 +108,7 @@ static void parse_setting_argument(const char *text)
 
     if (!value || n_settings == MOST ||
         sscanf(text, "%31[^@=]@%d", s->name, &s->frame) < 1)
-        exit_with_error("not NAME=VALUE:", text);
+        exit_with_error("not NAME[@FRAME]=VALUE, or too many:", text);
     s->value = value + 1;
 }
 
@@ -128,7 +128,7 @@ static void load_plugin(const char *path)
     find_plugin_symbol(library, "f0r_get_param_value", &get_value);
     find_plugin_symbol(library, "f0r_update", &update);
     if (init() != 1)
-        exit_with_error("init fails:", path);
+        exit_with_error("f0r_init() failed:", path);
     plugin_info(&plugin);
 }
 
@@ -140,11 +140,13 @@ int main(int argc, char **argv)
     size_t bytes;
 
     if (n < 1 || n > MOST || sscanf(argv[2], "%ux%u", &width, &height) != 2)
-        exit_with_error("PLUGIN WIDTHxHEIGHT INSTANCES [NAME=VALUE...]", NULL);
+        exit_with_error("usage: PLUGIN WIDTHxHEIGHT INSTANCES "
+                        "[NAME=VALUE...]",
+                        NULL);
     frame_bytes = (size_t)4 * width * height;
     input = malloc((size_t)256 << 20);
     if (!input)
-        exit_with_error("no memory", NULL);
+        exit_with_error("out of memory", NULL);
     n_frames = fread(input, 1, (size_t)256 << 20, stdin) / frame_bytes;
     for (int i = 4; i < argc; i++)
         parse_setting_argument(argv[i]);
@@ -156,11 +158,11 @@ int main(int argc, char **argv)
     for (int i = 0; i < n; i++)
         if (!(out[i] = malloc(bytes)) ||
             pthread_create(&thread[i], NULL, filter_frames, out[i]) != 0)
-            exit_with_error("no memory, or no thread", NULL);
+            exit_with_error("out of memory, or no thread starts", NULL);
     for (int i = 0; i < n; i++) {
         pthread_join(thread[i], NULL);
         if (memcmp(out[0], out[i], bytes) != 0)
-            exit_with_error("an instance differs from the first", NULL);
+            exit_with_error("an instance outputs other frames", NULL);
     }
     return fwrite(out[0], 1, bytes, stdout) != bytes;
 }

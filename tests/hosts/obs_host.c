@@ -57,7 +57,7 @@ static enum video_format find_format_by_name(const char *name)
     for (int f = VIDEO_FORMAT_I420; f <= VIDEO_FORMAT_AYUV; f++)
         if (strcmp(get_video_format_name((enum video_format)f), name) == 0)
             return (enum video_format)f;
-    fprintf(stderr, "obs_host: no format %s\n", name);
+    fprintf(stderr, "obs_host: unknown pixel format %s\n", name);
     exit(2);
 }
 
@@ -169,10 +169,10 @@ static void start_obs(const char *path)
     if (!obs_startup("en-US", NULL, NULL))
         exit_with_error("libobs does not start");
     if (obs_reset_video(&video) != OBS_VIDEO_SUCCESS)
-        exit_with_error("libobs has no graphics");
+        exit_with_error("libobs cannot start its graphics");
     if (obs_open_module(&module, path, NULL) != MODULE_SUCCESS ||
         !obs_init_module(module))
-        exit_with_error("the module does not load");
+        exit_with_error("libobs cannot load the module");
     fprintf(stderr, "obs_host: libobs %s, %s\n", obs_get_version_string(),
             obs_get_module_name(module));
     obs_register_source(&feed);
@@ -235,7 +235,7 @@ static void filter_and_write_frame(struct run *r, unsigned char *bytes,
         pthread_mutex_unlock(&seen.lock);
     } while (timestamp != frame.timestamp && polls++ < SLOW_POLLS);
     if (timestamp != frame.timestamp)
-        exit_with_error("a frame did not come out");
+        exit_with_error("the filter did not output a frame");
 }
 
 static void filter_all_frames(struct run *r, char **settings, int n_settings)
@@ -245,7 +245,7 @@ static void filter_all_frames(struct run *r, char **settings, int n_settings)
 
     seen.bytes = malloc(r->size);
     if (!frame || !seen.bytes)
-        exit_with_error("no memory");
+        exit_with_error("out of memory");
     for (long i = 0; fread(frame, r->size, 1, stdin) == 1; i++) {
         const uint64_t end = ms + (uint64_t)WAIT_S * 1000;
 
@@ -283,7 +283,7 @@ int main(int argc, char **argv)
     r.filter = obs_source_create_private("glint_flare", "flare", NULL);
     watch = obs_source_create_private("host_probe", "probe", NULL);
     if (!r.source || !r.filter || !watch)
-        exit_with_error("no source");
+        exit_with_error("libobs cannot create source or filter");
     obs_source_set_async_unbuffered(r.source, true);
     obs_source_filter_add(r.source, r.filter);
     obs_source_filter_add(r.source, watch);

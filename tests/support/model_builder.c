@@ -201,7 +201,7 @@ struct glint_lens model_open_image(const struct model_image *m)
     const char *reason = "";
 
     if (glint_lens_open(&lens, m->data, m->bytes, &reason) != GLINT_OK) {
-        fprintf(stderr, "model_open: %s\n", reason);
+        fprintf(stderr, "model_open_image: %s\n", reason);
         abort();
     }
     return lens;

@@ -70,7 +70,7 @@ static inline void must_refuse_to_open(const struct glint_v4l2_config *wish,
 {
     assert_int_equal(try_open_camera(wish, GLINT_V4L2_AUTO), status);
     if (!strstr(said.text, text))
-        fail_msg("'%s' does not say '%s'", said.text, text);
+        fail_msg("'%s' does not contain '%s'", said.text, text);
     must_be_closed_camera();
 }
 

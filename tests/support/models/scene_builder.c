@@ -314,7 +314,7 @@ struct glint_scene_model scene_open_model(struct scene_file *s)
 
     scene_seal_checksum(s);
     if (glint_scene_open(&model, s->data, s->bytes, &reason) != GLINT_OK)
-        fail_msg("refused: %s", reason);
+        fail_msg("scene is rejected: %s", reason);
     return model;
 }
 

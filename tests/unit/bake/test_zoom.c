@@ -228,7 +228,7 @@ static void check_table_is_rejected(const char *body, const char *cause)
         glint_prescription_parse(&single, text, strlen(text), "t.lens", &error),
         GLINT_E_LENS);
     if (!strstr(error.text, cause))
-        fail_msg("'%s' does not say '%s'", error.text, cause);
+        fail_msg("'%s' does not contain '%s'", error.text, cause);
 }
 
 #define FRONT "surface 50 4 12 1.5 60\nsurface -50 "

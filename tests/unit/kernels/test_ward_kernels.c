@@ -21,7 +21,7 @@
 #define EXPECT(condition)                                              \
     do {                                                               \
         if (!(condition)) {                                            \
-            fprintf(stderr, "%s:%d: %s, not so\n", __FILE__, __LINE__, \
+            fprintf(stderr, "%s:%d: failed: %s\n", __FILE__, __LINE__, \
                     #condition);                                       \
             exit(1);                                                   \
         }                                                              \

@@ -262,7 +262,7 @@ static void expect_open_error(const char *cause)
     assert_int_equal(glint_zoom_open(&zoom, file, bytes, &reason),
                      GLINT_E_LENS);
     if (!strstr(reason, cause))
-        fail_msg("'%s' does not say '%s'", reason, cause);
+        fail_msg("'%s' does not contain '%s'", reason, cause);
 }
 
 TEST(rejects_invalid_zooms)

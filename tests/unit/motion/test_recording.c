@@ -83,7 +83,7 @@ static void bake_must_fail(const char *text, const char *why)
 
     assert_int_equal(bake_recording_text(text, 1 << 20, &baked), GLINT_E_LENS);
     if (!strstr(baked.error.text, why))
-        fail_msg("'%s' does not say '%s'", baked.error.text, why);
+        fail_msg("'%s' does not contain '%s'", baked.error.text, why);
     assert_null(baked.data);
 }
 

@@ -196,7 +196,7 @@ static void expect_decoding_fails(struct glint_mjpeg *d, const struct bytes *b,
                      status);
     assert_int_equal(image.width, 77);
     if (!strstr(error.text, text))
-        fail_msg("'%s' is not about '%s'", error.text, text);
+        fail_msg("'%s' does not contain '%s'", error.text, text);
     assert_memory_equal(error.text, NAME ": MJPEG: ", strlen(NAME ": MJPEG: "));
 }
 

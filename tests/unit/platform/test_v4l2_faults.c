@@ -213,7 +213,7 @@ TEST(failed_restart_ends_with_a_message)
                          GLINT_E_DEVICE);
         assert_in_range(failed_ms, 500, 1000);
         if (!strstr(said.text, failure[i].text))
-            fail_msg("'%s' does not say '%s'", said.text, failure[i].text);
+            fail_msg("'%s' does not contain '%s'", said.text, failure[i].text);
         must_close_camera();
     }
 }

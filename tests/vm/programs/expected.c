@@ -76,7 +76,7 @@ static void write_panel_screen(const struct glint_image *frame, int w, int h,
     uint8_t *mem = malloc((size_t)stride * (size_t)h);
 
     if (!mem)
-        exit_with_error("no memory");
+        exit_with_error("out of memory");
     if (glint_panel_open(&panel, &cfg, &error) != GLINT_OK)
         exit_with_error(error.text);
     glint_panel_clear(&panel, mem, stride);
@@ -108,13 +108,13 @@ int main(int argc, char **argv)
     while (glint_y4m_reader_next(&in, &next, &error) == GLINT_OK && next)
         frame = next; /* The reader uses the same memory for each frame. */
     if (!frame || *error.text)
-        exit_with_error(*error.text ? error.text : "no frame");
+        exit_with_error(*error.text ? error.text : "the video has no frame");
     if (yuyv && (frame->format != GLINT_I422 || frame->width != w ||
                  frame->height != h))
-        exit_with_error("not C422 of that size");
+        exit_with_error("the video is not C422 of that size");
     file = fopen(argv[4], "wb");
     if (!file)
-        exit_with_error("cannot write");
+        exit_with_error("cannot write the output");
     if (yuyv)
         write_yuyv_frame(frame, file);
     else

@@ -78,16 +78,16 @@ static void encode_file(const char *from, const char *to)
 
     if (glint_y4m_reader_open(&in, from, &error) != GLINT_OK ||
         glint_y4m_reader_next(&in, &frame, &error) != GLINT_OK || !frame)
-        exit_with_error(*error.text ? error.text : "no frame");
+        exit_with_error(*error.text ? error.text : "the video has no frame");
     if (frame->width > MAX_SIDE)
-        exit_with_error("too wide");
+        exit_with_error("the video is too wide");
     file = fopen(to, "wb");
     if (!file)
-        exit_with_error("cannot write");
+        exit_with_error("cannot write the output");
     write_grey_jpeg(frame, file);
     glint_y4m_reader_close(&in);
     if (fclose(file) != 0)
-        exit_with_error("cannot write");
+        exit_with_error("cannot write the output");
 }
 
 static size_t read_file(const char *name, uint8_t *data)

@@ -152,7 +152,7 @@ int main(int argc, char **argv)
     }
     picture.rgb = malloc((size_t)picture.width * picture.height * 3 + 1);
     if (!picture.rgb || !read_raw_screen(argv[3], &layout, &picture)) {
-        fprintf(stderr, "%s: no picture of %s\n", argv[3], argv[2]);
+        fprintf(stderr, "%s: cannot read a screen of %s\n", argv[3], argv[2]);
         return 1;
     }
     write_ppm(argv[4], &picture);

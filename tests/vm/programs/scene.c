@@ -151,7 +151,7 @@ int main(int argc, char **argv)
     luma = malloc((size_t)s.width * (size_t)s.height);
     file = fopen(name, "wb");
     if (!luma || !file)
-        exit_with_error("cannot write");
+        exit_with_error("cannot write the output");
     if (strcmp(format, "y4m") == 0)
         fprintf(file, "YUV4MPEG2 W%d H%d F30:1 Ip A1:1 C422\n", s.width,
                 s.height);
