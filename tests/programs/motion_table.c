@@ -34,8 +34,8 @@ struct result {
     const char *wrong;
     double square[BINS], worst, last_worst, seconds, residual[BINS];
     int count[BINS];
-    /* sums for the correlation: x = error, y = mean distance of foods; sums of
-     * x, y, x^2, y^2, x y */
+    /* sums for the correlation of x, the error, with y, the mean distance of
+     * the foods (landmarks): x, y, x^2, y^2, x y */
     double sums[5];
 };
 

@@ -79,7 +79,8 @@ static void exit_with_error(const char *what)
     exit(1);
 }
 
-/* Returns the errors of candidate O on ROWS and frees their maps. */
+/* Returns the errors of candidate O on ROWS; frees the error map and light
+ * map. */
 static struct glint_scatter_judgement
 judge_candidate(struct glint_scatter_rows *rows,
                 const struct glint_scatter_candidate *o)

@@ -162,7 +162,7 @@ static double *find_gap_before_sensor(struct glint_prescription *l)
 }
 
 /* Chooses the f-number and sensor size, and focuses the lens. Returns false if
- * the lens forms no image, or forms it inside itself. */
+ * the lens forms no image, or if the image lies inside the lens. */
 static bool choose_sensor_and_focus(uint64_t *r, struct glint_prescription *l)
 {
     struct glint_optics o;

@@ -185,7 +185,8 @@ static void extend_motion_chain(struct four *l, double map[4][3])
 }
 
 /* Sets MAP to the affine motion of the body since the reference frame, solved
- * from four of the N observed foods. Returns NULL or an error text. */
+ * from four of the N observed foods (landmarks). Returns NULL, or the text of
+ * an error. */
 static const char *solve_motion_from_four_foods(struct four *l, int n,
                                                 const double (*seen)[3],
                                                 const bool *is_new,

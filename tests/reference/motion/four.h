@@ -11,11 +11,11 @@
 #include "bake/motion/localise.h"
 
 enum four_fit {
-    /* by barycentric weights, with respect to the four foods whose tetrahedron
-     * has the largest relative volume */
+    /* by barycentric weights with respect to the four foods (landmarks) whose
+     * tetrahedron has the largest relative volume */
     FOUR_BEST,
-    /* by barycentric weights, with respect to the first four foods of the
-     * frame */
+    /* by barycentric weights with respect to the first four foods (landmarks)
+     * of the frame */
     FOUR_FIRST,
     FOUR_CHAIN /* by the product of the motions between successive frames */
 };
@@ -29,7 +29,7 @@ struct four {
     enum four_arithmetic arithmetic;
     bool has_begun;
     double place[GLINT_MOTION_MAX_FOODS][3];
-    /* positions of the foods in the previous frame */
+    /* positions of the foods (landmarks) in the previous frame */
     double last[GLINT_MOTION_MAX_FOODS][3];
     /* product of the motions of all frames so far: an affine map, 3 x 4 by
      * columns */

@@ -115,7 +115,8 @@ enum glint_status reference_build_tree(struct twin *twin)
     return GLINT_OK;
 }
 
-/* Returns whether RAY enters the box of NODE before the distance MOST. */
+/* Returns whether RAY enters the bounding box of NODE before the distance
+ * MOST. */
 static bool ray_passes_box(const struct twin_node *node,
                            const struct twin_ray *ray, double most)
 {

@@ -234,7 +234,8 @@ static void append_ghosts_with_invalid_rays(struct model_image *m, int number,
 
 /* Writes one ghost, or two from NUMBER 5 on, with 10000 polynomial systems,
  * each for a narrow band of wavelengths and a small range of angles. All
- * systems refer to the same outputs and box, which keeps the file small. */
+ * systems refer to the same outputs and pupil box, which keeps the file
+ * small. */
 static void append_ghost_with_many_systems(struct model_image *m, int number,
                                            uint32_t *seed)
 {

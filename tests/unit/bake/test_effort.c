@@ -146,8 +146,8 @@ static void record_reported_progress(void *ctx, double done)
     log->n++;
 }
 
-/* Checks that a real bake reports its progress after each zone, and 1 at the
- * end. */
+/* Checks that a real bake reports its progress after each zone (range of
+ * angles), and 1 at the end. */
 TEST(bake_reports_each_zone)
 {
     static struct glint_setup setup;

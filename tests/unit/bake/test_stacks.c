@@ -224,9 +224,9 @@ TEST(extreme_stacks_match_rouard)
 
 /* ------------------------------------------------------------ ray energies */
 
-/* Checks that the energy of a ray through a coated pane is the product of both
- * transmittances, and of a ghost that of both reflectances, for film stacks as
- * for single films. */
+/* Checks that a ray through a coated pane has the product of the two
+ * transmittances as its energy, and a ghost the product of the two
+ * reflectances, for film stacks as for single films. */
 TEST(ghost_energy_is_the_product_of_reflectances)
 {
     struct glint_prescription lens = {

@@ -93,9 +93,10 @@ static enum glint_next choose_next_division_of_zone(const struct attempted *c)
     return glint_next_choose_step(&rules, &piece, &attempt);
 }
 
-/* In wide zones of aspheric lenses, pupil parts would have gaps between them.
- * So the bake halves these zones in angle, where it divides zones of spherical
- * lenses into pupil parts. It may also halve their pupil boxes more often. */
+/* In wide zones (ranges of angles) of aspheric lenses, pupil parts would have
+ * gaps between them. So the bake halves these zones in angle, where it divides
+ * zones of spherical lenses into pupil parts. It may also halve their pupil
+ * boxes more often. */
 TEST(wide_zones_of_aspheres_are_halved)
 {
     static const struct attempted all[] = {

@@ -151,10 +151,10 @@ TEST(overestimated_levels_are_used_in_the_end)
     assert_true(last);
 }
 
-/* Checks a level predicted to exceed the budget by a tenth, where all cheaper
- * levels take far less time. It must be tried within some frames, but not too
- * often if it does not fit: 14 of these 100 frames try it; without a limit 52
- * would. */
+/* Checks a quality level predicted to exceed the budget by a tenth, where all
+ * cheaper levels take far less time. It must be tried within some frames, but
+ * not too often if it does not fit: 14 of these 100 frames try it; without a
+ * limit 52 would. */
 TEST(slightly_too_slow_level_is_tried)
 {
     bool last;
@@ -162,7 +162,7 @@ TEST(slightly_too_slow_level_is_tried)
     assert_in_range(count_full_resolution_frames(4.6, 2, 0.95, 20, &last), 1,
                     20);
     assert_true(last);
-    /* a level predicted to exceed the budget by half is not tried */
+    /* a quality level predicted to exceed the budget by half is not tried */
     assert_int_equal(count_full_resolution_frames(4.6, 2, 1.3, 20, &last), 0);
     assert_in_range(
         count_full_resolution_frames(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last),

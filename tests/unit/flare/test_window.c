@@ -158,8 +158,8 @@ static bool ray_passes_stop(const struct glint_transfer *t, double radius,
                   t->exponent[GLINT_OUT_BARREL_0]) <= 1);
 }
 
-/* Extent of the rays that pass a stop, found ray by ray; coordinates of -1 ..
- * 1. LOW and HIGH are 0 .. 1 except in a box with two halves in y. */
+/* Extent of the rays that pass a stop, found ray by ray; pupil coordinates of
+ * -1 .. 1. LOW and HIGH are 0 .. 1 unless the pupil box has two halves in y. */
 struct seen {
     double left, right, low, high;
     int n;

@@ -348,8 +348,8 @@ static bool track_equals_spot(const struct glint_lamp_track *t,
            memcmp(t->rgb_q15, s->rgb_q15, sizeof t->rgb_q15) == 0;
 }
 
-/* Returns whether each track equals its spot, and each spot that is not marked
- * faint has a track. */
+/* Returns whether each track equals its spot (lamp of this frame), and each
+ * spot that is not marked faint has a track. */
 static bool tracks_equal_spots(void)
 {
     int n_lights = 0;
@@ -675,8 +675,8 @@ TEST(leaving_lamp_continues_and_fades)
 
 /* ---------------------------------------------------------- rise, fade, cut */
 
-/* Returns the level (0 .. 1) of a lamp US microseconds after it was switched
- * on, with a frame every ELAPSED_US. */
+/* Returns the fade level, 0 .. 1, of a lamp US microseconds after it was
+ * switched on, with a frame every ELAPSED_US. */
 static double measure_level_after_switching_on(int32_t us, int32_t elapsed_us,
                                                int32_t attack_ms)
 {
@@ -717,7 +717,7 @@ TEST(rise_does_not_depend_on_the_frame_rate)
 }
 
 /* Checks a frame with all lamps at other positions: old tracks must end, and
- * new ones have full level immediately. */
+ * new ones have full power immediately. */
 TEST(cut_restarts_in_one_frame)
 {
     static const struct night_lamp before[] = {

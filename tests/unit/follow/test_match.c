@@ -56,8 +56,8 @@ static void place_seekers_and_spots_at_random(int n_seekers, int n_spots,
                                       .faint = rng_int_below(&seed, 4) == 0};
 }
 
-/* Returns the cost, as the header defines it, of pairing seeker S with spot P,
- * or -1 if P is too far away or a too large faint spot. */
+/* Returns the cost, as the header defines it, of pairing seeker S (a track)
+ * with spot P, or -1 if P is too far away or a too large faint spot. */
 static int64_t compute_pairing_cost(const struct glint_seeker *s,
                                     const struct glint_spot *p)
 {
@@ -72,9 +72,9 @@ static int64_t compute_pairing_cost(const struct glint_seeker *s,
     return p->faint || s->is_lost ? 4 * (d2 + 65536) : d2;
 }
 
-/* Pairs seekers and spots by repeatedly choosing the cheapest of all remaining
- * pairs. Sets PARTNER[i] to the spot of seeker i, -1: none. Returns the number
- * of pairs. */
+/* Pairs seekers (tracks) and spots by repeatedly choosing the cheapest of all
+ * remaining pairs. Sets PARTNER[i] to the spot of seeker i, -1: none. Returns
+ * the number of pairs. */
 static int match_by_cheapest_pairs(int n_spots, int32_t *partner)
 {
     static uint8_t taken[MAX];
@@ -129,7 +129,7 @@ TEST(pairs_match_the_slow_search)
     assert_true(n_matched > 1000);
 }
 
-/* Returns the number of spots that are nearer to S than spot AT is. */
+/* Returns the number of spots that are nearer to seeker S than spot AT is. */
 static int count_nearer_spots(const struct glint_seeker *s, int at)
 {
     int n = 0;
@@ -142,9 +142,9 @@ static int count_nearer_spots(const struct glint_seeker *s, int at)
     return n;
 }
 
-/* Checks the max number of seekers and spots, every spot near enough to every
- * seeker: no spot is used twice, and each seeker gets one of its eight nearest
- * spots. */
+/* Checks the max number of seekers (tracks) and spots, every spot near enough
+ * to every seeker: no spot is used twice, and each seeker gets one of its eight
+ * nearest spots. */
 TEST(crowded_seekers_get_distinct_spots)
 {
     static uint8_t seen[MAX];
@@ -169,8 +169,8 @@ TEST(crowded_seekers_get_distinct_spots)
     assert_in_range(n, MAX / 2, MAX);
 }
 
-/* Checks that a spot exactly at the max distance of a seeker is paired, and
- * that a spot further away is not. */
+/* Checks that a spot exactly at the max distance of a seeker (a track) is
+ * paired, and that a spot further away is not. */
 TEST(reach_includes_the_max_distance)
 {
     static const int32_t way[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
@@ -231,8 +231,8 @@ static void read_powers_of_matches(int64_t power[MAX + 1])
     }
 }
 
-/* Checks that equal costs are decided by ids and by the members of spots, not
- * by their order in the array. */
+/* Checks that ids and the members of spots decide between equal costs, not the
+ * order in the array. */
 TEST(ties_do_not_depend_on_order)
 {
     static int64_t power[MAX + 1], again[MAX + 1];

@@ -151,7 +151,7 @@ TEST(light_of_runs_equals_sum_of_pixels)
 }
 
 /* Returns a random candidate region in the image, with any light and filling
- * any fraction of its box. */
+ * any fraction of its bounding box. */
 static struct glint_candidate make_random_candidate(void)
 {
     const int x0 = rng_int_below(&seed, WIDTH - 1),

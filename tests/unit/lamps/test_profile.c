@@ -82,7 +82,7 @@ static struct glint_image make_grey_image(uint8_t *px, int width, int height)
 }
 
 /* Draws LAMP with POWER into light[], over a background of BLACK and with noise
- * of SIGMA codes, and finds the spots. Returns the number of spots. */
+ * of SIGMA codes. Returns the number of bright spots found. */
 static int draw_and_find_spots(const struct power_lamp *lamp, double power,
                                double black, double sigma)
 {
@@ -440,7 +440,7 @@ TEST(measures_a_lamp_of_one_pixel)
     assert_int_equal(spot[0].axis_q8[1], 0);
 }
 
-/* Checks that results are within their allowed ranges, for any spots and
+/* Checks that results are in their allowed ranges, for any bright spots and
  * images. */
 TEST(results_stay_in_range_for_any_spots)
 {

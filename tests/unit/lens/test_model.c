@@ -268,10 +268,10 @@ static const struct rule auto_rules[] = {
     {BOX, 0, 4, (1 << 30) - (1 << 19), far_box},
     {BOX, 0, 4, (1 << 30) - (1 << 19) - 1, NULL},
     {BOX, 3 * 4, 4, 0, small_box}, /* half width -s */
-    /* The box has the half width 1 - s, which is 0 at s = 1. */
+    /* The half width of the pupil box, 1 - s, is 0 at s = 1. */
     {BOX, 3 * 4, 4, 1 << 20, NULL},
     {BOX, 3 * 4, 4, (1 << 20) - 1, small_box},
-    /* The box has the half width 4 - s + 3 w, which is 0 at s = 1 and w =
+    /* The half width of the pupil box, 4 - s + 3 w, is 0 at s = 1 and w =
      * -1. */
     {BOX, 5 * 4, 4, 3 << 20, NULL},
     {BOX, 5 * 4, 4, (3 << 20) + 1, small_box},

@@ -198,7 +198,7 @@ TEST(uses_the_system_of_angle_and_wavelength)
     free(m.data);
 }
 
-/* Checks a box whose half width is (s - 1/32)^2 - 1/2048: positive at all
+/* Checks a pupil box whose half width is (s - 1/32)^2 - 1/2048: positive at all
  * values of s that the validity check tests, but negative between two of them,
  * where it must be clamped to 0. */
 TEST(half_width_below_0_is_clamped)

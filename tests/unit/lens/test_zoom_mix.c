@@ -414,7 +414,7 @@ TEST(barrels_move_with_their_box)
         open_model_of_system(&at[0], 0.5, 0.25, 0, &a, 1);
     struct glint_lens second;
 
-    box_middle = 1 << 22; /* both boxes are shifted by half a box */
+    box_middle = 1 << 22; /* both pupil boxes are shifted by half a box */
     second = open_model_of_system(&at[1], 0.5, 0.25, 0, &b, 1);
     box_middle = 0;
     interpolate_models(&first, &second, 0.5);

@@ -79,7 +79,8 @@ static double compute_line_coverage(const struct glint_scene *s,
            fmax(0, fmin(fmin(1, 2 * half), half + .5 - across));
 }
 
-/* Draws only shells, lines and box, and compares them with their definition. */
+/* Draws only shells (spheres), lines and box edges, and compares them with
+ * their definition. */
 static void compare_layers_with_definition(struct moving *d)
 {
     const struct glint_scene *s = d->frame.scene;
@@ -168,7 +169,7 @@ TEST(nearer_objects_hide_layers)
         assert_int_equal(d->frame.scene->motion->n_layers, 1);
         if (i)
             assert_memory_equal(with[0], with[1], sizeof with[0]);
-        else /* the shell is so wide that the food is inside it */
+        else /* the shell is so wide that the food (landmark) is inside it */
             assert_memory_not_equal(with[0], with[1], sizeof with[0]);
         moving_close_scene(d);
     }

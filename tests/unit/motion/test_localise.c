@@ -20,8 +20,8 @@ struct errors {
     /* RMS error of the first and of the last tenth of the track */
     double first, last;
     double worst;
-    /* correlation of the position error with the mean distance of foods from
-     * the body */
+    /* correlation of the position error with the mean distance of the foods
+     * (landmarks) from the body */
     double correlation;
     int n; /* number of frames until localisation failed */
 };

@@ -402,7 +402,7 @@ TEST(shells_let_light_pass)
                           "motion run x size .6 foods .5 shells 4\n",
                           5, 4);
     moving_draw_frame(d);
-    /* a food of red 1 behind a shell whose coverage is 1/4 */
+    /* a food (landmark) of red 1 behind a shell of coverage 1/4 */
     assert_true(abs(d->light_q20[middle] - (3 << 18)) < 1 << 14);
     assert_true(abs(d->light_q20[middle + 2] - (1 << 18)) < 1 << 14);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_FOODS, 0);
@@ -531,7 +531,7 @@ TEST(extreme_positions_and_sizes_do_not_overflow)
             at[k] = ((int32_t)rng_bits32(&seed) >> 4) >> shift;
             axis_q30[k][(k + turn) % 3] = 1 << 30;
         }
-        if (i % 4 == 1) /* camera inside a food, or in the body */
+        if (i % 4 == 1) /* camera inside a food (landmark) or in the body */
             memcpy(at, s->motion->food_at[i % FOODS], sizeof at);
         assert_ok(glint_scene_set_camera(s, at, (const int32_t(*)[3])axis_q30));
         glint_scene_size_kind(s, (enum glint_scene_kind)rng_int_below(&seed, 6),

@@ -175,8 +175,8 @@ static struct glint_lamp make_light_at_sine(int32_t sine_q30, double power)
     return stage_make_lamp(asin(sine_q30 * 0x1p-30) / DEGREE, 33, power);
 }
 
-/* Returns whether the angle with the sine SINE_Q30 is a border between two
- * zones of ghost G. */
+/* Returns whether the angle of sine SINE_Q30 is a border between two zones
+ * (ranges of angles) of ghost G. */
 static int is_border_between_zones(const struct glint_lens *lens,
                                    const struct glint_model_ghost *g,
                                    int32_t sine_q30)
@@ -247,8 +247,8 @@ TEST(zone_borders_cause_no_jump)
                     continue;
                 if (is_border_between_zones(lens, ghost, border[e])) {
                     if (e == 0)
-                        /* The neighbouring zone measures this border as its
-                         * upper border. */
+                        /* The zone below this border measures it, as its upper
+                         * border. */
                         continue;
                     inner = fmax(inner,
                                  measure_jump_of_block_means(border[e], &flux));

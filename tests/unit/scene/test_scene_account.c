@@ -33,9 +33,9 @@ static struct glint_scene *draw_scene_with_statistics(int edge_samples,
 }
 
 /* Checks the number of intersection tests. A lamp of four points lights a ball
- * that fills the picture: each pixel needs 3 tests for the box of the ball and
- * 4 for the lamp. With shadows, each of four shadow rays is also tested against
- * both balls. The count saturates at its limit. */
+ * that fills the picture: each pixel needs 3 tests for the ball's bounding box
+ * and 4 for the lamp. With shadows, each of four shadow rays is also tested
+ * against both balls. The count saturates at its limit. */
 TEST(counts_intersection_tests)
 {
     static const int32_t at[3] = {0, 0, 0};

@@ -176,8 +176,8 @@ static void compare_random_bundles(struct meter *m)
     static struct glint_vertex vertex[NODES * NODES];
     uint32_t seed = 7;
 
-    /* The comparison does not support pupil parts, which have boxes of their
-     * own and are not ghosts of the table. */
+    /* The comparison does not support pupil parts, which have pupil boxes of
+     * their own and are not ghosts of the table. */
     assert_int_equal(model.header->n_parts, 0);
     for (int k = 0; k < BUNDLES; k++) {
         const int ghost = rng_int_below(&seed, (int)model.header->n_ghosts);

@@ -15,8 +15,8 @@
 
 enum { WIDTH = 64, HEIGHT = 36, BYTES = 3 * WIDTH * HEIGHT };
 
-/* Checks that each level reports the value of --quality from which it was made,
- * and that each such value gives its level. */
+/* Checks that each quality level reports the value of --quality from which it
+ * was made, and that this value gives the level. */
 TEST(levels_have_their_quality)
 {
     static const double quality[SCENE_BUDGET_LEVELS] = {1, .5, .375, .125, 0};
@@ -37,7 +37,7 @@ TEST(levels_have_their_quality)
     }
 }
 
-/* Checks that glint live, step by step, uses all levels from the first to the
+/* Checks that glint live, step by step, uses all quality levels from first to
  * last. */
 TEST(live_steps_follow_the_levels)
 {
@@ -64,7 +64,7 @@ static void simulate_scene_frame(struct over_scene *over, uint8_t *pixels)
     assert_ok(over_scene_draw(over, &image, 0));
 }
 
-/* Draws a scene at a coarse level and then at a finer one. Checks that the
+/* Draws a scene at a coarse quality level, then at a finer one. Checks that the
  * second image equals that of a new scene at the finer level. */
 TEST(changed_level_equals_a_new_scene)
 {
@@ -92,7 +92,7 @@ TEST(changed_level_equals_a_new_scene)
 
 /* ------------------------------------------------------------------ budgets */
 
-/* frame time of each level at the usual speed of the machine, ms */
+/* frame time of each quality level at the usual speed of the machine, ms */
 static const double level_ms[SCENE_BUDGET_LEVELS] = {40, 40, 24, 12, 8};
 
 static struct scene_budget make_scene_budget(void)
@@ -120,8 +120,8 @@ static int count_late_frames(struct scene_budget *b, int n, double slower,
     return late;
 }
 
-/* Checks that the finest level that fits into the budget is reached, first from
- * finer levels, later from coarser ones. */
+/* Checks that the finest quality level that fits into the budget is reached,
+ * first from finer levels, later from coarser ones. */
 TEST(finest_fitting_level_is_reached)
 {
     struct scene_budget b = make_scene_budget();
@@ -139,7 +139,7 @@ TEST(finest_fitting_level_is_reached)
     count_late_frames(&b, 200, 1, 30);
     assert_int_equal(b.level, 2);
     count_late_frames(&b, 200, .5, 30);
-    /* The finest level is 1, as it has the same parameters as level 0. */
+    /* The finest quality level is 1, as level 0 has the same parameters. */
     assert_int_equal(b.level, 1);
 }
 
@@ -165,8 +165,8 @@ TEST(single_slow_frame_changes_nothing)
 
 /* Simulates 200 frames of a scene and a flare with a common budget of 60 ms.
  * The flare uses the time that the scene leaves, at least LEAST_MS (quality 0)
- * and at most MOST_MS (quality 1). Checks that the scene ends at LEVEL, and
- * that at most 10 frames are late after the first 20. */
+ * and at most MOST_MS (quality 1). Checks that the scene ends at the quality
+ * level LEVEL, and that at most 10 frames are late after the first 20. */
 static void check_budget_shared_with_flare(double least_ms, double most_ms,
                                            int level)
 {

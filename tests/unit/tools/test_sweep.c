@@ -182,9 +182,8 @@ static int is_at_half_resolution(const struct settings *settings)
     return glint_dials_half(&settings->dials);
 }
 
-/* Checks that better levels are never coarser, separately for levels at full
- * and at half resolution, and that the middle level has the default
- * settings. */
+/* Checks that better quality levels are never coarser, separately for full and
+ * half resolution, and that the middle level has the default settings. */
 TEST(better_levels_are_never_coarser)
 {
     struct settings last, settings, plain;
@@ -205,8 +204,8 @@ TEST(better_levels_are_never_coarser)
     for (int i = 1; i <= 100; i++) {
         settings_set_quality(&settings, i / 100.);
         if (is_at_half_resolution(&settings) ==
-            /* Where the resolution changes from half to full, levels cannot be
-             * compared. */
+            /* Where the resolution changes from half to full, quality levels
+             * cannot be compared. */
             is_at_half_resolution(&last)) {
             assert_in_range(settings.dials.fineness, last.dials.fineness,
                             GLINT_MAX_CELLS);

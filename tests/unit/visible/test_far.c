@@ -45,7 +45,7 @@ TEST(wide_angle_ghosts_are_marked_far)
     assert_false(visible.far);
 }
 
-/* Makes the zone of GHOST between the angles DEG and chooses its barrel
+/* Makes the zone of GHOST (its range of angles DEG) and chooses the barrel
  * apertures. FAR: by the rules for lights beyond 60 degrees. */
 static void find_barrels_of_zone(int ghost, const double deg[2], bool far,
                                  struct glint_zone_rays *rays)
@@ -132,7 +132,7 @@ static void fit_zone_of_grazed_barrel(bool far, int stopped,
 
     glint_brightness_set_angles(&brightness, 85);
     for (int k = 0; k < GLINT_BRIGHTNESS_ANGLES; k++)
-        /* a level far below the brightness of this ghost */
+        /* far below the brightness of this ghost */
         brightness.level[k] = 1e-9;
     find_barrels_of_zone(GRAZED, grazed_deg, true, &buffers.rays);
     visible.far = far;
