@@ -74,13 +74,13 @@ static inline void must_refuse_to_open(const struct glint_v4l2_config *wish,
     must_be_closed_camera();
 }
 
-static inline enum glint_status next(void)
+static inline enum glint_status get_next_frame(void)
 {
     said.text[0] = '\0';
     return v4l2.source.next(&v4l2.source, &frame, &said);
 }
 
-static inline void done(void)
+static inline void release_frame(void)
 {
     v4l2.source.done(&v4l2.source, &frame);
 }
@@ -88,17 +88,17 @@ static inline void done(void)
 /* Gets a frame, checks that its first byte is CODE, and releases it. */
 static inline void must_get_frame(int code)
 {
-    assert_ok(next());
+    assert_ok(get_next_frame());
     assert_non_null(frame.image.plane[0]);
     assert_int_equal(frame.image.plane[0][0], code);
-    done();
+    release_frame();
 }
 
 static inline void must_get_no_frame(void)
 {
-    assert_ok(next());
+    assert_ok(get_next_frame());
     assert_null(frame.image.plane[0]);
-    done();
+    release_frame();
 }
 
 /* Gets a frame every 10 ms until MS milliseconds of the fake clock have passed
@@ -109,12 +109,12 @@ static inline enum glint_status get_frames_during_ms(int ms, int *failed_ms)
     const int64_t start = fake_camera_time_us();
 
     while (fake_camera_time_us() - start < 1000 * (int64_t)ms) {
-        const enum glint_status status = next();
+        const enum glint_status status = get_next_frame();
 
         *failed_ms = (int)((fake_camera_time_us() - start) / 1000);
         if (status != GLINT_OK)
             return status;
-        done();
+        release_frame();
         fake_camera_advance_clock(10000);
     }
     return GLINT_OK;

@@ -158,7 +158,7 @@ static double decode_texel(const struct glint_environment *e, int k, size_t i,
     return decode_rgb9e5(e, ((const uint32_t *)e->texel[k])[i], c);
 }
 
-static double uniform_environment_light(const double d[3])
+static double compute_uniform_light(const double d[3])
 {
     (void)d;
     return 12.5;
@@ -169,7 +169,7 @@ TEST(uniform_light_stays_uniform)
     const struct glint_environment_options o = make_environment_options();
     struct baked b;
 
-    paint_panorama(uniform_environment_light);
+    paint_panorama(compute_uniform_light);
     bake_panorama(&b, &o);
     assert_string_equal(b.environment.header->name, "anight");
     assert_int_equal(b.environment.header->key[1], 1);
@@ -187,7 +187,7 @@ TEST(uniform_light_stays_uniform)
     free(b.data);
 }
 
-static double linear_environment_light(const double d[3])
+static double compute_linear_light(const double d[3])
 {
     return 1 + d[1];
 }
@@ -195,7 +195,7 @@ static double linear_environment_light(const double d[3])
 /* Returns light that is brightest in front. If the environment is rotated to
  * the right by 90 degrees, the light is 1 + x. The irradiance of a white
  * surface is then proportional to 1 + 2/3 x. */
-static double forward_environment_light(const double d[3])
+static double compute_forward_light(const double d[3])
 {
     return 1 + d[2];
 }
@@ -210,8 +210,7 @@ TEST(irradiance_matches_closed_form)
 
         o.turn_deg = 90 * turned;
         o.scale = 1 + turned;
-        paint_panorama(turned ? forward_environment_light
-                              : linear_environment_light);
+        paint_panorama(turned ? compute_forward_light : compute_linear_light);
         bake_panorama(&b, &o);
         for (int i = 0; i < 1024; i++) {
             double n[3], want;
@@ -231,7 +230,7 @@ TEST(irradiance_matches_closed_form)
     assert_true(worst < .006);
 }
 
-static double patchy_environment_light(const double d[3])
+static double compute_patchy_light(const double d[3])
 {
     return 1 + fmax(0, sin(9 * d[0]) * sin(7 * d[1] + 1) + sin(11 * d[2])) +
            (d[0] > .3 && d[1] > .2 ? 5 : 0);
@@ -247,7 +246,7 @@ TEST(levels_equal_sums_over_all_texels)
     struct baked b;
     double worst = 0;
 
-    paint_panorama(patchy_environment_light);
+    paint_panorama(compute_patchy_light);
     o.max_lights = 0;
     bake_panorama(&b, &o);
     assert_true(glint_sphere_allocate(&s, 2 * SIDE));
@@ -303,7 +302,7 @@ TEST(mipmap_levels_average_light)
     struct glint_environment_options o = make_environment_options();
     struct baked b;
 
-    paint_panorama(patchy_environment_light);
+    paint_panorama(compute_patchy_light);
     o.max_lights = 0;
     o.levels = GLINT_ENVIRONMENT_MIP;
     bake_panorama(&b, &o);
@@ -330,7 +329,7 @@ TEST(mipmap_levels_average_light)
 
 static const double sun[3] = {.48, .6, .64};
 
-static double sky_and_sun_light(const double d[3])
+static double compute_sky_and_sun_light(const double d[3])
 {
     return (compute_dot_product(d, sun) > cos(4 * GLINT_PI / 180) ? 4000 : 0) +
            1 + .5 * d[1];
@@ -347,7 +346,7 @@ TEST(disc_light_is_extracted)
     struct baked b;
     double d[3], power, u, v;
 
-    paint_panorama(sky_and_sun_light);
+    paint_panorama(compute_sky_and_sun_light);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++)
             if (picture[y][x][0] > 100)
@@ -390,7 +389,7 @@ TEST(disc_light_is_extracted)
     free(b.data);
 }
 
-static double bright_window_light(const double d[3])
+static double compute_bright_window_light(const double d[3])
 {
     return (d[2] > .9 ? 500 : 0) + 1;
 }
@@ -402,7 +401,7 @@ TEST(wide_and_touching_lights_lose_no_light)
     const struct glint_environment_options o = make_environment_options();
     struct baked b;
 
-    paint_panorama(bright_window_light);
+    paint_panorama(compute_bright_window_light);
     bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 250);
@@ -419,7 +418,7 @@ TEST(clamps_invalid_samples)
     struct glint_float_image narrow = image;
     struct baked b;
 
-    paint_panorama(uniform_environment_light);
+    paint_panorama(compute_uniform_light);
     picture[3][4][1] = -1;
     picture[5][6][0] = -2e30f;
     picture[10][8][2] = NAN;
@@ -529,7 +528,7 @@ TEST(rejects_damaged_files)
     struct baked b;
     const struct glint_environment_header *h;
 
-    paint_panorama(sky_and_sun_light);
+    paint_panorama(compute_sky_and_sun_light);
     bake_panorama(&b, &o);
     h = b.environment.header;
     check_damaged_file_is_rejected(&b, AT(magic), 0, "not a baked environment");

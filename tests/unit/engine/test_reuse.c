@@ -334,7 +334,7 @@ TEST(noise_of_lamps_traces_no_rays)
 
 /* Returns the distance, pixels, from LAMP to the nearest light whose rays are
  * reused. */
-static double distance_to_reused_light_px(const struct glint_lamp *lamp)
+static double measure_distance_to_reused_light_px(const struct glint_lamp *lamp)
 {
     const double degree = GLINT_PI / 180;
     const double pixels =
@@ -369,7 +369,7 @@ TEST(moving_lamp_is_traced_before_the_tolerance)
     for (int i = 0; i < 60; i++) {
         lamps[2].theta_deg += 0.005;
         n_reused += draw_stationary_lamps(LIGHTS - 1, 1);
-        assert_true(distance_to_reused_light_px(&lamps[2]) <= 0.5);
+        assert_true(measure_distance_to_reused_light_px(&lamps[2]) <= 0.5);
     }
     assert_true(n_reused > 48 && n_reused < 59);
     assert_false(draw_stationary_lamps(LIGHTS, 1));

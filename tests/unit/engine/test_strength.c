@@ -63,8 +63,9 @@ static double compute_exposed_flare_peak(struct glint_strength *s,
     return glint_largest_channel(s->light.peak);
 }
 
-static double flare_peak_of_still(double asked, const struct glint_response *r,
-                                  double theta, double power)
+static double compute_flare_peak_of_still(double asked,
+                                          const struct glint_response *r,
+                                          double theta, double power)
 {
     struct glint_engine_lamp lamp = make_lamp_at_angle(theta, power);
     struct glint_strength s;
@@ -87,10 +88,12 @@ TEST(peak_is_a_quarter_of_white_by_default)
 {
     const struct glint_response r = make_lens_response(0, 7);
 
-    assert_true(fabs(flare_peak_of_still(0.5, &r, 5, common) - 0.25) < 1e-4);
-    assert_true(fabs(flare_peak_of_still(1, &r, 5, common) - 1) < 1e-3);
-    assert_true(fabs(flare_peak_of_still(0.25, &r, 5, common) - 0.0625) < 1e-4);
-    assert_true(flare_peak_of_still(0, &r, 5, common) == 0);
+    assert_true(fabs(compute_flare_peak_of_still(0.5, &r, 5, common) - 0.25) <
+                1e-4);
+    assert_true(fabs(compute_flare_peak_of_still(1, &r, 5, common) - 1) < 1e-3);
+    assert_true(
+        fabs(compute_flare_peak_of_still(0.25, &r, 5, common) - 0.0625) < 1e-4);
+    assert_true(compute_flare_peak_of_still(0, &r, 5, common) == 0);
 }
 
 TEST(peak_rises_with_strength)
@@ -99,7 +102,7 @@ TEST(peak_rises_with_strength)
     double last = 0;
 
     for (double asked = 0.01; asked < 4; asked *= 1.1) {
-        const double peak = flare_peak_of_still(asked, &r, 12, 1e5);
+        const double peak = compute_flare_peak_of_still(asked, &r, 12, 1e5);
 
         assert_true(peak > last);
         last = peak;
@@ -114,7 +117,8 @@ TEST(any_lamp_power_gives_a_visible_flare)
     double last = 0;
 
     for (double stops = -4; stops <= 40; stops++) {
-        const double peak = flare_peak_of_still(0.5, &r, 12, exp2(stops));
+        const double peak =
+            compute_flare_peak_of_still(0.5, &r, 12, exp2(stops));
 
         assert_true(peak >= 0.124 && peak <= 0.501);
         assert_true(peak > last);
@@ -152,7 +156,7 @@ TEST(many_equal_lamps_share_the_exposure)
 
     for (int i = 0; i < 16; i++)
         lamps[i] = make_lamp_at_angle(i, 1e4);
-    one = flare_peak_of_still(0.5, &r, 1, 1e4);
+    one = compute_flare_peak_of_still(0.5, &r, 1, 1e4);
     each = compute_exposed_flare_peak(&strength, &r, lamps, NULL, 16, 0) /
            2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
@@ -395,7 +399,7 @@ TEST(strength_of_key_frames_applies_at_once)
         s.asked = 0.5;
         assert_true(
             fabs(compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                 flare_peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
+                 compute_flare_peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
         assert_true(part[0] > 0.998);
     }
 }

@@ -22,14 +22,15 @@ enum { WIDTH = 160, HEIGHT = 120 };
 
 /* ---------------------------------------------- reals (mantissa, exponent) */
 
-static double real_to_double(struct glint_real x)
+static double convert_real_to_double(struct glint_real x)
 {
     return ldexp(x.mantissa, x.exponent);
 }
 
 static void assert_relatively_near(struct glint_real got, double want)
 {
-    assert_true(fabs(real_to_double(got) - want) <= fabs(want) * 0x1p-28);
+    assert_true(fabs(convert_real_to_double(got) - want) <=
+                fabs(want) * 0x1p-28);
     assert_true(got.mantissa == 0 || llabs(got.mantissa) >= 1 << 30);
 }
 
@@ -57,8 +58,8 @@ TEST(sums_of_reals_are_right)
             assert_relatively_near(real_times(x, y), -p * q);
             assert_relatively_near(real_over(x, y), -p / q);
             assert_relatively_near(real_plus(x, z), p + q);
-            assert_true(fabs(real_to_double(x) - real_to_double(z)) <
-                            0x1p-28 * p ||
+            assert_true(fabs(convert_real_to_double(x) -
+                             convert_real_to_double(z)) < 0x1p-28 * p ||
                         real_less(x, z) == (p < q));
             assert_true(fabs((double)real_integer(x, 4, INT64_C(1) << 40) -
                              fmin(16 * p, 0x1p40)) <=

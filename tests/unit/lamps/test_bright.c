@@ -111,7 +111,7 @@ static void read_ycc_codes(const struct glint_image *image, int x, int y,
     }
 }
 
-static int brightness_of_clipped_luma(int luma)
+static int compute_brightness_of_clipped_luma(int luma)
 {
     return 250 + (luma > 177 ? (luma - 177) / 15 : 0);
 }
@@ -120,8 +120,9 @@ static int compute_rgb_brightness(int r, int g, int b)
 {
     const int largest = r > g ? r > b ? r : b : g > b ? g : b;
 
-    return largest < 250 ? largest
-                         : brightness_of_clipped_luma(compute_luma(r, g, b));
+    return largest < 250
+               ? largest
+               : compute_brightness_of_clipped_luma(compute_luma(r, g, b));
 }
 
 /* Sets *LEAST and *MOST to the brightness of pixel (X, Y) as its format defines
@@ -160,9 +161,10 @@ static void compute_brightness_range(const struct glint_image *image, int x,
     }
     for (int i = 0; i < 2; i++) {
         rounded[i] = (int)floor(largest + 0.3 + 0.4 * i);
-        rounded[i] = rounded[i] < 0      ? 0
-                     : rounded[i] >= 250 ? brightness_of_clipped_luma(luma)
-                                         : rounded[i];
+        rounded[i] = rounded[i] < 0 ? 0
+                     : rounded[i] >= 250
+                         ? compute_brightness_of_clipped_luma(luma)
+                         : rounded[i];
     }
     *least = rounded[0];
     *most = rounded[1];

@@ -13,7 +13,7 @@
 #include "support/test.h"
 
 /* Opens the model DATA. Returns the error, or NULL if it is valid. */
-static const char *open_model_error(const void *data, size_t bytes)
+static const char *find_model_error(const void *data, size_t bytes)
 {
     struct glint_lens lens = {0};
     const char *reason = NULL;
@@ -60,10 +60,10 @@ TEST(rejects_truncated_models)
             bytes < 8 ? "this is not a glint model" : "the model is truncated";
 
         memcpy(copy, m.data, bytes);
-        assert_string_equal(open_model_error(copy, bytes), expected);
+        assert_string_equal(find_model_error(copy, bytes), expected);
         free(copy);
     }
-    assert_string_equal(open_model_error(m.data, m.bytes + 4),
+    assert_string_equal(find_model_error(m.data, m.bytes + 4),
                         "the model file is longer than its header says");
     free(m.data);
 }
@@ -72,10 +72,10 @@ static void check_every_flipped_bit(struct model_image m)
 {
     for (size_t bit = 0; bit < 8 * (size_t)m.bytes; bit++) {
         m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
-        assert_non_null(open_model_error(m.data, m.bytes));
+        assert_non_null(find_model_error(m.data, m.bytes));
         m.data[bit / 8] ^= (unsigned char)(1 << bit % 8);
     }
-    assert_null(open_model_error(m.data, m.bytes));
+    assert_null(find_model_error(m.data, m.bytes));
     free(m.data);
 }
 
@@ -97,24 +97,24 @@ TEST(rejects_files_that_are_not_models)
     bytes = fread(text, 1, sizeof text, file);
     fclose(file);
     memcpy(copy, text, bytes);
-    assert_string_equal(open_model_error(copy, bytes),
+    assert_string_equal(find_model_error(copy, bytes),
                         "this is not a glint model");
     free(copy);
     memmove(m.data + 2, m.data, m.bytes);
     assert_string_equal(
-        open_model_error(m.data + 2, m.bytes),
+        find_model_error(m.data + 2, m.bytes),
         "the model's address in memory is not a multiple of 4 bytes");
     memmove(m.data, m.data + 2, m.bytes);
     word[1] = GLINT_MODEL_VERSION + 1;
-    assert_string_equal(open_model_error(m.data, m.bytes),
+    assert_string_equal(find_model_error(m.data, m.bytes),
                         "the model was made by a newer glint");
-    assert_string_equal(open_model_error(m.data, 8),
+    assert_string_equal(find_model_error(m.data, 8),
                         "the model was made by a newer glint");
     word[1] = GLINT_MODEL_VERSION - 1;
-    assert_string_equal(open_model_error(m.data, m.bytes),
+    assert_string_equal(find_model_error(m.data, m.bytes),
                         "the model was made by an older glint: bake it again");
     word[1] = 0;
-    assert_string_equal(open_model_error(m.data, m.bytes),
+    assert_string_equal(find_model_error(m.data, m.bytes),
                         "this is not a glint model, or its version is damaged");
     free(m.data);
 }
@@ -337,7 +337,7 @@ static void check_validity_rule(struct model_image m, const struct rule *r,
     memcpy(m.data + compute_table_offset(&m, r->table) + r->at, &r->value,
            r->bytes);
     model_seal_checksum(&m);
-    reason = open_model_error(m.data, m.bytes);
+    reason = find_model_error(m.data, m.bytes);
     if (reason != r->reason &&
         (!reason || !r->reason || strcmp(reason, r->reason) != 0))
         fail_msg("rule %d: '%s', not '%s'", (int)number,
@@ -358,7 +358,7 @@ TEST(rejects_an_endless_name)
 
     memset(model_header_of(&m)->name, 'x', 64);
     model_seal_checksum(&m);
-    assert_string_equal(open_model_error(m.data, m.bytes),
+    assert_string_equal(find_model_error(m.data, m.bytes),
                         "damaged model: its name is not zero-terminated");
     free(m.data);
 }
@@ -369,7 +369,7 @@ TEST(accepts_a_model_without_ghosts)
 
     model_header_of(&m)->n_ghosts = model_header_of(&m)->n_systems = 0;
     model_seal_checksum(&m);
-    assert_null(open_model_error(m.data, m.bytes));
+    assert_null(find_model_error(m.data, m.bytes));
     free(m.data);
 }
 
@@ -391,7 +391,7 @@ TEST(rejects_too_many_shared_tables)
         s[k].sine_hi_q30 = 1000 * (k + 1);
     }
     model_append_ghosts(&m, &ghost, 1, s, N);
-    assert_string_equal(open_model_error(m.data, m.bytes),
+    assert_string_equal(find_model_error(m.data, m.bytes),
                         "damaged model: systems share too many tables");
     free(m.data);
 }

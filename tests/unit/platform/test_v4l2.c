@@ -159,10 +159,10 @@ TEST(uses_the_format_that_the_camera_sets)
     assert_int_equal(v4l2.device.format.height, 48);
     assert_int_equal(v4l2.device.format.fps_num, 30);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     assert_int_equal(frame.image.width, 64);
     assert_int_equal(frame.image.height, 48);
-    done();
+    release_frame();
     must_close_camera();
 }
 
@@ -212,10 +212,10 @@ TEST(reads_the_colour_declaration)
     wish.matrix = GLINT_MATRIX_BT601;
     must_open_camera(&wish);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     assert_int_equal(frame.image.range, GLINT_RANGE_LIMITED);
     assert_int_equal(frame.image.matrix, GLINT_MATRIX_BT601);
-    done();
+    release_frame();
     must_close_camera();
 }
 
@@ -271,18 +271,18 @@ TEST(reads_padded_rows)
     camera.stride_more = 24;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0,
                                    2 * 64 + 24);
-    done();
+    release_frame();
     must_close_camera();
     camera.stride_more = 0;
     camera.reports_no_stride = true;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 2 * 64);
-    done();
+    release_frame();
     must_close_camera();
 }
 
@@ -292,21 +292,21 @@ TEST(reads_planes_in_one_block)
     camera.stride_more = 16;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
     expect_plane_offset_and_stride(1, address_of_mapped_block(0), 80 * 48, 80);
-    done();
+    release_frame();
     must_close_camera();
     set_camera_format(V4L2_PIX_FMT_YUV420, true);
     camera.stride_more = 16;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
     expect_plane_offset_and_stride(1, address_of_mapped_block(0), 80 * 48, 40);
     expect_plane_offset_and_stride(2, address_of_mapped_block(0),
                                    80 * 48 + 40 * 24, 40);
-    done();
+    release_frame();
     must_close_camera();
 }
 
@@ -319,11 +319,11 @@ TEST(reads_planes_in_several_blocks)
     must_open_camera(NULL);
     assert_int_equal(v4l2.device.format.n_blocks, 2);
     fake_camera_add_frame(0, 9);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     assert_int_equal(frame.image.format, GLINT_NV12);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
     expect_plane_offset_and_stride(1, address_of_mapped_block(1), 0, 80);
-    done();
+    release_frame();
     must_close_camera();
     set_camera_format(V4L2_PIX_FMT_YUV420M, true);
     must_open_camera(NULL);
@@ -331,10 +331,10 @@ TEST(reads_planes_in_several_blocks)
     f->is_odd = true; /* with this flag, bytesused of 0 means 0 bytes */
     f->bytesused[0] = 64 * 48;
     f->bytesused[1] = f->bytesused[2] = 32 * 24;
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     assert_non_null(frame.image.plane[0]);
     expect_plane_offset_and_stride(2, address_of_mapped_block(2), 0, 32);
-    done();
+    release_frame();
     f = fake_camera_add_frame(1, 9);
     f->is_odd = true;
     f->bytesused[0] = 64 * 48;
@@ -356,9 +356,9 @@ TEST(skips_data_before_the_image)
     f->is_odd = true;
     f->data_offset[0] = 32;
     f->bytesused[0] = 2 * 64 * 48 + 32;
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 32, 2 * 64);
-    done();
+    release_frame();
     f = fake_camera_add_frame(1, 9);
     f->is_odd = true;
     f->data_offset[0] = 33;
@@ -441,7 +441,7 @@ TEST(delivers_the_newest_frame)
     must_get_no_frame();
     for (int i = 0; i < 3; i++)
         fake_camera_add_frame((uint32_t)i, 10 + i)->time_us = 5000 + i;
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     assert_int_equal(frame.image.plane[0][0], 12);
     assert_int_equal(frame.n_late, 2);
     assert_int_equal(frame.n_dropped, 0);
@@ -450,9 +450,9 @@ TEST(delivers_the_newest_frame)
     /* one of the four buffers is lent to the caller */
     assert_int_equal(camera.n_queued, 3);
     fake_camera_add_frame(3, 13);
-    done();
+    release_frame();
     assert_int_equal(camera.n_queued, 4);
-    done(); /* releasing the frame again has no effect */
+    release_frame(); /* releasing the frame again has no effect */
     assert_int_equal(camera.n_queued, 4);
     must_get_frame(13);
     must_close_camera();
@@ -493,7 +493,7 @@ TEST(lent_frame_is_unchanged)
 
     must_open_camera(NULL);
     fake_camera_add_frame(0, 50);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     kept = frame;
     for (int i = 1; i < 20; i++) {
         fake_camera_add_frame((uint32_t)i, i);

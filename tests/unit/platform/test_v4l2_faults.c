@@ -112,11 +112,11 @@ TEST(works_without_optional_requests)
  * byte is CODE. */
 static void must_get_frame_of_width(int width, int code)
 {
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     assert_non_null(frame.image.plane[0]);
     assert_int_equal(frame.image.width, width);
     assert_int_equal(frame.image.plane[0][0], code);
-    done();
+    release_frame();
 }
 
 /* Breaks a stream while another program sets another size. Checks that the
@@ -154,7 +154,7 @@ TEST(restart_may_change_the_format)
     }
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
     camera.is_broken = true;
-    assert_int_equal(next(), GLINT_E_UNSUPPORTED);
+    assert_int_equal(get_next_frame(), GLINT_E_UNSUPPORTED);
     assert_non_null(strstr(said.text, "delivers pixel format H264"));
     must_close_camera();
 }
@@ -239,11 +239,11 @@ TEST(reports_an_unplugged_camera)
 
     must_open_camera(NULL);
     fake_camera_add_frame(0, 1);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     /* the camera disappears while a frame is lent to the caller */
     camera.is_gone = true;
-    done();
-    assert_int_equal(next(), GLINT_E_DEVICE);
+    release_frame();
+    assert_int_equal(get_next_frame(), GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": the camera was removed");
     must_close_camera();
     must_refuse_to_open(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
@@ -280,11 +280,11 @@ static void check_stream_of_damaged_frames(bool as_jpeg)
         f->flags = as_jpeg ? 0 : V4L2_BUF_FLAG_ERROR;
         f->data = as_jpeg ? garbage : NULL;
         f->bytesused[0] = as_jpeg ? sizeof garbage : 0;
-        status = next();
+        status = get_next_frame();
         n_corrupt += frame.n_corrupt;
         assert_int_equal(v4l2.source.n_restarts,
                          (n_frames + 1) / 30 > 1 ? 1 : (n_frames + 1) / 30);
-        done();
+        release_frame();
         fake_camera_advance_clock(33333);
     }
     assert_int_equal(status, GLINT_E_DEVICE);
@@ -331,7 +331,7 @@ TEST(unqueued_buffer_causes_a_restart)
     assert_int_equal(v4l2.source.n_restarts, 1);
     camera.returned_index = 0;
     fake_camera_add_frame(0, 1);
-    assert_int_equal(next(), GLINT_OK);
+    assert_int_equal(get_next_frame(), GLINT_OK);
     kept = frame;
     fake_camera_add_frame(1, 2);
     /* returned_index is 1 plus a buffer index. Buffer 0, which is lent to the
@@ -557,10 +557,10 @@ static enum glint_status run_capture_session(enum glint_v4l2_io io,
         fake_camera_add_frame(i, (int)i);
         camera.is_broken |= i == 4;
         camera.n_events += i == 8;
-        status = next();
+        status = get_next_frame();
         n_got += status == GLINT_OK && frame.image.plane[0] != NULL;
         if (status == GLINT_OK)
-            done();
+            release_frame();
         fake_camera_advance_clock(33333);
     }
     *n_calls = fake_camera_fail_call(0, 0, false);

@@ -58,7 +58,7 @@ static bool is_clean_outline(const float *rgb, int at, int step)
 
 /* Returns the squared cosine of the angle between STEP and the gradient of the
  * light. */
-static double gradient_cosine2(const float *rgb, int at, int step)
+static double compute_gradient_cosine2(const float *rgb, int at, int step)
 {
     const int aside = step == 3 || step == -3 ? 3 * W : 3;
     const double a = (double)rgb[at - step] - (double)rgb[at + step];
@@ -69,7 +69,7 @@ static double gradient_cosine2(const float *rgb, int at, int step)
 
 static void add_outline_offset(struct offsets *o, int at, int step)
 {
-    const double cos2 = gradient_cosine2(finest, at, step);
+    const double cos2 = compute_gradient_cosine2(finest, at, step);
     double off;
 
     if (cos2 < 0.5 || !is_clean_outline(finest, at, step) ||

@@ -331,7 +331,7 @@ TEST(b8_changed_environment_equals_a_new_scene)
 
 /* Opens the file of D again after it was modified. Returns the error, or
  * NULL. */
-static const char *reopen_modified_file_error(struct drawn *d)
+static const char *find_error_of_modified_file(struct drawn *d)
 {
     struct glint_scene_model model;
     const char *reason = "";
@@ -344,12 +344,12 @@ static const char *reopen_modified_file_error(struct drawn *d)
 
 /* Sets FIELD to VALUE, checks that opening fails with REASON, and restores
  * FIELD. */
-#define REFUSES(field, value, reason)                                \
-    do {                                                             \
-        const int32_t was = (int32_t)(field);                        \
-        (field) = (value);                                           \
-        assert_string_equal(reopen_modified_file_error(&d), reason); \
-        memcpy(&(field), &was, sizeof(field));                       \
+#define REFUSES(field, value, reason)                                 \
+    do {                                                              \
+        const int32_t was = (int32_t)(field);                         \
+        (field) = (value);                                            \
+        assert_string_equal(find_error_of_modified_file(&d), reason); \
+        memcpy(&(field), &was, sizeof(field));                        \
     } while (0)
 
 TEST(rejects_invalid_environment_tables)

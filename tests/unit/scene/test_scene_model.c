@@ -37,7 +37,7 @@ static struct scene_file *make_scene_of_all_types(void)
 }
 
 /* Opens scene S. Returns the error, or NULL if it is valid. */
-static const char *open_scene_error(const struct scene_file *s)
+static const char *find_scene_error(const struct scene_file *s)
 {
     struct glint_scene_model model = {0};
     const char *reason = NULL;
@@ -55,7 +55,7 @@ static void expect_scene_error(struct scene_file *s, const char *expected)
     const char *reason;
 
     scene_seal_checksum(s);
-    reason = open_scene_error(s);
+    reason = find_scene_error(s);
     assert_non_null(reason);
     assert_string_equal(reason, expected);
 }
@@ -88,7 +88,7 @@ TEST(rejects_truncated_scenes)
         free(copy);
     }
     file.data[20] ^= 1;
-    assert_string_equal(open_scene_error(&file),
+    assert_string_equal(find_scene_error(&file),
                         "the checksum is wrong: the scene is damaged");
 }
 
@@ -208,7 +208,7 @@ TEST(rejects_wrong_grid_lists)
         &file, "damaged scene: a grid cell lists its triangles out of order");
     make_scene_of_all_types();
     scene_seal_checksum(&file);
-    assert_null(open_scene_error(&file));
+    assert_null(find_scene_error(&file));
 }
 
 TEST(rejects_invalid_meshes)

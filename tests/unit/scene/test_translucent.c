@@ -96,8 +96,8 @@ TEST(more_products_approximate_better)
  * afterwards. */
 typedef void damage_fn(struct glint_translucent_header *h, unsigned char *data);
 
-static int16_t *kernel_taps(const struct glint_translucent_header *h,
-                            unsigned char *data)
+static int16_t *address_of_kernel_taps(const struct glint_translucent_header *h,
+                                       unsigned char *data)
 {
     return (int16_t *)(void *)(data + h->tap_at);
 }
@@ -108,7 +108,7 @@ static void set_too_large_column_taps(struct glint_translucent_header *h,
                                       unsigned char *data)
 {
     for (uint32_t k = 0; k < h->kernel * h->rank * h->n_planes; k++)
-        kernel_taps(
+        address_of_kernel_taps(
             h, data)[(2 * (k / h->kernel) + 1) * h->kernel + k % h->kernel] =
             k % 2 ? 2047 : -2047;
 }
@@ -117,7 +117,7 @@ static void set_too_large_row_taps(struct glint_translucent_header *h,
                                    unsigned char *data)
 {
     for (uint32_t k = 0; k < h->kernel; k++)
-        kernel_taps(h, data)[k] = k % 2 ? 2047 : -2047;
+        address_of_kernel_taps(h, data)[k] = k % 2 ? 2047 : -2047;
 }
 
 static void decrement_shift(struct glint_translucent_header *h,
@@ -139,7 +139,7 @@ static void set_shift_out_of_range(struct glint_translucent_header *h,
 static void set_tap_out_of_range(struct glint_translucent_header *h,
                                  unsigned char *data)
 {
-    kernel_taps(h, data)[0] = -32768;
+    address_of_kernel_taps(h, data)[0] = -32768;
 }
 
 static void set_cluster_out_of_range(struct glint_translucent_header *h,

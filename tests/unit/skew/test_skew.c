@@ -89,16 +89,16 @@ static const struct glint_place place = {.cos_q30 = ONE,
                                          .middle_x_q8 = 960 << 8,
                                          .middle_y_q8 = 540 << 8};
 
-static double real_to_double(const struct meter *m,
-                             const struct glint_outputs *o, int kind)
+static double convert_output_to_double(const struct meter *m,
+                                       const struct glint_outputs *o, int kind)
 {
     return ldexp(o->at[kind], m->t.exponent[kind]);
 }
 
 /* Returns the distance between vertex V and the position where the exact ray
  * (X, Y) lands, pixels. */
-static double distance_to_landing_position_px(const struct glint_vertex *v,
-                                              double x_mm, double y_mm)
+static double compute_landing_distance_px(const struct glint_vertex *v,
+                                          double x_mm, double y_mm)
 {
     return hypot(v->x_q8 / 256.0 - 960 - 53 * x_mm,
                  540 - v->y_q8 / 256.0 - 53 * y_mm);
@@ -153,20 +153,24 @@ static void compare_grid_ray(struct meter *m, int i, int j,
         return;
     glint_transfer_ray(&m->t, (int32_t)lrint(u * 0x1p30),
                        (int32_t)lrint(w * 0x1p30), &o);
-    m->places2 +=
-        pow(x * real_to_double(m, &o, GLINT_OUT_SENSOR_X) - ray.sensor_x_mm,
-            2) +
-        pow(y * real_to_double(m, &o, GLINT_OUT_SENSOR_Y) - ray.sensor_y_mm, 2);
-    m->stops2 +=
-        pow(x * real_to_double(m, &o, GLINT_OUT_STOP_X) - ray.stop_x_mm / stop,
-            2) +
-        pow(y * real_to_double(m, &o, GLINT_OUT_STOP_Y) - ray.stop_y_mm / stop,
-            2);
-    m->energies2 +=
-        pow(real_to_double(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
-    m->off = fmax(m->off, distance_to_landing_position_px(
-                              v, x * real_to_double(m, &o, GLINT_OUT_SENSOR_X),
-                              y * real_to_double(m, &o, GLINT_OUT_SENSOR_Y)));
+    m->places2 += pow(x * convert_output_to_double(m, &o, GLINT_OUT_SENSOR_X) -
+                          ray.sensor_x_mm,
+                      2) +
+                  pow(y * convert_output_to_double(m, &o, GLINT_OUT_SENSOR_Y) -
+                          ray.sensor_y_mm,
+                      2);
+    m->stops2 += pow(x * convert_output_to_double(m, &o, GLINT_OUT_STOP_X) -
+                         ray.stop_x_mm / stop,
+                     2) +
+                 pow(y * convert_output_to_double(m, &o, GLINT_OUT_STOP_Y) -
+                         ray.stop_y_mm / stop,
+                     2);
+    m->energies2 += pow(
+        convert_output_to_double(m, &o, GLINT_OUT_ENERGY) / ray.energy - 1, 2);
+    m->off = fmax(
+        m->off, compute_landing_distance_px(
+                    v, x * convert_output_to_double(m, &o, GLINT_OUT_SENSOR_X),
+                    y * convert_output_to_double(m, &o, GLINT_OUT_SENSOR_Y)));
     m->n++;
 }
 

@@ -19,9 +19,10 @@
 /* Returns the mean of the diffraction pattern |F|^2 / A^2 times q^3 / AT^3 over
  * the frequencies q of 0.8 to 1.2 times AT, in the direction PHI. F is the
  * amplitude and A the area of the stop. */
-static double
-mean_scaled_pattern(double (*f)(const struct glint_arcs *, double, double),
-                    const struct glint_arcs *arcs, double at, double phi)
+static double compute_mean_scaled_pattern(double (*f)(const struct glint_arcs *,
+                                                      double, double),
+                                          const struct glint_arcs *arcs,
+                                          double at, double phi)
 {
     enum { N = 400 };
     double sum = 0;
@@ -58,15 +59,16 @@ TEST(arcs_end_at_the_corners)
             double one, other;
 
             glint_arcs_init(&arcs, blades[i], 10, 0.9999);
-            one =
-                mean_scaled_pattern(glint_arcs_compute_pattern, &arcs, at, phi);
-            other = mean_scaled_pattern(compute_circle_pattern, &arcs, at, phi);
+            one = compute_mean_scaled_pattern(glint_arcs_compute_pattern, &arcs,
+                                              at, phi);
+            other = compute_mean_scaled_pattern(compute_circle_pattern, &arcs,
+                                                at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
             glint_arcs_init(&arcs, blades[i], 10, 1e-3);
-            one =
-                mean_scaled_pattern(glint_arcs_compute_pattern, &arcs, at, phi);
-            other =
-                mean_scaled_pattern(compute_polygon_pattern, &arcs, at, phi);
+            one = compute_mean_scaled_pattern(glint_arcs_compute_pattern, &arcs,
+                                              at, phi);
+            other = compute_mean_scaled_pattern(compute_polygon_pattern, &arcs,
+                                                at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
         }
 }
@@ -105,9 +107,9 @@ TEST(distant_pattern_sums_over_a_circle)
         glint_arcs_init(&arcs, 5 + k % 4, 10, 0.05 + 0.3 * (k / 4 % 3));
         for (int i = 0; i < PHIS; i++) {
             const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
-            const double one =
-                mean_scaled_pattern(glint_arcs_compute_pattern, &arcs, at, phi);
-            const double other = mean_scaled_pattern(
+            const double one = compute_mean_scaled_pattern(
+                glint_arcs_compute_pattern, &arcs, at, phi);
+            const double other = compute_mean_scaled_pattern(
                 glint_arcs_compute_far_pattern, &arcs, at, phi);
 
             assert_true(other > 0.3 * one && other < 3 * one);
