@@ -75,7 +75,7 @@ struct hostile_result {
     /* memory used for drawing and its limit, bytes */
     double bytes, most_bytes;
     int plans;
-    const char *reason; /* reason of HOSTILE_REFUSED */
+    const char *reason; /* why the model was rejected */
 };
 
 /* Draws SCENE at 640x360 with the default limits and sets RESULT. Returns false

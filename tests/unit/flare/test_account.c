@@ -199,7 +199,7 @@ TEST(counts_bundles_without_light)
     struct fixture f;
 
     open_model_with_beams(&f, 2);
-    /* Without red light, wavelength 0 is dark. */
+    /* Without red light, wavelength 0 has no light. */
     f.light[1].rgb_q14[0] = 0;
     assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);

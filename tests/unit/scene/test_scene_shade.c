@@ -174,7 +174,7 @@ TEST(a7_diffuse_light_of_a_lamp)
     scene_add_plane(&file, "floor", scene_add_material(&file, "red"), 0);
     file.material[0].rgb_q15[1] = file.material[0].rgb_q15[2] = 0;
     scene_add_lamp(&file, lamp,
-                   /* light whose irradiance is 1 at a distance of 50 */
+                   /* distance at which the irradiance of the lamp is 1 */
                    50 * UNIT);
     s = start_renderer(1);
     assert_true(intersect_and_shade_ray(s, &down, &to));

@@ -179,9 +179,9 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
 }
 
 /* The complete ghost lies within 0.003 of the rim of the barrel aperture.
- * Checks that the rules for lights beyond 60 degrees fit the grazed aperture
- * with an error below a hundredth of this. Those for lights nearer to the axis
- * must fit it less precisely, as it matters little there. */
+ * Checks that the rules for lights beyond 60 degrees fit this aperture with an
+ * error below a hundredth of that range. The rules for lights nearer to the
+ * axis must fit it less precisely, as grazed apertures matter little there. */
 TEST(grazed_barrel_is_fitted_within_its_margin)
 {
     struct glint_fitted_system system;
