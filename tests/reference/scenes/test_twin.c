@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests the reference renderer of scenes: requirements A1 to A15
- * (src/README.md), with expected values computed by hand.
+ * Tests the reference renderer of scenes against values computed by hand. A1 to
+ * A15 number the requirements, which the tests state.
  */
 #include <math.h>
 #include <stdint.h>

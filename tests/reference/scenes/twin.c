@@ -146,7 +146,7 @@ static void aim_at_light_disc(const struct glint_description *scene,
 }
 
 /* Returns the fraction of a light at DISTANCE that reaches HIT. Objects farther
- * away than the light do not occlude it (A10). */
+ * away than the light do not occlude it. */
 static double
 compute_light_visibility(const struct twin *twin, const struct twin_hit *hit,
                          const struct glint_described_light *light,
@@ -214,8 +214,7 @@ static void interpolate_texels(const struct twin_texels *t, const double uv[2],
     }
 }
 
-/* Sets RGB to the light at HIT by Phong's model, seen from direction TOWARD
- * (A7, A8). */
+/* Sets RGB to the light at HIT by Phong's model, seen from direction TOWARD. */
 static void compute_phong_terms(const struct twin *twin,
                                 const struct twin_hit *hit,
                                 const double toward[3], double rgb[3])
@@ -257,9 +256,9 @@ static void compute_phong_terms(const struct twin *twin,
 
 /* -------------------------------------------- transmitted and mirrored rays */
 
-/* Refracts direction D at a surface by Snell's law (A12). The normal N points
- * to the ray's origin; ETA is the refractive index before the surface divided
- * by that behind it. Returns false at total reflection. */
+/* Refracts direction D at a surface by Snell's law. The normal N points to the
+ * ray's origin; ETA is the refractive index before the surface divided by that
+ * behind it. Returns false at total reflection. */
 static bool refract_direction(const double d[3], const double n[3], double eta,
                               double to[3])
 {
@@ -274,7 +273,7 @@ static bool refract_direction(const double d[3], const double n[3], double eta,
     return true;
 }
 
-/* Mirrors direction D at a surface with normal N: D - 2 (D.N) N (A9). */
+/* Mirrors direction D at a surface with normal N: D - 2 (D.N) N. */
 static void reflect_direction(const double d[3], const double n[3],
                               double to[3])
 {
@@ -321,7 +320,7 @@ static void move_to_ball_exit(const struct twin *twin,
 }
 
 /* Moves P through the surface at HIT: for a ball, to the point where P leaves
- * it (A11); otherwise just behind the surface. */
+ * it; otherwise just behind the surface. */
 static void pass_through_surface(const struct twin *twin,
                                  const struct twin_hit *hit, struct passing *p)
 {

@@ -14,8 +14,8 @@
 
 /* ------------------------------------------------------ spheres and planes */
 
-/* A15: with L the vector from the ray's origin to the centre, d the ray's
- * direction and s = L.d, the ray hits if |L - s d|^2 <= r^2. */
+/* With L the vector from the ray's origin to the centre, d the ray's direction
+ * and s = L.d, the ray hits if |L - s d|^2 <= r^2. */
 static bool intersect_sphere(const struct glint_described_object *o,
                              const struct twin_ray *ray, double most,
                              struct twin_hit *hit)

@@ -138,7 +138,7 @@ static bool ray_passes_box(const struct twin_node *node,
 
 /* Finds the intersection of RAY with triangle I nearer than hit->t, by
  * [Moller97]. The point is V0 + u (V1 - V0) + v (V2 - V0), where V0, V1 and V2
- * are the corners (A13). */
+ * are the corners. */
 static bool intersect_triangle(const struct twin *twin, int i,
                                const struct twin_ray *ray, struct twin_hit *hit)
 {
@@ -159,8 +159,8 @@ static bool intersect_triangle(const struct twin *twin, int i,
         v = -v;
         t = -t;
     }
-    /* A14: if the ray lies in the triangle's plane, or the triangle has no
-     * area, det, u, v and t are 0 */
+    /* if the ray lies in the triangle's plane, or the triangle has no area,
+     * det, u, v and t are 0 */
     if (!(fabs(det) > 0) || u < 0 || v < 0 || u + v > fabs(det) || t <= 0 ||
         t >= hit->t * fabs(det))
         return false;
