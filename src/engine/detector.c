@@ -7,12 +7,14 @@
 
 #include "engine/frame/block.h"
 
-/* Min number of spots of a still picture whose profiles are measured. The
- * strongest lamps are selected from these. */
+/* Min number of spots (bright regions that may be lamps) of a still picture
+ * around which light is measured. The lamps of highest power are selected from
+ * these. */
 enum { MEASURED = 16 };
 
-/* Returns the max number of tracked lamps if MAX lamps are shown. It exceeds
- * MAX, so that a lamp has a track before it is strong enough to be shown. */
+/* Returns the max number of tracked lamps if MAX lamps are shown. The result
+ * exceeds MAX, so that a lamp is tracked before it is strong enough to be
+ * shown. */
 static int choose_max_tracks(int max)
 {
     const int wanted = max < 64 ? 128 : 2 * max;
@@ -116,8 +118,8 @@ static int32_t max_i32(int32_t a, int32_t b)
 
 /* Returns the min semi-axis, pixels, of a lamp whose image in a still picture
  * is SPOT. Glare around a clipped core hides how small the lamp is. Without
- * this minimum it would be drawn as a point, whose ghosts have unrealistically
- * sharp outlines. */
+ * this minimum the lamp would be drawn as a point, and the outlines of its
+ * ghosts would be too sharp. */
 static int32_t compute_min_axis_q8(const struct glint_spot *spot)
 {
     return spot->size_q8 / 6;
@@ -146,8 +148,8 @@ make_track_of_still_picture(const struct glint_spot *spot, uint32_t id)
 }
 
 /* Sets the power of a spot as if each clipped pixel had the light 2^headroom.
- * Tracks can store powers only up to 2^42. So for a headroom above 8 stops the
- * unit of power is 2^(headroom - 8). */
+ * Tracks can store powers only up to 2^42. So for a headroom above 8 stops
+ * powers are divided by 2^(headroom - 8), which is stored in member scale. */
 static void set_spot_power(struct glint_lamp_detector *f,
                            struct glint_spot *spot)
 {
@@ -158,10 +160,10 @@ static void set_spot_power(struct glint_lamp_detector *f,
         ((double)spot->flux_q16 + spot->n_clipped * each) / f->scale, 0x1p42);
 }
 
-/* Finds the spots of IMAGE, at most MAX, and measures the profiles of the
+/* Finds the spots of IMAGE, at most MAX, and measures the light around the
  * strongest, at most max_tracks. Returns the number of spots. In a city at
- * night, measuring the profiles of all of a thousand spots would cost several
- * times as much as finding them. */
+ * night, to measure all of a thousand spots would cost several times as much as
+ * to find them. */
 static int find_and_measure_spots(struct glint_lamp_detector *f,
                                   const struct glint_image *image, int max)
 {
@@ -195,10 +197,9 @@ static void move_strongest_spots_to_front(struct glint_spot *spot, int n,
 }
 
 /* Finds the lamps of a still picture, without tracking. Returns their number,
- * at most f->max. If max is below MEASURED, the profiles of MEASURED spots are
- * measured, and the spots of the highest power are selected. A flat window may
- * have more clipped light than a brighter lamp, so clipped light alone is not
- * enough for the choice. */
+ * at most f->max. The light around at least MEASURED spots is measured before
+ * the spots of highest power are selected: a lit window may have more clipped
+ * light than a brighter lamp. */
 static int find_lamps_in_still_picture(struct glint_lamp_detector *f,
                                        const struct glint_image *image)
 {

@@ -15,8 +15,8 @@ enum { GLINT_LAMP_DETECTOR_MAX = 1024 }; /* equal to GLINT_ENGINE_MAX_LAMPS */
 
 struct glint_lamp_detector {
     double headroom_ev; /* assumed light of clipped pixels, stops above white;
-                           below 0: the light of each lamp is estimated from its
-                           surroundings */
+                           below 0: the clipped light of each lamp is estimated
+                           from its surroundings */
     int max; /* max number of lamps per picture, 1 .. GLINT_LAMP_DETECTOR_MAX */
 
     /* Lamps of the last frame in picture coordinates, the strongest first. The
@@ -28,8 +28,7 @@ struct glint_lamp_detector {
     struct glint_lamp_finder *lights;
     struct glint_lamp_tracker *tracks;
     struct glint_profile *profile;
-    double scale;            /* factor from the power of a track to the power of
-                                its lamp */
+    double scale;            /* power of a lamp / power of its track */
     struct glint_spot *spot; /* [GLINT_LAMP_DETECTOR_MAX] */
     int n_spots; /* number of bright spots in the last frame, including spots
                     that are not lamps */
@@ -55,8 +54,8 @@ void glint_lamp_detector_close(struct glint_lamp_detector *detector);
 /* Finds the lamps of IMAGE, writes them to LAMPS, an array of
  * GLINT_LAMP_DETECTOR_MAX, and returns their number. ELAPSED_US is the time
  * since the last frame; 0: IMAGE is a still picture. VIEW and FOCAL_MM convert
- * pixels to directions. Lamps of a video fade in and out as described in
- * glint/lamp_tracker.h. So their number may exceed max for a while. */
+ * pixels to directions. In a video lamps fade in and out, so that their number
+ * may exceed max for a while. */
 int glint_lamp_detector_find_lamps(struct glint_lamp_detector *detector,
                                    const struct glint_image *image,
                                    int32_t elapsed_us,

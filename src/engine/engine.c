@@ -323,8 +323,8 @@ static enum glint_status init_engine(struct glint_engine *e,
     if (status == GLINT_OK)
         status = init_drawing_frame(e, c);
     /* If the caller sets the exposure, only glint_engine_exposed() needs the
-     * response. Without a model the response is measured when a video needs
-     * it. */
+     * lens response. Without a model (exact rays) the response is measured when
+     * a video needs it. */
     if (status == GLINT_OK && e->paint.frame.lens &&
         (!c->light.by_hand || c->cache))
         status = glint_response_measure_cached(&e->paint.frame, c->arena_bytes,

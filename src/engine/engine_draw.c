@@ -34,8 +34,9 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     return status;
 }
 
-/* Draws the selected parts of the flare into RGB, linear light. Plan and
- * quality are those of a picture of 8-bit codes. */
+/* Draws the selected parts of the flare (ghosts, starbursts, veil) into RGB,
+ * linear light. Ghosts and quality are chosen as for a picture of 8-bit
+ * codes. */
 static enum glint_status
 draw_linear_with_8bit_plan(struct glint_frame *f,
                            const struct glint_lamp *lamps, int n, double scale,

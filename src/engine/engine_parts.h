@@ -14,7 +14,7 @@
 #include "glint/setup.h"
 
 /* Pointers to glint_setup_iris(), glint_front_make() and glint_front_free(), so
- * that only programs that need these link them. */
+ * that only programs that need them link these functions. */
 struct glint_engine_stops {
     enum glint_status (*set_iris)(struct glint_setup *setup,
                                   const struct glint_iris *iris,
@@ -66,8 +66,9 @@ struct glint_engine_exposing {
                         at reduced size and measuring it */
     bool is_done;    /* true: the next picture has been exposed */
     struct glint_engine_before *before;
-    double *part; /* [n_before]: factor on the ghosts of each lamp of the last
-                     picture, chosen by the exposure (engine/strength.h) */
+    double *part; /* [n_before]: factor on the light of the ghosts of each lamp
+                     of the last picture, chosen by the exposure
+                     (engine/strength.h) */
     int n_before;
 };
 
@@ -94,8 +95,8 @@ void glint_engine_configure_stop(struct glint_engine_camera *camera,
                                  const struct glint_options *o);
 
 /* Replaces the stop of ENGINE by that of CAMERA, and makes a new setup. If
- * MEASURE is true, measures the lens response again. On failure the stop is
- * unchanged, and ERROR has the reason. */
+ * MEASURE is true, measures the lens response (brightness of the flare by
+ * angle) again. On failure the stop is unchanged, and ERROR has the reason. */
 enum glint_status
 glint_engine_change_stop(struct glint_engine *engine,
                          const struct glint_engine_camera *camera, bool measure,

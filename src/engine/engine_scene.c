@@ -102,7 +102,8 @@ void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
         if (lamps[i].share > GLINT_ENGINE_HIDDEN || !is_still)
             lamps[i].level *= lamps[i].share;
         else /* A hidden lamp is removed. Otherwise the exposure of a still
-                picture would raise its remaining light until it is visible. */
+                picture would raise the lamp's remaining light until that is
+                visible. */
             lamps[i].lamp.power = 0;
 }
 

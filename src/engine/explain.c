@@ -9,15 +9,17 @@
 #include "engine/explain_frame.h"
 #include "engine/frame/frame_parts.h"
 
-/* Returns the cost, in instructions, of N items of KIND, such as edges. */
+/* Returns the cost, in instructions, of N operations of type KIND, such as
+ * drawing edges. */
 static double compute_item_cost(enum glint_cost_kind kind, double n)
 {
     return 1e3 * glint_cost_weight[kind].counted * n;
 }
 
-/* Returns the cost of part P of the flare, in instructions, and sets STAGE to
- * the cost per kind of item. Lit pixels and subdivided cells are not included,
- * as they do not belong to a single ghost, light or wave. */
+/* Returns the cost of P (one ghost, light or wavelength of the flare), in
+ * instructions, and sets STAGE to the cost per type of operation. Lit pixels
+ * and subdivided cells are not included, as they do not belong to a single
+ * ghost, light or wavelength. */
 static double compute_part_cost(const struct glint_explain_part *p,
                                 double *stage)
 {
@@ -54,8 +56,8 @@ static void add_account(struct glint_explain_part *p,
                         const struct glint_account *a)
 {
     p->probed += a->probed;
-    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The plan chose another set of
-                                                  waves for the ghost. */
+    if (a->outcome == GLINT_OUTCOME_OTHER_SET) /* The ghost is drawn with
+                                                  another set of wavelengths. */
         return;
     p->of[a->outcome]++;
     if (a->outcome != GLINT_OUTCOME_DRAWN && a->outcome != GLINT_OUTCOME_EMPTY)
@@ -70,8 +72,9 @@ static void add_account(struct glint_explain_part *p,
     p->refs += a->refs;
 }
 
-/* Returns the index in e->wave of the statistics for wave WAVE. There is one
- * entry per wave set, or one per wave if there are no sets. */
+/* Returns the index in e->wave of the statistics of wavelength WAVE. There is
+ * one entry per set of wavelengths, or one per wavelength if there are no
+ * sets. */
 static int find_part_of_wave(const struct glint_explain *e, int wave)
 {
     const struct glint_wave_sets *sets = e->frame->plan.rays.sets;
@@ -83,8 +86,8 @@ static int find_part_of_wave(const struct glint_explain *e, int wave)
     return part;
 }
 
-/* Adds the account of a bundle to all parts of the explanation CTX that it
- * belongs to. */
+/* Adds the statistics A of a ray bundle to the totals of the explanation CTX:
+ * of the frame, of GHOST and of LIGHT. */
 static void count_bundle(void *ctx, int ghost, int light,
                          const struct glint_account *a)
 {
@@ -139,8 +142,8 @@ enum glint_status glint_explain_draw(struct glint_explain *explain, int ghost)
     return draw_flare_part(explain, ghost, -1, -1);
 }
 
-/* Measures PART of the flare, which must have been drawn last: its flux, its
- * max light, its numbers of lit pixels and lit tiles, and its bounding box. */
+/* Sets flux, max light, numbers of lit pixels and tiles, and bounding box of
+ * PART. The last drawing must have drawn PART alone. */
 static void measure_part_light(struct glint_explain *e,
                                struct glint_explain_part *part)
 {
@@ -170,7 +173,7 @@ static void measure_part_light(struct glint_explain *e,
     part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
 }
 
-/* Draws and measures PART of the frame, unless nothing of it is drawn. */
+/* Draws and measures PART of the frame if any of its ray bundles is drawn. */
 static enum glint_status draw_and_measure_part(struct glint_explain *e,
                                                struct glint_explain_part *part,
                                                int ghost, int light, int wave)

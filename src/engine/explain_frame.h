@@ -9,7 +9,7 @@
 #include "glint/explain.h"
 
 /* Like glint_explain_open(), for the last picture that FRAME drew. UNIT:
- * factor from the frame's light to the light of the report. */
+ * light in the report / light in the frame. */
 enum glint_status glint_explain_open_for_frame(struct glint_explain *explain,
                                                struct glint_frame *frame,
                                                double unit);

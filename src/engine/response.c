@@ -51,7 +51,7 @@ static void find_largest_values(const float *rgb, size_t pixels, int channel,
                                                rgb[3 * i + (size_t)channel]);
 }
 
-/* Returns the number of the brightest pixels to average: N / PARTS, clamped to
+/* Returns N / PARTS, the number of the brightest pixels to average, clamped to
  * 1 .. TOP_MAX. */
 static int count_brightest_pixels(size_t n, int parts)
 {
@@ -217,8 +217,8 @@ static void convert_light_to_log2(struct glint_response_light *light)
     }
 }
 
-/* Measures the peak of the flare if LAMP is a disc divided by the peak if it is
- * a point. The radii of discs are up to an eighth of the picture's diagonal. */
+/* Measures (peak of the flare if LAMP is a disc) / (peak if LAMP is a point),
+ * for discs with radii up to an eighth of the picture's diagonal. */
 static enum glint_status measure_extent_softening(struct proxy *p,
                                                   struct glint_response *r,
                                                   struct glint_lamp lamp)
@@ -336,8 +336,8 @@ double glint_response_compute_softening(const struct glint_response *r,
 
 /* ---------------------------------------------------------- what was drawn */
 
-/* Sets the peak of LIGHT from the last drawing: to the light that the brightest
- * 1/10000 of the pixels reach or exceed. */
+/* Sets the peak of LIGHT to the light that the brightest 1/10000 of the pixels
+ * of the last drawing reach. */
 static void set_peak_from_brightest_pixels(const struct proxy *p,
                                            struct glint_response_light *light)
 {
@@ -351,8 +351,8 @@ static void set_peak_from_brightest_pixels(const struct proxy *p,
     }
 }
 
-/* Reports progress of FRAME while its small picture finds the ghosts. FRAME
- * will have the same ghosts. */
+/* Reports the progress of FRAME while exact rays find the ghosts of its small
+ * picture. FRAME has the same ghosts. */
 static void report_ghost_search_progress(void *frame, double done)
 {
     const struct glint_frame *const f = frame;

@@ -96,7 +96,8 @@ static void add_quality_parameters_to_hash(uint64_t *key,
 
 /* Returns the key of a response: a hash of model, library version, setup and
  * settings. It includes the aspect ratio of the picture, but not its size. It
- * includes BYTES, as too little memory makes grids coarser or omits bundles. */
+ * includes BYTES, as too little memory makes grids coarser or omits ray
+ * bundles. */
 static uint64_t compute_cache_key(const struct glint_frame *like, size_t bytes)
 {
     const struct glint_model_header *h = like->lens->header;

@@ -22,17 +22,16 @@ enum {
     GLINT_GROUND_COLUMNS = 320,
     GLINT_GROUND_ROWS = 180,
     GLINT_SEEN_CODES = 32,
-    /* Range of codes that count as bright ground. On darker ground a white disc
-     * is not searched for; on brighter ground it has no visible edge. */
+    /* Range of the picture's codes on which white discs (ghosts that turn the
+     * picture white) are searched. On brighter codes such a disc has no visible
+     * edge. */
     GLINT_SEEN_BRIGHT = 160,
     GLINT_SEEN_WHITE = 248,
     GLINT_SEEN_FEW = 50, /* A flare that is visible in fewer than 1/50 of the
                             pixels counts as invisible. A flare that is visible
                             in 1/4 or more of them counts as a veil. */
     GLINT_SEEN_MANY = 4,
-    GLINT_SEEN_DISC = 1000 /* number of pixels of the picture per pixel of a
-                              small ghost: a small ghost covers 1/1000 of the
-                              picture */
+    GLINT_SEEN_DISC = 1000 /* a small ghost covers 1/1000 of the picture */
 };
 
 /* The picture under the flare, sampled to a small size: full-range R'G'B'

@@ -21,7 +21,8 @@ static const double fog_most = 0.06;
 /* log2 of the light of a flare of medium brightness at --exposure 0, 1 = white
  */
 static const double common_log2 = -5;
-/* increase of the exposed flare's brightness, stops, per stop of lamp power */
+/* increase of the flare's brightness after exposure, stops, per stop of lamp
+ * power */
 static const double compression = 0.15;
 
 /* Limits of the exposure's correction at strength 0.5, 1 = white. seen_peak,

@@ -10,9 +10,10 @@ static double compute_max_channel_power(const struct glint_lamp *lamp)
     return lamp->power * fmax(lamp->rgb[0], fmax(lamp->rgb[1], lamp->rgb[2]));
 }
 
-/* Returns the number of points that sample LAMP, an ellipse, before the number
- * is reduced. It depends on the ellipse's area and on the lamp's brightness.
- * The semi-axes of a uniform ellipse are twice its RMS semi-axes. */
+/* Returns the number of point lights that sample LAMP, an ellipse, before the
+ * limit on all lights (thinning) reduces this number. It depends on the
+ * ellipse's area and on the lamp's brightness. The semi-axes of a uniform
+ * ellipse are twice its RMS semi-axes. */
 static double count_lamp_sample_points(const struct glint_lamp *lamp,
                                        const struct glint_area_rule *rule)
 {
@@ -41,7 +42,7 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
         const double points = count_lamp_sample_points(&lamps[i], &rule);
 
         more += points - 1;
-        /* The number of points of such a lamp is rounded up later. */
+        /* glint_area_plan() rounds the number of points of such a lamp up. */
         n_wide += points > 1;
     }
     if (n_wide && more > room - n - n_wide)
@@ -52,8 +53,8 @@ struct glint_area_rule glint_area_rule_of(const struct glint_lamp *lamps, int n,
     return rule;
 }
 
-/* Sets PLACE to point I of a sunflower pattern in the unit circle. Returns the
- * fraction of the lamp's power that this point emits. */
+/* Sets PLACE to the position of point I of a sunflower pattern in the unit
+ * circle. Returns the fraction of the lamp's power that this point emits. */
 static double set_sunflower_point(const struct glint_area *a, int i,
                                   double place[2])
 {
@@ -112,10 +113,11 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
 }
 
 /* Returns the distance between neighbouring sample points of AREA, as a
- * tangent. It is the size of the piece of the ellipse that one point
- * represents. For a tube it is at most twice that of a circle of equal area, so
- * that the ghosts of seven points are not as wide as the tube is long. From one
- * to four points it grows gradually from 0, so that it changes continuously. */
+ * tangent. The distance is the size of the area that one point represents. For
+ * a long ellipse (a tube lamp) it is at most twice that of a circle of equal
+ * area; otherwise each ghost of seven points would be as wide as the tube is
+ * long. From one to four points it grows from 0, so that it changes
+ * continuously. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

@@ -5,8 +5,8 @@
 
 #include "glint/light.h"
 
-/* log2 of (time of the first frame / time of later frames); the first frame is
- * slower, as it allocates memory */
+/* log2 of (time of the first frame / time of later frames); the first frame
+ * also allocates memory */
 #define FIRST 1
 /* predicted time of a planned frame / budget, at most */
 #define ROOM 0.98
@@ -21,7 +21,7 @@
 #define MOST_WRONG 0.8
 /* min fraction of a quality level's correction that other levels get */
 #define SPREAD 0.1
-/* fraction of the corrections of other quality levels that is lost per frame */
+/* fraction by which the corrections of other quality levels decay per frame */
 #define FORGETTING 0.01
 
 /* max number of plans per frame; the cost that a plan predicts is inaccurate
@@ -53,8 +53,8 @@ void glint_budget_begin_frame(struct glint_budget *b,
 
 /* Cuts reduce the work of a frame below that of the lowest quality level. They
  * are ordered by visibility, and each cut includes the cuts before it. LOSS:
- * PSNR against a frame without cuts, dB. It is estimated, as no sweep has
- * measured dust and veil yet. */
+ * PSNR against a frame without cuts, dB; an estimate, as glint sweep has not
+ * measured dust and veil. */
 static const struct cut {
     double dim;    /* min dim_codes */
     int dust_log2; /* max dust_log2 */
@@ -77,10 +77,10 @@ enum { N_CUTS = sizeof cuts / sizeof *cuts, BUNDLES = 256 };
 static const double level_db[GLINT_QUALITY_LEVELS] = {39, 44, 49, 53.5, 54.5,
                                                       56, 59, 62, 64,   65};
 
-/* Returns the quality parameters at quality step STEP, reduced by cut CUT.
- * Parameters that do not depend on quality are those of ASKED. Frames with a
- * budget are drawn with three wavelengths, as the cost model does not cover
- * sets of wavelengths. */
+/* Returns the quality parameters at quality step STEP, reduced by cut CUT (an
+ * entry of the table above). Parameters that do not depend on quality are those
+ * of ASKED. Frames with a budget are drawn with three wavelengths, as the cost
+ * model does not cover sets of wavelengths. */
 static struct glint_dials
 make_quality_parameters_at_step(int step, int cut,
                                 const struct glint_dials *asked)
@@ -236,8 +236,9 @@ static int try_next_quality_step(struct glint_budget *b,
         predict_frame_ms(b, plan, step + 1, b->cut) > TRY * b->ms)
         return step;
     b->n_trials++;
-    b->n_tries = MAX_TRIES; /* No further plan of this frame is made, as its
-                               prediction would reject the trial. */
+    b->n_tries = MAX_TRIES; /* This frame is not planned again, as the
+                               prediction of a further plan would reject the
+                               trial. */
     return step + 1;
 }
 

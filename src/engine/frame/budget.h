@@ -29,8 +29,8 @@ struct glint_budget {
     struct glint_dials asked; /* quality parameters that the caller
                                  requested for this frame */
     int step;     /* quality step of the last frame, 0 .. GLINT_BUDGET_STEPS */
-    int cut;      /* index of the cut in use; a cut reduces work more than the
-                     lowest quality does; 0: no cut */
+    int cut;      /* index of the cut in use (a reduction of work below the
+                     lowest quality); 0: no cut */
     int n_tries;  /* number of plans made for this frame */
     int n_frames; /* number of frames begun, clamped to 2 */
     int n_trials; /* number of trial frames so far, which are drawn although

@@ -14,9 +14,9 @@
  * irradiance is not rounded */
 #define MOST_STEPS 4096
 
-/* MOST_LOG2: log2 of the max number of subdivisions of a cell per side.
- * SAMPLES: number of positions per side of the stop at which subdivisions are
- * counted. */
+/* For stops with dust or masks, which subdivide grid cells. MOST_LOG2: log2 of
+ * the max number of sub-cells per side of a cell. SAMPLES: number of positions
+ * per side of the stop at which sub-cells are counted. */
 enum { MOST_LOG2 = 4, SAMPLES = 24 };
 
 /* Weights by make cost-fit: least squares of the relative errors over random
@@ -49,8 +49,8 @@ double glint_cost_convert_to_minsn(const struct glint_cost *cost)
     return 1e-3 * sum;
 }
 
-/* estimated number of cells per side that a grid at the min GLINT_LEAST_CELLS
- * would have without this minimum */
+/* assumed number of cells per side that a grid of GLINT_LEAST_CELLS, the
+ * minimum, would have without the minimum */
 enum { LESS_CELLS = 6 };
 
 /* Predicts the number of grid cells per side at FINER times the fineness of the
@@ -65,13 +65,13 @@ static double predict_cells_per_side(int planned, double finer)
 
 /* ------------------------------------------------------------------ bundles */
 
-/* A planned bundle, as predicted for other quality parameters. */
+/* The predicted grid and light of a planned ray bundle for other quality
+ * parameters. */
 struct bundle {
     double cells;  /* per side */
     double light;  /* display white */
     double area;   /* pixels that the ghost covers, on-screen or not */
-    double inside; /* fraction of the rays that pass the stop and the
-                      barrels */
+    double inside; /* fraction of the rays that are not vignetted */
     double view;   /* fraction of the ghost's bounding box that is on-screen */
     double log_bright; /* natural logarithm of (max light / mean light of the
                           ghost), which affects the number of edges */
@@ -89,8 +89,8 @@ static double compute_steps_per_octave(int steps, double octaves)
     return octaves > 0 ? steps * pow(7. / 8, octaves) : steps;
 }
 
-/* Predicts the number of nested outlines with which the soft edge of bundle B
- * is drawn (edges/ghost_rings.c). */
+/* Predicts the number of nested outlines that draw the soft edge of the stop in
+ * the ghost of B (edges/ghost_rings.c). */
 static double count_soft_edge_outlines(const struct glint_cost_plan *p,
                                        const struct bundle *b)
 {
@@ -107,9 +107,9 @@ static double count_soft_edge_outlines(const struct glint_cost_plan *p,
     return exp2(fmax(most, 0));
 }
 
-/* Returns how many bundles are expected to be drawn per planned bundle B if
- * ghosts dimmer than DIM codes share rays. B was planned when ghosts dimmer
- * than WAS codes shared rays. */
+/* Returns how many ray bundles are expected to be drawn per planned bundle B if
+ * the wavelengths of ghosts dimmer than DIM codes share rays. B was planned
+ * when those of ghosts dimmer than WAS codes shared rays. */
 static double estimate_drawn_fraction(const struct glint_cost_plan *p,
                                       const struct glint_planned *b,
                                       double light, double was, double dim)
@@ -173,8 +173,7 @@ static struct bundle predict_bundle_at_quality(const struct glint_cost_plan *p,
     return to;
 }
 
-/* The grid cells of a ghost, if the stop has dust or masks
- * (edges/ghost_shade.h). */
+/* The grid cells of a ghost, if the stop has dust or masks. */
 struct cells {
     double cells;  /* number of the ghost's cells per side */
     double light;  /* display white */
@@ -183,7 +182,7 @@ struct cells {
     double view; /* fraction of the cells within the stop that are on-screen */
 };
 
-/* Returns the smallest visible difference from LIGHT divided by LIGHT. */
+/* Returns (smallest visible difference from LIGHT) / LIGHT. */
 static double compute_visible_step(const struct glint_cost_plan *p,
                                    double light)
 {
@@ -198,10 +197,11 @@ static int clamp_int(int x, int low, int high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Returns the mean number of parts into which dust or masks divide a cell, over
- * SAMPLES^2 positions in the stop. LEVEL: level of the shade's tables; STEP:
- * smallest visible difference; MOST: max log2 of the parts per side; CUT:
- * fraction of the cells that the stop's outline cuts. */
+/* Returns the mean number of sub-cells into which dust or masks divide a cell,
+ * over SAMPLES^2 positions in the stop. LEVEL: mip level of the tables of the
+ * stop's transmission S; STEP: smallest visible difference; MOST: max log2 of
+ * the sub-cells per side; CUT: fraction of the cells that the stop's outline
+ * cuts. */
 static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
                                                  int level, double step,
                                                  int most, double cut)
@@ -209,8 +209,8 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
     enum {
         CUT_LOG2 = 3,
         ALONE = 4
-    }; /* factor for cells that the outline cuts, as their parts share no edges
-        */
+    }; /* factor for cells that the outline cuts, as their sub-cells share no
+          edges */
     const int side = (1 << (s->log2 - level)) + 1;
     double sum = 0;
     int n = 0;
@@ -227,8 +227,7 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
         if (x * x + y * y > 1)
             continue;
         n++;
-        /* The number of parts per side is 2 to the power of log2 d, rounded
-         * up. */
+        /* The number of sub-cells per side is d rounded up to a power of 2. */
         for (; d >= 1 && log2_parts < most; log2_parts++)
             d /= 2;
         if (log2_parts)
@@ -238,8 +237,8 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
     return n ? sum / n : 0;
 }
 
-/* Estimates the total number of parts into which the shade of PLAN divides the
- * cells G. Only tables of the shade with at most 2^LOG2_USED cells per side are
+/* Estimates the total number of sub-cells into which the dust and masks of PLAN
+ * divide the cells G. Only tables with at most 2^LOG2_USED cells per side are
  * used. */
 static double
 estimate_cell_subdivision_count(const struct glint_cost_plan *plan,
@@ -291,12 +290,11 @@ static void add_bundle_cost(struct glint_cost *cost,
                         then->dust_log2);
 }
 
-/* Sums up the area that ghosts cover. A ghost counts once for all its
- * wavelengths. */
+/* The area that ghosts cover. A ghost counts once for all its wavelengths. */
 struct covered {
     int ghost, light;
-    double most, all; /* most: area of the current ghost, pixels, max over its
-                         wavelengths; all: total area of all ghosts before it */
+    double most, all; /* pixels; most: area of the current ghost, max over its
+                         wavelengths; all: total area of the earlier ghosts */
 };
 
 static void add_ghost_covered_area(struct covered *c,

@@ -15,23 +15,24 @@ struct glint_cost {
     double count[GLINT_COST_KINDS];
 };
 
-/* A planned frame, as input of the cost model. The edges of the frame must not
- * have been binned yet. */
+/* A planned frame, as input of the cost model, before its edges are sorted into
+ * tiles. */
 struct glint_cost_plan {
     const struct glint_flare *flare;
     int width, height;  /* size of the picture */
     double n_looked_at; /* number of rays that the plan probed */
-    int every;     /* distance between evaluated bundles: every EVERY-th bundle
-                      is evaluated, as a sample; 0, 1: all bundles */
+    int every;     /* every EVERY-th ray bundle is evaluated, as a sample; 0 or
+                      1: all bundles */
     bool can_half; /* true: the picture has 8-bit codes, so half resolution is
                       possible */
-    bool can_dim;  /* true: three wavelengths are drawn, so dim ghosts may share
-                      rays */
+    bool can_dim;  /* true: three wavelengths are drawn, so the wavelengths of
+                      dim ghosts may share rays */
     double code;   /* linear light of one code near black; 0: the picture is
                       linear */
     double n_star; /* number of pixels lit by stars */
-    double n_veil; /* cost of the veil, in pixels */
-    /* shade of the stop with all its tables, or NULL */
+    double n_veil; /* cost of the veil / cost of drawing one pixel */
+    /* transmission of a stop with a soft edge, dust or masks, with all mip
+     * levels; NULL: uniform */
     const struct glint_shade *shade;
     struct glint_dials dials; /* quality parameters with which the frame was
                                  planned */

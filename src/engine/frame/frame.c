@@ -66,7 +66,6 @@ void glint_frame_finish(struct glint_frame *frame)
     free(frame->memory.mem);
 }
 
-/* Returns the total number of waves of all wave sets. */
 static int count_waves_of_all_sets(const struct glint_setup *s)
 {
     int n = 0;
@@ -126,10 +125,9 @@ double glint_frame_get_max_angle_deg(const struct glint_frame *frame)
     return atan2(sine, sqrt(1 - sine * sine)) / degree * (1 - 1e-6);
 }
 
-/* Appends the points that sample LAMP to the lights of the frame, of which
- * there are WITHIN already. Returns the new number of lights. Points outside
- * the model's range of angles are dropped before lights are merged, as such
- * points must not be merged with lights that are drawn. */
+/* Appends the point lights that sample LAMP to the WITHIN lights of the frame.
+ * Returns the new number of lights. Points outside the model's range of angles
+ * are dropped here, as they must not be merged with lights that are drawn. */
 static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
                            const struct glint_area_rule *rule, double scale,
                            int within)
@@ -149,7 +147,7 @@ static int add_lamp_lights(struct glint_frame *f, const struct glint_lamp *lamp,
     return within;
 }
 
-/* Returns the max number of lights for N lamps, where a lamp of visible extent
+/* Returns the max number of lights for N lamps; a lamp of visible extent
  * becomes several lights. */
 static int compute_max_lights(const struct glint_frame *f, int n)
 {
@@ -187,9 +185,10 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     f->lights.n = glint_lights_merge(
         f->lights.light, within, convert_px_to_chord_q30(f, f->apart_px),
         max_int(room, f->dials.max_lights), &f->lights.n_apart);
-    if (!f->limits.is_held) /* Otherwise a limit has reduced the number of
-                               lights, and the share for all lights still
-                               applies. */
+    if (!f->limits.is_held) /* Otherwise the limits of the frame, which allow
+                               more for more lights, have reduced the number of
+                               lights. They still apply to the original
+                               number. */
         f->limits.share =
             1 + max_int(f->lights.n - 1, 0) / (double)GLINT_FRAME_PER_LIGHT;
     if (f->star.is_alone)
@@ -197,8 +196,8 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns the settings with which the flare is planned and traced for IMAGE. If
- * IMAGE is NULL, the settings are those of a linear picture. */
+/* Returns the settings with which the flare is planned and traced for IMAGE.
+ * IMAGE is NULL for a linear picture. */
 static struct glint_flare_frame
 make_flare_frame(struct glint_frame *f, const struct glint_image *image)
 {
@@ -237,8 +236,8 @@ void glint_frame_apply_config(struct glint_frame *f)
                          f->memory.bytes);
 }
 
-/* Applies two quality parameters to the configuration of the flare: the steps
- * of irradiance, and the tables of dust. */
+/* Applies two quality parameters to the configuration of the flare: the
+ * rounding of irradiance, and the fineness of the tables of dust. */
 static void apply_quality_to_flare_config(struct glint_frame *f)
 {
     const bool is_other = f->cfg.irradiance_steps != f->dials.irradiance_steps;
@@ -403,7 +402,6 @@ enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
                  : GLINT_E_MEMORY;
 }
 
-/* Returns the number of bundles of the drawn frame. */
 static int count_drawn_bundles(const struct glint_frame *f,
                                const struct glint_engine_report *r)
 {
@@ -489,8 +487,9 @@ void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
 {
     const struct glint_dials *const asked = &frame->asked;
 
-    /* The numbers of points have not been raised, so they are not restored. A
-     * program may have set its own numbers to draw a video. */
+    /* Neither this frame nor the last one is a still picture, so the numbers
+     * are not raised. They are not reset either, as a program may have set its
+     * own. */
     if (!is_still && !frame->picture.is_still)
         return;
     frame->picture.is_still = is_still;

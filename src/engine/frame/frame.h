@@ -40,19 +40,18 @@
 struct glint_frame;
 struct glint_account;
 
-/* Receives what was done with the rays of GHOST for LIGHT; both are indices in
- * the frame. */
+/* Receives ACCOUNT, the statistics of the rays of GHOST for LIGHT: whether they
+ * were drawn or why not, and their work. Both are indices in the frame. */
 typedef void glint_frame_account_fn(void *ctx, int ghost, int light,
                                     const struct glint_account *account);
 
 /* Factors by which the light of a flare is scaled before it is drawn in fixed
  * point, as log2. */
 struct glint_frame_scale {
-    int likely; /* log2 of the factor that brings the mean of the brightest
-                   ghost to about 32 times display white; single pixels may
-                   reach 2048 times white */
-    int most;   /* log2 of the max factor without clamping: the sum of all light
-                   stays below 2^24 times white */
+    int likely; /* brings the mean of the brightest ghost to about 32 times
+                   display white, as single pixels may reach 2048 times white */
+    int most;   /* max factor without clamping: the sum of all light stays below
+                   2^24 times white */
 };
 
 /* Computes the scales from log2 of the brightest ghost's mean light and log2 of
@@ -62,8 +61,8 @@ struct glint_frame_scale glint_frame_compute_scale(int brightest_log2,
 
 /* Functions that draw with another source of rays than a model: exact rays. */
 struct glint_frame_rays {
-    /* Draws a frame. TIMES receives the times, in seconds, before plan, trace,
-     * bin and draw, and after draw. */
+    /* Draws a frame. TIMES receives the clock, in seconds, before planning,
+     * tracing, binning and drawing, and after drawing. */
     enum glint_status (*draw)(struct glint_frame *frame,
                               const struct glint_lamp *lamps, int n_lamps,
                               double scale, const struct glint_image *image,
@@ -81,7 +80,7 @@ struct glint_frame_rays {
     /* Moves the cached rays of FROM to FRAME, a frame with the same lens. So
      * pictures of the same lamps, in any size, take less time. */
     void (*adopt)(struct glint_frame *frame, struct glint_frame *from);
-    /* Reports all ghosts and lights of the last frame. */
+    /* Calls REPORT for all pairs of a ghost and a light of the last frame. */
     void (*account)(const struct glint_frame *frame,
                     glint_frame_account_fn *report, void *ctx);
     /* Adds to IMAGE the part of the last frame that belongs to GHOST and LIGHT;
@@ -112,17 +111,17 @@ struct glint_frame_limits {
     bool is_full;        /* true: the memory block has reached its limit */
     bool is_held;        /* true: a limit has reduced the quality of the last
                             frame */
-    int most_primitives; /* number of primitives that fit into the reserved
-                            memory with one worker */
+    int most_primitives; /* number of edges (primitives) that fit into the
+                            reserved memory with one worker */
     size_t most_bytes;   /* max size of a block that is not reserved, in bytes,
                             for a frame with one light; 0: no limit */
     double most_minsn;   /* max cost of a frame with one light, millions of
                             instructions; 0: no limit */
     double share;        /* limits for all lights of the frame / limits for one
                             light */
-    /* memory that the last frame would have needed with the grids that it had
-     * before they were last made coarser, in bytes, or in primitives if memory
-     * is reserved; 0: grids were not made coarser */
+    /* memory that the last frame needed before its grids were last made
+     * coarser; in bytes, or in edges if memory is reserved; 0: grids were not
+     * made coarser */
     double tight;
     size_t tight_bytes; /* bytes that the last frame would have needed with its
                            original grids */
@@ -134,8 +133,8 @@ struct glint_frame_lights {
     struct glint_wave_sets sets;
     struct glint_light *light; /* [capacity] */
     int n, capacity;
-    int n_apart;  /* number of lights after those too close to be distinguished
-                     were merged */
+    int n_apart;  /* number of lights after merging those too close to be
+                     distinguished */
     int n_beyond; /* number of lamps skipped because they lie outside the
                      model's range of angles */
     int n_more;   /* number of additional points of area lamps */
@@ -205,21 +204,22 @@ struct glint_frame {
     double apart_px; /* distance between the images of two lights, pixels, below
                         which they are merged */
     int only_ghost;  /* index of the only ghost drawn; -1: all ghosts */
-    /* [ghost]: tints as in struct glint_flare_frame, owned by the caller;
-     * ignored when the exposure is chosen */
+    /* [ghost]: factors on the light of each ghost (struct glint_flare_frame),
+     * owned by the caller; ignored when the exposure is chosen */
     const struct glint_tint *tints;
     /* the drawn lamps with the engine's data about them (track, visibility), in
      * the order of drawing; NULL: no such data */
     const struct glint_engine_lamp *known;
-    struct glint_shade shade; /* shade of the stop without the finest levels,
-                                 which the current quality does not use */
+    struct glint_shade shade; /* transmission of the stop, without its finest
+                                 mip levels, which the current quality does not
+                                 use */
     struct glint_frame_picture picture;
     struct glint_frame_star star;
     struct glint_frame_veil veil;
     struct glint_still still; /* lights whose rays are reused while they hardly
                                  move; for models only */
-    struct glint_budget budget; /* chooser of quality parameters for a time
-                                   budget; for models only */
+    struct glint_budget budget; /* chooses quality parameters that fit a time
+                                   per frame; for models only */
     struct glint_frame_limits limits;
     struct glint_frame_lights lights;
     struct glint_frame_plan plan;
@@ -231,7 +231,7 @@ void glint_frame_init(struct glint_frame *frame,
                       const struct glint_setup *setup, struct glint_view view,
                       struct glint_workers *workers);
 
-/* Initialises FRAME for VIEW. It gets all options of frame LIKE except the
+/* Initialises FRAME for VIEW, with all options of frame LIKE except the
  * budget. */
 void glint_frame_init_like(struct glint_frame *frame,
                            const struct glint_frame *like,
@@ -239,17 +239,17 @@ void glint_frame_init_like(struct glint_frame *frame,
 
 /* Reserves BYTES bytes for all following frames of up to N_LAMPS lamps, which
  * are merged to N_DRAWN lights. Drawing then allocates nothing. If a frame does
- * not fit, its grids become coarser. Bundles that still do not fit are not
- * drawn, and counted. MEM: a block of BYTES, aligned to 64, or NULL to allocate
- * one. Returns GLINT_E_MEMORY if memory is short, or if BYTES does not suffice
- * for one light. */
+ * not fit, its grids become coarser. Ray bundles that still do not fit are
+ * counted, but not drawn. MEM: a block of BYTES, aligned to 64, or NULL to
+ * allocate one. Returns GLINT_E_MEMORY if memory is short, or if BYTES does not
+ * suffice for one light. */
 enum glint_status glint_frame_reserve_memory(struct glint_frame *frame,
                                              void *mem, size_t bytes,
                                              int n_lamps, int n_drawn);
 
 /* Returns the min BYTES that glint_frame_reserve_memory() accepts for the
- * number of lights of its last call. Changes the capacities, so that the frame
- * cannot be drawn afterwards. */
+ * number of lights of its last call. The frame cannot be drawn afterwards, as
+ * this function changes its capacities. */
 size_t glint_frame_compute_min_bytes(struct glint_frame *frame);
 
 /* Draws one lamp a few times, and measures the time per predicted instruction

@@ -5,7 +5,6 @@
 
 #include "engine/frame/frame_parts.h"
 
-/* Returns the max magnitude of N values. */
 static uint32_t find_max_light_magnitude(const int32_t *linear_q20, size_t n)
 {
     uint32_t peak = 0;
@@ -20,9 +19,9 @@ static uint32_t find_max_light_magnitude(const int32_t *linear_q20, size_t n)
 }
 
 /* Returns log2 of the factor by which a picture with the brightest pixel PEAK
- * should be scaled up and drawn again. Returns 0, for no further drawing,
- * instead of 1, as one octave gains too little. Returns a negative value if
- * light was clamped, so that the true peak is unknown. */
+ * should be scaled and drawn again, or 0 if it need not be drawn again. The
+ * result is never 1, as one octave gains too little. It is negative if light
+ * was clamped, so that the true peak is unknown. */
 static int choose_picture_scale_log2(uint32_t peak,
                                      struct glint_frame_scale scale)
 {

@@ -21,8 +21,9 @@ int glint_frame_find_ghost_number(const struct glint_setup *s, int ghost)
     return number;
 }
 
-/* Marks the ghost of index GHOST, or the ghost of which GHOST is a part, as
- * drawn in the frame. Returns whether it had not been marked before. */
+/* Marks the ghost with index GHOST as drawn in the frame. If GHOST is one pupil
+ * region (part) of a ghost, marks that ghost. Returns whether the ghost had not
+ * been marked before. */
 static bool mark_ghost_seen(struct glint_frame *frame, int ghost)
 {
     const int number = glint_frame_find_ghost_number(frame->setup, ghost);

@@ -50,27 +50,28 @@ enum glint_status glint_frame_allocate_dim_table(struct glint_frame *frame);
  * GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_allocate_ghost_data(struct glint_frame *frame);
 
-/* Marks all nodes of the table of dim ghosts as not computed if the table is
- * outdated: stop opening, wavelengths or pixel size have changed. */
+/* Marks all nodes of the table of ghost brightness as not computed if stop
+ * opening, wavelengths or pixel size have changed. */
 void glint_frame_clear_stale_dim_table(struct glint_frame *f);
 
 /* Replaces the memory block by one for the current capacities, and initialises
  * the flare in it. */
 enum glint_status glint_frame_reallocate_flare(struct glint_frame *frame);
 
-/* Selects the tables of dust that are as fine as the quality parameter
- * dust_log2. Returns whether the selection changed. */
+/* Selects the tables of dust whose fineness is the quality parameter dust_log2.
+ * Returns whether the selection changed. */
 bool glint_frame_select_dust_tables(struct glint_frame *frame);
 
-/* Ensures capacity for planning all bundles of the frame's lights, unless
- * memory is reserved. Returns GLINT_E_MEMORY on failure. */
+/* Ensures memory to plan all ray bundles of the frame's lights, unless memory
+ * is reserved. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *frame);
 
 /* Reuses traced rays for lights that hardly move. If each light of the frame
- * lies within the chord NEAR_Q30 of a light of the last plan, replaces the
- * lights by the planned ones, and sets factors on their colours. Does nothing
- * unless still_px is above 0, frames are reused, and reserved memory has
- * capacity. Returns GLINT_E_MEMORY on failure. */
+ * lies within the chord NEAR_Q30 (a distance on the unit sphere) of a light of
+ * the last plan, replaces the lights by the planned ones, and sets factors on
+ * their colours. Does nothing unless the tolerance still_px is above 0, frames
+ * are reused, and reserved memory has capacity. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status glint_frame_use_static_lights(struct glint_frame *frame,
                                                 int32_t near_q30);
 
@@ -79,9 +80,9 @@ enum glint_status glint_frame_use_static_lights(struct glint_frame *frame,
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
 /* Returns true if the frame can be drawn after binning with the result STATS:
- * all edges fitted, or memory cannot grow. Otherwise it raises the capacities.
- * If these would exceed the memory limit, it makes grids coarser instead. It
- * then returns false, and the frame must be planned again. */
+ * all edges fitted, or memory cannot grow. Otherwise raises the capacities. If
+ * these would exceed the memory limit, makes grids coarser instead. Then
+ * returns false, and the frame must be planned again. */
 bool glint_frame_fit_capacity(struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
@@ -111,17 +112,17 @@ double glint_frame_convert_codes_to_light(const struct glint_frame *frame,
                                           double codes);
 
 /* Returns whether GHOST comes from the same pair of surfaces as ghost NUMBER.
- * Both are ghosts of SETUP or parts of such ghosts. */
+ * Both are ghosts of SETUP, or single pupil regions (parts) of such ghosts. */
 bool glint_frame_is_part_of_ghost(const struct glint_setup *setup, int ghost,
                                   int number);
 
-/* Returns the number of the ghost of SETUP of which GHOST is a part. Returns
- * GHOST if it is a complete ghost. */
+/* Returns the number of the ghost of SETUP of which GHOST is one pupil region
+ * (part), or GHOST if it is a complete ghost. */
 int glint_frame_find_ghost_number(const struct glint_setup *setup, int ghost);
 
-/* Lowers max_lights until probing all bundles costs at most half of the frame's
- * limit of work. Returns whether it lowered max_lights. If so, lights must be
- * merged again. */
+/* Lowers max_lights until probing all ray bundles costs at most half of the
+ * frame's limit of work. Returns whether max_lights changed, so that lights
+ * must be merged again. */
 bool glint_frame_limit_probing(struct glint_frame *f);
 
 /* Reduces quality parameters if the plan would exceed the remaining limit of

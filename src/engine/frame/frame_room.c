@@ -11,12 +11,11 @@
 
 /* max number of bundles of a frame */
 enum { MAX_BUNDLES = 1 << 20 };
-/* min fineness of grids that the limits of memory and work may cause */
+/* min fineness to which limits of memory and work may reduce grids */
 enum { LEAST_FINENESS = 8 };
-/* Factor on the capacity for primitives, because workers fill their ranges
- * unevenly. Memory limits assume it for one worker, too, so that pictures do
- * not depend on the number of workers. This overestimates the memory of one
- * worker. */
+/* Factor on the capacity for edges (primitives), because workers fill their
+ * ranges unevenly. Memory limits assume this factor for one worker, too, so
+ * that pictures do not depend on the number of workers. */
 #define UNEVEN 1.5
 /* fraction of the memory limit to which coarser grids reduce a frame; below 1,
  * as grids have integer numbers of cells */
@@ -44,14 +43,13 @@ enum glint_status glint_frame_allocate_lights(struct glint_frame *f, int n)
     return GLINT_OK;
 }
 
-/* Returns N clamped to the max number of bundles of a frame. */
 static int clamp_bundle_count(double n)
 {
     return n < MAX_BUNDLES ? (int)n : MAX_BUNDLES;
 }
 
-/* Returns the number of bundles of N_LIGHTS lights in the waves of the first
- * wave set. If there are no sets, all waves count. */
+/* Returns the number of ray bundles of N_LIGHTS lights in the wavelengths of
+ * the first set, or in all wavelengths if there are no sets. */
 static int count_bundles_of_first_wave_set(const struct glint_frame *f,
                                            int n_lights)
 {
@@ -82,11 +80,10 @@ make_config_with_needed_capacity(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes of memory that the configuration of
- * make_config_with_needed_capacity() needs. It assumes one worker and UNEVEN
- * times the primitives, so that the result does not depend on the number of
- * workers. FIXED receives the number of these bytes that do not depend on the
- * fineness of grids. */
+/* Returns the bytes that the configuration of
+ * make_config_with_needed_capacity() needs with one worker and UNEVEN times the
+ * edges, so that the result does not depend on the number of workers. FIXED
+ * receives how many of these bytes do not depend on the fineness of grids. */
 static double estimate_flare_bytes(const struct glint_frame *f,
                                    const struct glint_flare_stats *s,
                                    double *fixed)
@@ -102,9 +99,9 @@ static double estimate_flare_bytes(const struct glint_frame *f,
     return bytes;
 }
 
-/* Sets the capacities of the frame's configuration: PRIMITIVES primitives and
- * twice as many references to them. Returns the bytes that the configuration
- * then needs. */
+/* Sets the capacities of the frame's configuration to PRIMITIVES edges and
+ * twice as many references to edges in tiles. Returns the bytes that the
+ * configuration then needs. */
 static size_t set_primitive_capacity(struct glint_frame *f, int primitives)
 {
     f->cfg.max_primitives = primitives;
@@ -216,7 +213,6 @@ enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
     return glint_flare_init(&f->memory.flare, &f->cfg, f->memory.block, bytes);
 }
 
-/* Ensures capacity for N static lights. */
 static enum glint_status allocate_static_lights(struct glint_frame *f, int n)
 {
     struct glint_still *s = &f->still;
@@ -295,8 +291,8 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
 
     f->dials.max_lights =
         min_int(f->dials.max_lights, min_int(n_drawn, n_lamps));
-    /* Twice the bundles of the first wave set suffice, as not all ghosts are
-     * visible, and few ghosts need a larger set. */
+    /* Twice the ray bundles of the first set of wavelengths suffice, as not all
+     * ghosts are visible, and few need a larger set. */
     f->cfg.max_bundles = clamp_bundle_count(
         (glint_frame_has_wave_sets(f) ? 2. : 1) *
         count_bundles_of_first_wave_set(f, f->dials.max_lights));
@@ -362,7 +358,8 @@ bool glint_frame_limit_probing(struct glint_frame *f)
 {
     enum {
         RAYS = 200
-    }; /* number of rays of a small and of a large probe together */
+    }; /* number of rays of a small and a large probe of a ray bundle
+          together */
     const int waves = glint_frame_has_wave_sets(f) ? f->setup->set_size[0]
                                                    : f->setup->n_wavelengths;
     const double light =
@@ -419,8 +416,7 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
 }
 
 /* Limits each ghost to three wavelengths. MINSN is the cost of the plan before.
- * Returns the estimated cost after. The unit of both is millions of
- * instructions. */
+ * Returns the estimated cost afterwards, both in millions of instructions. */
 static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };

@@ -9,10 +9,10 @@
 #include "engine/setup/dirt.h"
 #include "engine/frame/frame_parts.h"
 
-/* Factor on cull_codes for starbursts, which fade out smoothly, unlike the
- * edges of ghosts. Smaller factors, 1 and 1/4, do not bring pictures nearer to
- * those with all light. A factor of 8 costs 0.2 dB and saves 2 of 9 million
- * instructions (a lamp of 12 stops, 1920x1080). */
+/* Factor on cull_codes, the light that counts as invisible, for starbursts,
+ * which fade out smoothly, unlike the edges of ghosts. Factors of 1 and 1/4 do
+ * not bring pictures nearer to those with all light; 8 costs 0.2 dB and saves 2
+ * of 9 million instructions (a lamp of 12 stops, 1920x1080). */
 #define STAR_CULL 2
 
 /* max distance, along x and along y, of a lamp from the picture's top left
@@ -23,26 +23,26 @@ static const double most_px = 1 << 16;
 static const double least_px = 1.5;
 
 /* Limits of the estimated power of a lamp that is clipped in the picture, from
- * starbursts in real photographs. The smaller of both limits applies.
- * clipped_times is relative to the power estimated from clipped pixels,
- * white_share to the power with which the mean of the starburst is white at the
- * rim of the lamp's image. Far from a lamp, the light of its starburst summed
- * over a circle around it, times the square of the radius, is 0.22 times power,
- * wavelength and f-number, whatever the blades. For 10 lamps in two photographs
- * by night, at f/22, the power computed from this is 7 to 166 times the power
- * estimated from clipped pixels, and 0.37 to 3.4 times (median 0.5) the power
- * at the rim (tests/figures/stars.md). */
+ * starbursts in real photographs. The smaller limit applies. clipped_times: max
+ * power / power estimated from clipped pixels. white_share: max power / power
+ * at which the mean of the starburst is white at the rim of the lamp's image.
+ * Far from a lamp, the light of its starburst summed over a circle around it,
+ * times the square of the radius, is 0.22 times power, wavelength and f-number,
+ * whatever the blades. For 10 lamps in two photographs by night, at f/22, the
+ * power computed from this is 7 to 166 times the power estimated from clipped
+ * pixels, and 0.37 to 3.4 times (median 0.5) the power that is white at the rim
+ * (tests/figures/stars.md). */
 static const double clipped_times = 32, white_share = 0.5;
 
-/* Power of a lamp divided by the area of its white spot, 1 = white. Up to HAZY
- * the rim of the spot is lit haze. From GLARING on it is the glare of a small
- * lamp. Suns in clear skies have 4 to 50, glints and lit haze 0.6 to 1.2. */
+/* Power of a lamp / area of its white spot, 1 = white. Up to HAZY the rim of
+ * the spot is lit haze; from GLARING on the rim is the glare of a small lamp.
+ * Suns in clear skies have 4 to 50, glints and lit haze 0.6 to 1.2. */
 static const double hazy = 1, glaring = 5;
 
 /* Max fraction of the time budget for starbursts. If they would take more time,
- * their faintest light is left out. The threshold is raised up to
- * 2^BUDGET_STEPS times the threshold of cull_codes. If that is not enough,
- * starbursts are not drawn. */
+ * their faintest light is left out. The light that is left out may reach
+ * 2^BUDGET_STEPS times that of cull_codes. If that is not enough, starbursts
+ * are not drawn. */
 static const double budget_share = 0.25;
 enum { BUDGET_STEPS = 8 };
 
@@ -72,8 +72,8 @@ static bool are_star_optics_equal(const struct glint_star_optics *a,
            a->f_number == b->f_number && a->pixel_um == b->pixel_um;
 }
 
-/* Computes the smear again if the dirt in the stop has changed. The smear is
- * the diffraction by this dirt. Sets IS_NEW to whether it has changed. */
+/* Computes the smear, the diffraction by dirt in the stop, again if the dirt
+ * has changed. Sets IS_NEW to whether the dirt has changed. */
 static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
 {
     struct glint_frame_star *s = &f->star;
@@ -172,9 +172,9 @@ static const struct glint_lamp *get_star_lamp(const struct glint_frame *f,
 struct seen {
     double radius_px; /* radius of a uniform disc of the same RMS extent,
                          pixels; 0 if unknown */
-    double hidden_px; /* max radius, pixels, of a lamp whose image is such a
-                         spot: the min semi-axis of lamps in still pictures
-                         (engine/detector.c) */
+    double hidden_px; /* radius, pixels, that glare around a clipped core may
+                         hide: twice the min RMS semi-axis of lamps in still
+                         pictures (engine/detector.c) */
     double level;
     bool is_bare; /* true: the lamp is not visible in the picture */
 };
@@ -190,9 +190,9 @@ static struct seen find_lamp_appearance(const struct glint_frame *f, int i)
 }
 
 /* Returns an estimate of the true power of a lamp in its brightest channel,
- * white times pixels. If the picture clips the lamp, it is higher than POWER,
- * the power found in the picture; otherwise it is POWER. SEEN is the lamp's
- * appearance. */
+ * white times pixels. If the picture clips the lamp, the estimate may exceed
+ * POWER, the power found in the picture; otherwise it is POWER. SEEN is the
+ * lamp's appearance. */
 static double estimate_unclipped_power(const struct glint_frame *f,
                                        const struct seen *seen, double power)
 {
@@ -314,7 +314,7 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
     if (!(s->share > 0) || n == 0)
         return GLINT_OK;
     status = glint_frame_star_allocate(f, n);
-    /* There is no starburst if dirt in the stop blocks all light. */
+    /* The sum is NULL if dirt in the stop blocks all light: no starburst. */
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;
     for (int i = 0; i < n; i++) {
@@ -377,7 +377,7 @@ enum glint_status glint_frame_star_draw_alone(struct glint_frame *frame,
     const size_t samples = 3 * (size_t)width * (size_t)height;
     struct glint_image layer =
         glint_image_over(linear_q20, GLINT_LINEAR_Q20, width, height);
-    /* No pixel can get more than the total light of one lamp. */
+    /* No pixel gets more from one starburst than the lamp's total light. */
     const double most =
         find_max_star_power(frame, lamps, n) * frame->star.share;
     const double scale = most > 0 ? exp2(10 - ceil(log2(most))) : 1;

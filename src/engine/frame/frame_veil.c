@@ -208,8 +208,8 @@ static int set_veil_spreads(const struct glint_frame *f,
     return n;
 }
 
-/* Computes the light that dirt on the front element scatters where its cover is
- * at the max of the table. Does nothing without dirt. */
+/* Computes the light that dirt on the front element scatters to a pixel whose
+ * beam it covers most. Does nothing without dirt. */
 static void spread_front_dirt_light(const struct glint_frame *f)
 {
     const struct glint_frame_veil *v = &f->veil;
@@ -234,9 +234,8 @@ static double compute_gaussian_falloff(double far, double sigma)
     return exp(-0.5 * far * far / (sigma * sigma));
 }
 
-/* Returns the veil of a lamp that is FAR pixels off-screen divided by the veil
- * that it would have at the border of the picture. Each kernel falls off by its
- * own Gaussian. */
+/* Returns the veil of a lamp FAR pixels off-screen / veil of the same lamp at
+ * the border of the picture. Each kernel falls off by its own Gaussian. */
 static double compute_offscreen_fraction(const struct glint_frame *f,
                                          double far)
 {
@@ -262,8 +261,8 @@ static double compute_offscreen_fraction(const struct glint_frame *f,
  * dirt */
 static const double front_pixels = 0.4;
 
-/* The cost is counted in drawn pixels. Convolving the light of one cell with
- * another costs 1 / SPREADING of a pixel. */
+/* The unit is the cost of drawing a pixel. To scatter light from one cell to
+ * another costs 1 / SPREADING of it. */
 double glint_frame_veil_estimate_cost_px(const struct glint_frame *f)
 {
     const double spreading = 14;

@@ -23,7 +23,7 @@ struct glint_frame_veil {
      * NULL: none. They scatter light as haze does, but only within the
      * out-of-focus discs of the dirt. */
     const struct glint_front_dirt *front;
-    /* factor on the veil of a flare that is drawn without a picture; 0: the
+    /* factor on the veil of a flare that is drawn without a picture; 0: use the
      * factor on the flare */
     double alone_gain;
 
@@ -51,9 +51,9 @@ bool glint_frame_has_veil(const struct glint_frame *frame);
 enum glint_status glint_frame_veil_allocate(struct glint_frame *frame);
 
 /* Reads the light of IMAGE, whose white has the linear light WHITE, for the
- * next frame. This is only necessary if that frame is drawn onto another
- * picture. Otherwise drawing reads its own picture. Does nothing without a
- * veil. Returns GLINT_E_MEMORY on failure. */
+ * next frame. Only needed if that frame is drawn onto another picture;
+ * otherwise drawing reads the picture itself. Does nothing without a veil.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_veil_read_picture(struct glint_frame *frame,
                                                 const struct glint_image *image,
                                                 double white);

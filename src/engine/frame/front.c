@@ -25,8 +25,9 @@ static double read_mask_covered_fraction(const struct glint_front *f, double x,
     return f->mask ? 1 - f->mask[(ptrdiff_t)j * f->mask_width + i] / 255. : 0;
 }
 
-/* Computes the covered fraction of each cell of DIRT, and sets the running sums
- * of these fractions along rows. Outside the rim the cover is 0. */
+/* Computes the fraction of each cell of DIRT that dirt covers, and the running
+ * sums of these fractions along rows. The fraction is 0 outside the front
+ * element's rim. */
 static void sum_cover_along_rows(struct glint_front_dirt *dirt,
                                  const struct glint_front *f,
                                  const struct glint_dust *dust)
@@ -215,9 +216,9 @@ static double map_pixel_to_front(const struct glint_front_optics *o, double at,
     return -o->z * o->tangent * (at - 0.5 * n);
 }
 
-/* Returns the distance between nodes at which the cover is computed, in nodes
- * of the table. It is a power of two. 16 computed nodes per radius of an
- * out-of-focus disc suffice. */
+/* Returns the distance, in nodes of the table and a power of two, between nodes
+ * at which the cover is computed. 16 of these per radius of an out-of-focus
+ * disc suffice. */
 static int choose_cover_node_distance(const struct glint_front_optics *o)
 {
     const double disc =

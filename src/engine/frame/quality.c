@@ -12,14 +12,14 @@ enum { MAX_LIGHTS = 128 };
 
 /* Quality levels, the coarsest first: points on the Pareto front of time and
  * error that glint sweep measures over five lenses at 1280x720. Coarser models
- * are not on the front: they save no time and cost 6 dB. Finer models cost only
- * memory and time to bake, so all levels above the default have them.
+ * are not on the Pareto front: they save no time and cost 6 dB. Finer models
+ * cost only memory and time to bake, so all levels above the default have them.
  * Dispersion has a separate Pareto front (make colour-table): levels for small
  * boards draw three wavelengths. Levels below the default draw dim ghosts with
- * one wavelength, and near lights as one light, the more the dimmer the ghost;
- * this halves the time of a frame with many lights. Levels for small boards
- * reuse traced rays while lamps of a video move by less than a quarter of a
- * pixel, with 55 dB or more (make reuse-table). Levels from the default up
+ * the rays of one wavelength, and merge near lights, the more the dimmer the
+ * ghost; this halves the time of a frame with many lights. Levels for small
+ * boards reuse traced rays while lamps of a video move by less than a quarter
+ * of a pixel, with 55 dB or more (make reuse-table). Levels from the default up
  * leave out ghosts below an eighth of a code, of which even hundreds together
  * are invisible. */
 /* clang-format off */
@@ -72,10 +72,10 @@ double glint_quality_place(double quality)
     return level[i].half == level[i + 1].half ? i + part : i + (part >= 0.5);
 }
 
-/* Returns the settings at QUALITY, 0 .. 1, interpolated between two levels of
- * the table. Settings that cannot be interpolated are those of the nearer
- * level. The tolerance of the model is that of the finer level, as it does not
- * affect the time of a frame. */
+/* Returns the settings at QUALITY, 0 .. 1, interpolated between two quality
+ * levels. Settings that cannot be interpolated are those of the nearer level.
+ * The model's tolerance is that of the finer level, as finer models cost no
+ * time per frame. */
 static struct level interpolate_quality_level(double quality)
 {
     const double at = glint_quality_place(quality);

@@ -44,8 +44,8 @@ static const struct glint_option table[] = {
 #include "glint/options.inc"
 };
 
-/* The position of each option's value in struct glint_options: the bytes begin
- * .. end - 1. */
+/* The bytes of each option's value in struct glint_options: begin .. end -
+ * 1. */
 static const struct place {
     size_t begin, end;
 } place[] = {

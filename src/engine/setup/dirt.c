@@ -107,8 +107,8 @@ static void set_mean_transmission(struct glint_dirt *d)
     d->mean = mean > 1e-4 ? mean : 1;
 }
 
-/* Computes level LEVEL of the shade's table, with COARSER nodes per side, from
- * the next finer level, FINER, with SIDE nodes per side. Each node is the mean
+/* Computes mip level LEVEL of the transmission, with COARSER nodes per side,
+ * from the next finer level FINER, with SIDE nodes per side. A node is the mean
  * of the 3 x 3 finer nodes around it, with weights 1/4, 1/2, 1/4 across and
  * down. */
 static void downsample_shade_level(const uint16_t *finer, int side,
@@ -144,11 +144,11 @@ static size_t count_shade_table_nodes(void)
     return n;
 }
 
-/* Returns how much detail around a node a level lacks: the max difference
- * between VALUE, the value of the node, and all finer levels near it. FINE: the
- * next finer level, with FINE_SIDE nodes per side; nodes up to REACH nodes from
- * (I, J) are examined. ROUGH: the differences between these nodes and still
- * finer levels, or NULL. */
+/* Returns the detail that a mip level lacks around a node: the max difference
+ * between VALUE, the value of the node, and all finer levels. FINE: the next
+ * finer level, with FINE_SIDE nodes per side, of which those up to REACH nodes
+ * from (I, J) are compared. ROUGH: the detail that FINE lacks, or NULL if FINE
+ * is the finest level. */
 static int find_node_roughness(const uint16_t *fine, const uint8_t *rough,
                                int fine_side, int i, int j, int reach,
                                int value)
@@ -169,8 +169,8 @@ static int find_node_roughness(const uint16_t *fine, const uint8_t *rough,
     return most < 255 ? most : 255;
 }
 
-/* Returns a digest (FNV-1a) of the stop's sides and of the N nodes of the table
- * of D. It is never 0. */
+/* Returns a digest (FNV-1a) of the stop's sides and of the N nodes of the
+ * finest level of D. It is never 0, as 0 means no dirt. */
 static uint64_t compute_shade_digest(const struct glint_dirt *d, int n)
 {
     uint64_t mark = UINT64_C(0xcbf29ce484222325);
@@ -194,7 +194,7 @@ static void make_shade_table(struct glint_dirt *d)
         .method = &glint_shade_method,
         .log2 = d->dust.n || d->iris.mask ? GLINT_DIRT_LOG2 : 0};
     set_mean_transmission(d);
-    /* A table, if there is one, includes the soft edge. */
+    /* Tables of dust or a mask also include the soft edge. */
     if (!d->shade.log2) {
         d->shade.soft_q16 = (int32_t)lrint(d->iris.softness * 65536);
         return;

@@ -21,10 +21,10 @@ struct glint_dirt {
     struct glint_iris iris;
     double cos_turn, sin_turn; /* cosine and sine of the rotation of the blades,
                                   mask and dust */
-    uint64_t mark; /* digest of the shade's table; a changed digest means
+    uint64_t mark; /* digest of the transmission table; a changed digest means
                       changed dirt */
-    /* mean transmission over the stop; 1 if the stop transmits nothing, so that
-     * it can be a divisor */
+    /* mean transmission over the stop; 1 if the stop transmits nothing, as it
+     * is a divisor */
     double mean;
     /* Returns the fraction of light that is transmitted at (X, Y), stop radii,
      * inside the outline. */

@@ -15,8 +15,8 @@ struct glint_speck {
                                       width of the soft rim / radius */
     double opacity;                /* fraction of light that the middle of the
                                       speck blocks, 0 .. 1 */
-    double middle[2], reach;       /* middle, reach: centre and half side of the
-                                      bounding square, stop radii */
+    double middle[2], reach;       /* centre (middle) and half side (reach) of
+                                      the bounding square, stop radii */
 };
 
 struct glint_dust {

@@ -9,9 +9,8 @@
 
 /* The chief ray of a ghost: the ray through the centre of the stop. */
 struct chief {
-    double x_mm;         /* point at which the ray enters: coordinate along the
-                            light's azimuth on the plane of the front vertex, mm
-                            */
+    double x_mm;         /* coordinate, along the light's azimuth, of the ray in
+                            the plane of the front vertex, mm */
     double radii_per_mm; /* change of the ray's position in the stop per mm of
                             x_mm, stop radii */
 };
@@ -22,7 +21,8 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
                            double sine, struct chief *chief)
 {
     enum { STOP = GLINT_OUT_STOP_X };
-    /* a quarter of the pupil box; two rays at -u and u are compared */
+    /* two rays at -u and u, a quarter of the pupil's width apart; the position
+     * in the stop is linear between them */
     const int32_t u_q30 = 1 << 28;
     struct glint_transfer t;
     struct glint_outputs out;
@@ -48,9 +48,9 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
 
 /* Returns the distance of the entrance pupil from the front vertex, mm. It is
  * computed from the polynomials of a ghost that is reflected only behind the
- * stop. The rays of such a ghost reach the stop as direct light does. So on the
- * axis a stop radius corresponds to a radius of the entrance pupil. Such ghosts
- * are the last of a model. */
+ * stop. The rays of such a ghost reach the stop as direct light does, so that
+ * on the axis a stop radius corresponds to a radius of the entrance pupil. Such
+ * ghosts come last in a model. */
 static double compute_pupil_z_from_model(const struct glint_setup *setup,
                                          const struct glint_lens *lens)
 {

@@ -122,7 +122,8 @@ static double evaluate_polynomial(const struct glint_real *coef, int n,
 }
 
 /* Returns the flux of the direct image, mm^2, at wavelength NM, clamped to the
- * model's band. OPENING is the radius of the stop / the model's radius. */
+ * model's wavelengths. OPENING is the radius of the stop / the model's
+ * radius. */
 static double compute_model_flux(const struct glint_model_header *h,
                                  double opening, double nm)
 {

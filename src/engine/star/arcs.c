@@ -22,8 +22,8 @@ void glint_arcs_init(struct glint_arcs *a, int n, double rotation_deg,
               n * (2 * a->turn - sin(2 * a->turn)) / (2 * round * round);
 }
 
-/* Returns the number of sides to sum. It is all N if N is odd, and half if N is
- * even, as the contribution of the opposite side is the complex conjugate. */
+/* Returns the number of sides to sum: N if N is odd, half of N if N is even, as
+ * the contribution of an opposite side is the complex conjugate. */
 static int count_summed_sides(int n)
 {
     return n % 2 ? n : n / 2;
@@ -71,10 +71,10 @@ static double complex compute_fresnel_integral(double x)
     return x < 0 ? -value : value;
 }
 
-/* Returns the correction of the Fresnel integral at an end of an arc. W is the
- * sine of half the angle between the normal at the end and q. At the end the
+/* Returns the correction of the Fresnel integral at an end of an arc, where the
  * slowly varying factor differs from its value at w = 0, which the integral
- * uses. */
+ * uses. W is the sine of half the angle between the normal at the end and the
+ * frequency vector q. */
 static double complex compute_arc_end_correction(double w, double kappa)
 {
     const double g = 2 * (1 - 2 * w * w) / sqrt(1 - w * w) - 2;
@@ -85,10 +85,10 @@ static double complex compute_arc_end_correction(double w, double kappa)
                                 (cos(phase) + i_unit * sin(phase));
 }
 
-/* Returns the integral along one arc by its approximation for large |q|,
- * without the phase of the arc's middle. TO: angle between the arc's normal and
- * the direction of q, radians; Q: |q|. For an arc on the far side of the stop
- * the integral is the complex conjugate. */
+/* Returns the integral along one arc by its approximation for large
+ * frequencies, without the phase of the arc's middle. TO: angle between the
+ * arc's normal and the frequency vector, radians; Q: its length. For an arc on
+ * the far side of the stop the integral is the complex conjugate. */
 static double complex integrate_arc_asymptotically(const struct glint_arcs *a,
                                                    double q, double to)
 {
@@ -189,10 +189,10 @@ double glint_arcs_compute_far_pattern(const struct glint_arcs *a, double qx,
         const double s = sin(one), t = sin(other);
 
         sum += size * size;
-        /* At the corner each arc contributes (q n) / (2 pi i q t), where n is
-         * its normal and t its direction there. One arc ends and the other
-         * begins, so the signs differ. Twice the real part of the product of
-         * both contributions is subtracted. */
+        /* At the corner each arc contributes (q n) / (2 pi i q t), where q is
+         * the frequency, n the arc's normal and t its direction there. One arc
+         * ends and the other begins, so the signs differ. Twice the real part
+         * of the product of both contributions is subtracted. */
         sum -= 2 * cos(one) * cos(other) / (4 * GLINT_PI * GLINT_PI) *
                (s / (s * s + limit)) * (t / (t * t + limit));
     }

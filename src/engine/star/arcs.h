@@ -3,7 +3,8 @@
  * Computes the Fraunhofer diffraction pattern of a stop with arcs as sides, in
  * doubles.
  *
- * The transform is an integral along the outline, with n its normal:
+ * The Fourier transform at the frequency vector q is an integral along the
+ * outline, with points s and normal n:
  *
  *     F(q) = 1 / (2 pi |q|^2) integral of (q n) exp(-2 pi i q s) ds
  *

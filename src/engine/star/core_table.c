@@ -40,8 +40,8 @@ static double (*find_cell_sum(const struct cells *s, int i, int k))[3]
     return &s->sum[(i + s->half) * (s->side + 1) + k + s->half];
 }
 
-/* Returns the number of sample points per side of a cell. R is the distance
- * between the middle of the cell and the lamp, pixels. */
+/* Returns the number of sample points per side of a cell R pixels from the
+ * lamp. */
 static int count_cell_samples(const struct glint_psf *psf, double r)
 {
     const double fine = r < 12 * psf->airy_px + 0.5
@@ -205,8 +205,8 @@ static uint16_t encode_core_light(double light)
 }
 
 /* Returns the distance between nodes of the core table, in cells: 1, 2 or 4. It
- * is small enough to resolve diffraction rings, and large enough for a table
- * that extends to where rings have faded. */
+ * is small enough to resolve diffraction rings, and large enough that the table
+ * extends to where rings have faded. */
 static int count_cells_between_nodes(const struct glint_psf *psf)
 {
     const double far = 9 * psf->airy_px / GLINT_STAR_CORE;

@@ -17,8 +17,8 @@ enum {
                  one */
 };
 
-/* range of distances from the lamp that the table covers: from first_order, in
- * orders of diffraction, to last_px, in pixels */
+/* distances from the lamp at which the table begins, in orders of diffraction,
+ * and ends, in pixels */
 static const double first_order = 12, last_px = 16384;
 
 /* range of blade curvatures in which the far field changes from that of fans to
@@ -34,8 +34,8 @@ double glint_psf_compute_soft_edge_factor(double soft, double q)
     return a * a;
 }
 
-/* Sets RGB to the light of fans times R^2. The point is R pixels from the lamp,
- * at the angle OFF from the nearest line. */
+/* Sets RGB to the light of fans (lines spread by curved blades or a soft edge)
+ * times R^2, R pixels from the lamp, at the angle OFF from the nearest line. */
 static void sum_fan_light(const struct glint_psf *p, double r, double off,
                           double rgb[3])
 {

@@ -44,7 +44,7 @@ static double compute_circle_pattern(double q)
     return f * f;
 }
 
-/* The sides of a polygonal stop of circumradius 1. */
+/* The sides of a polygonal stop with corners on the unit circle. */
 struct sides {
     /* n: number of listed sides. n_pair: number of stop sides per listed side,
      * 2 if opposite sides are parallel, else 1. */
@@ -270,8 +270,8 @@ static const double least_round = 0.02;
 static const double straight_round = 0.01, straight_soft = 0.002;
 static const double circle_round = 0.98;
 
-/* Replaces the soft edge of a stop by the middle of its slope: scales airy_px
- * to the smaller stop, and SOFT to its radius. */
+/* Moves the outline of a stop with a soft edge to the middle of the edge:
+ * scales airy_px to the smaller stop, and SOFT to its radius. */
 static void move_soft_edge_to_slope_middle(struct glint_psf *p, double soft)
 {
     const double apothem = p->n_blades ? cos(GLINT_PI / p->n_blades) : 1;

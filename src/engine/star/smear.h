@@ -35,8 +35,8 @@ struct glint_smear {
      * are in cycles per radius and begin at -SIDE / (2 SPAN); row 0 has the
      * lowest y. NULL: dirt blocks all light. */
     double *sum;
-    double edge; /* mean of D around 112 cycles per radius; D at higher
-                    frequencies is extrapolated from it */
+    double edge; /* mean of D around 112 cycles per radius, from which D at
+                    higher frequencies is extrapolated */
 };
 
 /* Computes the smear of the dirt in the stop of SETUP. Returns GLINT_E_MEMORY

@@ -15,8 +15,8 @@
 static const double least_airy_px = 1.0 / 64, most_airy_px = 16;
 
 /* Half width of the tabulated line profiles, in multiples of the profile's
- * width, or in pixels if a pixel is wider. In the outer half the profiles fade
- * out, and the halo replaces them. */
+ * width, or in pixels if a pixel is wider. In the outer half they fade into the
+ * halo. */
 static const double widths = 4;
 
 /* Half the length of a pixel's diagonal, pixels. */
