@@ -9,8 +9,9 @@
 #include "flare/dim.h"
 #include "flare/wave_sets.h"
 
-/* Returns the number of the bundle of GHOST, LIGHT and WAVE. All combinations
- * are numbered by light first, then by ghost, then by wave. */
+/* Returns the number of the ray bundle of GHOST, LIGHT and wavelength WAVE. All
+ * combinations are numbered by light first, then by ghost, then by
+ * wavelength. */
 static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
                                      int light, int wave)
 {
@@ -56,7 +57,7 @@ static int find_planned_bundle(const struct glint_flare *f, int64_t number)
 }
 
 /* Returns the index of the set of wavelengths that the plan chose for GHOST and
- * LIGHT. Returns 0 if no bundle of GHOST and LIGHT was planned. */
+ * LIGHT, or 0 if none of their ray bundles was planned. */
 static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                                 int light)
 {
@@ -69,11 +70,11 @@ static int find_chosen_wave_set(const struct glint_flare *f, int ghost,
                : 0;
 }
 
-/* Returns the index of the bundle slot that the plan must have in order to
- * consider this bundle. The frame has max_bundles slots. Without wave sets the
- * index is the bundle's number. With wave sets the plan first considers all
- * waves of the first set, for each ghost and light, and then chooses a set. The
- * index is then that of the last of these waves. */
+/* Returns the index in the array of max_bundles planned ray bundles that the
+ * plan uses to consider this bundle. Without sets of wavelengths it is the
+ * bundle's number. With sets the plan first considers all wavelengths of the
+ * first set, for each ghost and light, and then chooses a set. The index is
+ * then that of the last of these wavelengths. */
 static int64_t compute_bundle_slot_index(const struct glint_flare *f, int ghost,
                                          int light, int wave)
 {
@@ -127,8 +128,7 @@ static void count_bundle_edges(const struct glint_flare *f,
     }
 }
 
-/* Returns whether LIGHT was merged completely into another light when GHOST was
- * planned. */
+/* Returns whether LIGHT was merged completely into another light for GHOST. */
 static int is_light_merged(const struct glint_flare *f, int ghost, int light)
 {
     const struct glint_flare_frame *r = f->plan.frame;

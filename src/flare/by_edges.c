@@ -19,8 +19,8 @@ static size_t count_max_jobs(const struct glint_flare_config *c)
 }
 
 /* Allocates the memory from A. This function and the next are called twice:
- * first with an arena that only measures, so that they return NULL, then to
- * allocate. */
+ * first with an arena that only adds up sizes, so that they return NULL, then
+ * to allocate. */
 struct glint_by_edges *glint_edges_allocate(struct glint_arena *a,
                                             const struct glint_flare_config *c)
 {
@@ -159,8 +159,8 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
 
 /* Converts bundle BUNDLE to edges and stores them after the earlier edges of
  * worker WORKER. Stores no edge if they do not all fit into the worker's range.
- * In this case, unless BINS is NULL, it sets member refs of the bundle's slot
- * to the number of entries in BINS that the edges would need. */
+ * In this case, unless BINS is NULL, sets slot[BUNDLE].refs to the number of
+ * entries in BINS that the edges would need. */
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {
@@ -280,8 +280,9 @@ static int are_all_bundles_placed(const struct glint_flare *f)
     return 1;
 }
 
-/* Converts the bundles whose edges did not fit into the range of their worker.
- * Stores their edges in the range of any worker that has enough space left. */
+/* Converts the ray bundles whose edges did not fit into the range of their
+ * worker, and stores these edges in the range of any worker that has enough
+ * space left. */
 static void emit_bundles_without_space(struct glint_flare *f)
 {
     const int n_workers = glint_workers_count(f->cfg.workers);

@@ -25,7 +25,8 @@ struct glint_edges_worker {
     struct glint_ghost_rows *rows;
     /* Sums of edges for the row of tiles that the worker draws. */
     struct glint_edge_sums sums;
-    /* [tile]: bin index at which the worker stores its next edge of the tile */
+    /* [tile]: index in the bins at which the worker stores its next edge in the
+     * tile */
     int32_t *at;
     /* The worker's range of the flare's edge array: index of its first edge,
      * capacity, and number of edges stored. */

@@ -7,8 +7,8 @@
 
 /* Returns the flux of the lens's direct image (the light that is not
  * reflected), mm^2, with FRAC fraction bits. W_Q30 is the wavelength as a
- * position in the band of the model H, -1 .. 1. Each coefficient of the
- * polynomial is clamped to 2^27, so sums stay below 2^30. */
+ * position in the wavelength range of model H, -1 .. 1. Each coefficient of the
+ * polynomial is clamped to 2^27, so that sums stay below 2^30. */
 static int32_t compute_direct_image_flux(const struct glint_model_header *h,
                                          int32_t w_q30, int frac)
 {

@@ -9,9 +9,9 @@
 
 enum { BRIGHT_Q8 = 1 << 16 };
 
-/* Returns value K of the table (glint_dim_get_values()) for GHOST, interpolated
- * at the angle whose sine is SINE. The value is a logarithm. Returns
- * GLINT_DIM_DARK if one of the two nodes around that angle has this value. */
+/* Returns value K, a log2 of light (glint_dim_get_values()), of GHOST,
+ * interpolated between the two nodes around the angle whose sine is SINE.
+ * Returns GLINT_DIM_DARK if one of these has this value. */
 static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
                                      int32_t sine_q30, int ghost, int k)
 {
@@ -25,8 +25,8 @@ static int32_t interpolate_dim_value(const struct glint_flare_frame *frame,
     return a + q_narrow(q_shift((int64_t)(b - a) * (at_q16 & 65535), 16));
 }
 
-/* Returns whether the table has the brightness of GHOST in all waves at node
- * NODE. A brightness is missing where the wave is blocked. Returns 1 if NODE is
+/* Returns whether the table has the brightness of GHOST in all wavelengths at
+ * node NODE, which it lacks where a wavelength is blocked. Returns 1 if NODE is
  * out of range. */
 static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
                                      int ghost, int node)
@@ -42,10 +42,10 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
     return 1;
 }
 
-/* A ghost may count as bright in the interval of nodes before or after the
- * current one. Then the result falls continuously from 1 at the node between
- * both intervals. It reaches the interpolated value at most half an interval
- * away from that node. */
+/* If the brightness is not known in the interval of nodes before or after the
+ * current one, the ghost counts as bright there. The result then falls
+ * continuously from 1 at the node between both intervals, and reaches the
+ * interpolated value at most half an interval away from that node. */
 int32_t
 glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)

@@ -13,10 +13,10 @@
 #include "glint/flare.h"
 
 enum {
-    GLINT_DIM_WAVE = 1,  /* index of the wave whose rays also draw the other
-                            waves of a dim ghost */
-    GLINT_DIM_WAVES = 3, /* number of waves for which the table exists; frames
-                            with another number of waves do not use it */
+    GLINT_DIM_WAVE = 1,  /* index of the wavelength whose rays also draw the
+                            other wavelengths of a dim ghost */
+    GLINT_DIM_WAVES = 3, /* number of wavelengths in the table; frames with
+                            another number do not use it */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
     GLINT_DIM_DARK = INT16_MIN, /* table value of a wave that does not pass
@@ -27,17 +27,17 @@ enum {
 
 struct glint_flare;
 
-/* Functions of the table, called by a plan through pointers, so that programs
- * without the table do not link them. */
+/* Functions of the table, called through pointers, so that programs without the
+ * table do not link them. */
 struct glint_dim_method {
     /* Computes those nodes (sampled angles) of the table that the plan's first
      * N_LIGHTS lights need and that have not been computed before. */
     void (*fill_nodes)(struct glint_flare *flare, int n_lights);
     /* Merges lights that are close together, separately for each ghost, among
-     * the plan's first N_LIGHTS lights. If the ghost is so dim that the shift
-     * is invisible, a light is merged into the nearest light before it in the
-     * list. Both are then drawn as one light at a position between them. The
-     * brighter the ghost, the smaller is the merged fraction of the light. */
+     * the plan's first N_LIGHTS lights. A light is merged into the nearest
+     * light before it in the list, and both are drawn as one light between
+     * them, if the ghost is so dim that the shift is invisible. The brighter
+     * the ghost, the smaller is the merged fraction of the light. */
     void (*merge_near_lights)(struct glint_flare *flare, int n_lights);
     /* Returns the merged light that replaces LIGHT for GHOST, or NULL if
      * max_bundles is too small. The pointer is valid until the first bundle of
@@ -58,24 +58,24 @@ struct glint_dim_method {
                               int32_t sine_q30, int ghost, int wave);
 };
 
-/* Returns log2 of the mean light of GHOST from LIGHT divided by the frame's
- * parameter dimmest. Ghosts below that parameter count as dim. Returns 256, far
- * above any ratio, if the table does not have the mean light. */
+/* Returns log2 of (mean light of GHOST from LIGHT / the frame's parameter
+ * dimmest, below which ghosts count as dim). Returns 256, far above any ratio,
+ * if the table does not have the mean light. */
 int32_t
 glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light,
                                      int ghost);
 
-/* Returns the fraction of a wave's light that is drawn with rays of this wave,
- * 0 .. GLINT_DIM_WHOLE_Q8. It is the same for all waves of GHOST and LIGHT. The
+/* Returns the fraction of a wavelength's light that is drawn with its own rays,
+ * 0 .. GLINT_DIM_WHOLE_Q8, the same for all wavelengths of GHOST and LIGHT. The
  * rest is drawn with the rays of GLINT_DIM_WAVE. */
 int glint_dim_compute_own_rays_fraction_q8(
     const struct glint_flare_frame *frame, const struct glint_light *light,
     int ghost);
 
-/* Returns the light of GHOST in wave WAVE divided by its light in
- * GLINT_DIM_WAVE, at the angle whose sine is SINE; at most 2^11. The colours of
- * the waves are not included. */
+/* Returns (light of GHOST in wavelength WAVE) / (its light in GLINT_DIM_WAVE)
+ * at the angle whose sine is SINE; at most 2^11. The colours of wavelengths are
+ * not included. */
 int64_t glint_dim_compute_wave_ratio_q16(const struct glint_flare_frame *frame,
                                          int32_t sine_q30, int ghost, int wave);
 

@@ -44,7 +44,7 @@ static void *begin_tile_row(const void *self, struct glint_box row, int worker)
     s->shade = f->cfg.stop.shade;
     s->patch = s->shade ? s->shade->method->draw : NULL;
     s->scratch = w->rows; /* The memory of rows is unused once all edges are
-                             made, so it serves as scratch memory. */
+                             made. */
     s->linear = glint_flare_get_edges(f)->linear;
     s->fine = are_fine_sums_needed(f);
     s->lit = 0;
@@ -63,8 +63,8 @@ static int accumulate_tile_edges(void *state, struct glint_box tile)
     const int n = start[1] - start[0];
     struct glint_edge_sums *s = &w->sums;
 
-    /* Carries change only in tiles that are drawn. So after a dark tile
-     * has_light_carry() would return 0 again and is not called. */
+    /* Carries change only in tiles that are drawn, so that has_light_carry()
+     * need not be called again after a dark tile. */
     s->lit = n > 0 || (s->lit && has_light_carry(s));
     if (!s->lit)
         return 0;

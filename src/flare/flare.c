@@ -216,9 +216,9 @@ struct glint_vertex *glint_flare_add(struct glint_flare *flare,
 
 /* -------------------------------------------------------------------- plan */
 
-/* Returns the number of lights that remain of the N LIGHTS after those at the
- * end of the list that the model does not cover are removed. So a frame with
- * only such lights costs nothing. */
+/* Returns the number of the N LIGHTS without those at the end of the list that
+ * are outside the model's range of angles. So a frame with only such lights
+ * costs nothing. */
 static int count_lights_in_range(const struct glint_lens *lens,
                                  const struct glint_light *lights, int n)
 {
@@ -256,11 +256,11 @@ static void plan_ghost_and_light_job(void *ctx, int job, int worker)
     }
 }
 
-/* Removes invisible ghosts among the first N bundles by setting n_cells to 0. A
- * sum of light may be visible although no single peak is. So the peaks of a
- * ghost in one wave are summed over all lights, and the wave is removed either
- * for all lights or for none. The order of summation does not matter, as sums
- * are integers. */
+/* Removes invisible ghosts among the first N ray bundles by setting n_cells to
+ * 0. A sum of light may be visible although no single peak is, so the peaks of
+ * a ghost in one wavelength are summed over all lights, and the wavelength is
+ * removed for all lights or for none. As sums are integers, their order does
+ * not matter. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;
@@ -399,8 +399,8 @@ int64_t glint_flare_looked(const struct glint_flare *flare)
     return n;
 }
 
-/* Sets the statistics of the frame to totals over the drawn bundles: the first
- * n_drawn, whose edges fit into the bins. */
+/* Sets the statistics of the frame to totals over the first n_drawn ray
+ * bundles, whose edges fit into the bins. */
 static void sum_drawn_statistics(struct glint_flare *f)
 {
     struct glint_flare_stats *s = &f->stats;

@@ -34,10 +34,9 @@
 #include "glint/flare.h"
 
 enum {
-    CURVES = 3, /* number of curves (rounds) by which lights too close to be
-                   distinguished are found */
-    PART = 4,   /* fraction of the surplus lights that a round merges: 1 / PART
-                 */
+    CURVES = 3, /* number of rounds, each with another Z-order curve, that merge
+                   lights too close to be distinguished */
+    PART = 4,   /* a round merges 1 / PART of the lights that are too many */
     BINS = 64,  /* number of bins of the histogram of merge costs */
     HELD = GLINT_LIGHT_HELD,
     WORDS = 10 /* number of 32-bit words of struct glint_light by which lights
@@ -100,7 +99,7 @@ static void set_light_direction(struct glint_light *b,
     const int64_t off = set_light_azimuth(b, d->x_q30, d->y_q30), z = d->z_q30;
     const int64_t length = q_root((uint64_t)(off * off + z * z));
 
-    /* Two opposite lights have a mean direction of length 0. */
+    /* The mean of opposite directions has length 0. */
     b->sine_q30 =
         length ? q_clamp_sat(off * ONE_Q30 / length, 0, ONE_Q30) : ONE_Q30;
     b->cosine_q30 = length ? q_clamp_sat(z * ONE_Q30 / length, 0, ONE_Q30) : 0;
@@ -147,8 +146,8 @@ static int is_brighter_light(const struct glint_light *a,
     return 0;
 }
 
-/* Returns the coordinate V, -1 .. 1, relative to the corner at which the curve
- * begins, which is at -1 - ZERO. */
+/* Returns the coordinate V, -1 .. 1, relative to -1 - ZERO, where the curve
+ * begins. */
 static uint32_t compute_curve_offset(int32_t v_q30, uint32_t zero)
 {
     return (uint32_t)v_q30 + (uint32_t)ONE_Q30 + zero;
@@ -235,7 +234,7 @@ void glint_light_merge(struct glint_light *a, const struct glint_light *b)
 }
 
 /* Returns the binary exponent of (a b d)^2, the squared cost of merging the
- * lights A and B. The head of this file defines a, b and d. */
+ * lights A and B with fluxes a and b at a distance d. */
 static int compute_merge_cost_log2(const struct glint_light *a,
                                    const struct glint_light *b)
 {
@@ -254,7 +253,7 @@ struct rule {
                            0: COST is the condition */
     int cost; /* max compute_merge_cost_log2() of two lights that are merged;
                  used if near2_q60 is 0 */
-    int most; /* min number of lights, at which merging stops */
+    int most; /* number of lights at which merging stops */
 };
 
 static int can_lights_merge(const struct rule *r, const struct glint_light *a,

@@ -27,7 +27,7 @@ static int16_t clamp_log2_to_int16(int32_t log2)
     return (int16_t)q_clamp_sat(log2, -MOST_Q8, MOST_Q8);
 }
 
-/* Returns the largest magnitude among the colour channels of wave W. */
+/* Returns the largest magnitude among the colour channels of wavelength W. */
 static struct glint_real find_max_channel(const struct glint_wave *w)
 {
     int32_t most = 0;
@@ -40,8 +40,8 @@ static struct glint_real find_max_channel(const struct glint_wave *w)
     return real_of(most, -14);
 }
 
-/* Worker function: computes the table values of GHOST at one node. The picture
- * is assumed to be so large that it contains the complete ghost. */
+/* Worker function: computes the table values of GHOST at one node, as if the
+ * picture contained the complete ghost. */
 static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
 {
     const struct fill *fill = ctx;
@@ -121,17 +121,17 @@ static void fill_brightness_nodes(struct glint_flare *flare, int n_lights)
 /* ----------------------------------------------------------------- sharing */
 
 enum {
-    /* Max distance of merged lights for a ghost whose brightness equals the
-     * frame's parameter dimmest: 1 / SIDE of the picture's longer side, or four
-     * pixels of 1920. For brighter ghosts the distance is smaller. The errors
-     * of N merged lights add up to sqrt(N) times the error of one. */
+    /* Max distance of merged lights for a ghost as bright as the frame's
+     * parameter dimmest (the limit of dim ghosts): 1 / SIDE of the picture's
+     * longer side, four pixels of 1920. For brighter ghosts it is smaller. The
+     * errors of N merged lights add up to sqrt(N) times the error of one. */
     SIDE = 480,
     FARTHEST_Q8 = 1 << 14
 };
 
-/* Returns the merged light that replaces LIGHT for GHOST. The memory of the
- * first bundle of GHOST and LIGHT stores it. Returns NULL if that bundle
- * exceeds max_bundles. */
+/* Returns the merged light that replaces LIGHT for GHOST. It is stored in the
+ * memory of the first ray bundle of GHOST and LIGHT. Returns NULL if that
+ * bundle exceeds max_bundles. */
 static struct glint_light *get_merged_light(struct glint_flare *f, int ghost,
                                             int light)
 {

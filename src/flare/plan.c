@@ -8,8 +8,8 @@
 #include "flare/plan_cells.h"
 
 enum {
-    /* number of cells across the small probe; a row of its rays is as long as
-     * GLINT_RAYS, the number of rays that are traced at once */
+    /* number of cells across the small probe; a row has GLINT_RAYS rays, which
+     * are traced at once */
     FEW_ACROSS = GLINT_RAYS - 1,
     FEW_DOWN = 4,
     FEW_INSIDE = 6,
@@ -29,8 +29,7 @@ static int64_t convert_to_pixels_q8(const struct glint_plan *p,
                         8, INT64_C(1) << 31);
 }
 
-/* Returns the length X, pixels, of a part of a ghost after the ghost is
- * enlarged. */
+/* Returns the length X, pixels, in a ghost after the ghost is enlarged. */
 static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
                                     int64_t x_q8)
 {
@@ -44,8 +43,7 @@ struct reach {
     int64_t middle_q8, across_q8, wide_q8, high_q8;
 };
 
-/* Returns half the height of E, measured perpendicular to the light's
- * azimuth. */
+/* Returns half the size of E perpendicular to the light's azimuth. */
 static int64_t compute_extent_half_height(const struct glint_probe_extent *e)
 {
     return (e->y_high - e->y_low) / 2;
@@ -123,10 +121,10 @@ static struct glint_real get_pupil_box_side(const struct glint_transfer *t,
     return real_of(t->box[k], t->box_exponent);
 }
 
-/* Returns the light of wave WAVE that is drawn with the rays of bundle PLANNED,
- * divided by the light of the bundle's own wave. For the bundle's own wave it
- * is 1. For other waves of a dim ghost it covers the fraction that is not drawn
- * with rays of WAVE itself. */
+/* Returns (light of wavelength WAVE that is drawn with the rays of PLANNED) /
+ * (light of PLANNED's own wavelength). It is 1 for that wavelength. For other
+ * wavelengths of a dim ghost it is the part that is not drawn with rays of WAVE
+ * itself. */
 static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                                       const struct glint_bundle_plan *planned,
                                       int wave, int share_q8)
@@ -178,8 +176,8 @@ compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
 }
 
 /* Returns the flux that the bundle would have if all rays of its window had
- * energy 2^EXPONENT, display white times pixels. The window is a rectangle of
- * the lens's pupil. If the pupil is an annulus, the area of its hole is
+ * energy 2^EXPONENT, display white times pixels. The window is the rectangle of
+ * the pupil that is traced. If the pupil is an annulus, the area of its hole is
  * excluded. */
 static struct glint_real compute_bundle_flux(const struct glint_plan *p,
                                              const struct glint_light *b,
@@ -192,8 +190,8 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
     struct glint_real x =
         real_times(get_pupil_box_side(t, 1), get_pupil_box_side(t, 2));
 
-    /* Both factors are half sides of the pupil box. The window's height also
-     * covers half of the box only, unless T covers the complete box. */
+    /* Both factors are half sides of the pupil's bounding box. Unless T covers
+     * the complete box, the window covers half of its height only. */
     x.exponent += (t->whole ? 1 : 2) + exponent;
     /* A pixel at half resolution covers four pixels of the picture. */
     x.exponent -= 2 * p->half;
@@ -207,11 +205,11 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
     return real_times(x, colour);
 }
 
-/* Returns an upper bound on the light that the bundle adds to a pixel, 1 =
- * display white. It is twice the flux of a cell of the probe divided by the min
- * area of such a cell on the sensor. The factor 2 allows for brighter light
- * between probed rays. Returns 0 for folded ghosts: the areas of their cells do
- * not bound their brightness. */
+/* Returns an upper bound on the light that the ray bundle adds to a pixel, 1 =
+ * display white: twice the flux of a cell of the probe / min area of such a
+ * cell on the sensor. The factor 2 allows for brighter light between probed
+ * rays. Returns 0 for folded ghosts: the areas of their cells do not bound
+ * their brightness. */
 static struct glint_real
 compute_max_light(const struct glint_plan *p,
                   const struct glint_bundle_plan *planned,
@@ -250,9 +248,8 @@ static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
     return real_integer(real_over(brightest, p->frame->faintest), 20, most);
 }
 
-/* Sets the members inside_q8 and contrast_q4 of PLANNED for
- * glint_flare_planned(). The first is the fraction of probed rays that are not
- * blocked, the second log2 of (BRIGHTEST / mean irradiance). */
+/* Sets inside_q8 of PLANNED to the fraction of probed rays that are not
+ * blocked, and contrast_q4 to log2 of (BRIGHTEST / mean irradiance). */
 static void set_inside_and_contrast(const struct glint_probe *s,
                                     struct glint_real brightest,
                                     struct glint_bundle_plan *planned)
@@ -314,7 +311,8 @@ glint_plan_map_sensor_to_picture(const struct glint_plan *plan,
 }
 
 /* Returns the left shift that scales energies up as far as possible without
- * overflow. Energies may be up to 5/4 of ENERGY, the max of the probed rays. */
+ * overflow. Energies may be up to 5/4 times ENERGY, the max of the probed
+ * rays. */
 static int compute_energy_shift(int64_t energy)
 {
     const int up = 29 - bit_length((uint64_t)(energy + energy / 4));
@@ -341,9 +339,9 @@ int glint_plan_is_light_outside_model(const struct glint_lens *lens,
     return light->sine_q30 > lens->header->sine_hi_q30;
 }
 
-/* Returns whether ghost GHOST, or a part of a ghost, is to be drawn. Its tint
- * must not be 0. If only_ghost is set, GHOST must come from the same pair of
- * surfaces as that ghost. */
+/* Returns whether GHOST, a ghost or one of its pupil regions, is to be drawn.
+ * Its tint must not be 0. If only_ghost is set, GHOST must come from the same
+ * pair of surfaces as that ghost. */
 static int is_ghost_selected(const struct glint_flare_frame *r, int ghost)
 {
     const struct glint_model_ghost *g = &r->lens->ghost[ghost];
@@ -365,12 +363,12 @@ static int64_t compute_vector_length(int64_t x, int64_t y)
 
 /* Sets the enlargement of the ghost, at most WIDEST_Q16, and the fixed point of
  * the enlargement. A lamp of visible extent is sampled by point lights. If the
- * ghosts of these points were smaller than the distance between them, the ghost
- * of the lamp would become a pattern of dots. So each ghost is enlarged to two
- * and a half times the distance between neighbours. When a light moves, its
- * ghost moves in proportion to the ghost's distance from the picture's centre.
- * So lights on the axis need no enlargement. The fixed point lies on the line
- * of the light's azimuth unless the ghost is mirrored rather than rotated. */
+ * ghosts of these points were smaller than their distance, the lamp's ghost
+ * would be a pattern of dots. So each ghost is enlarged to two and a half times
+ * the distance between neighbours. A ghost moves with its light in proportion
+ * to the ghost's distance from the picture's centre, so lights on the axis need
+ * no enlargement. The fixed point lies on the line of the light's azimuth
+ * unless the ghost is mirrored rather than rotated. */
 static void set_ghost_enlargement(const struct glint_plan *p,
                                   const struct glint_light *b,
                                   struct glint_bundle_plan *planned,

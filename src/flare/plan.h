@@ -19,19 +19,21 @@
 #include "flare/probe.h"
 #include "flare/window.h"
 
-/* The plan of one bundle, made before its grid of rays is traced: its ghost,
- * light and wave, and how to draw it. */
+/* The plan of one ray bundle, made before its grid of rays is traced: its
+ * ghost, light and wavelength, and how to draw it. */
 struct glint_bundle_plan {
     int32_t ghost, light, wave;
     /* direction from which light comes, as in struct glint_light: that of light
      * LIGHT, or of the merged light that replaces it */
     int32_t sine_q30, cos_q30, sin_q30;
-    /* Rotation of the ghost in the picture, see struct glint_place. */
+    /* rotation of the ghost in the picture */
     struct glint_azimuth turn;
-    uint8_t energy_up; /* see struct glint_transfer */
-    /* as in struct glint_planned */
+    uint8_t energy_up; /* left shift that scales energies up */
+    /* inside: fraction of the probed rays that are not blocked; view: fraction
+     * of the bounding box that is on-screen; contrast: log2 of max / mean
+     * light */
     uint8_t inside_q8, view_q8, contrast_q4;
-    /* range of the pupil box that the stop transmits */
+    /* rectangle of the pupil's bounding box that the stop transmits */
     struct glint_box_window window;
     /* mean height of the straight lines between grid rays above the function (1
      * + r^2) / 2, for barrel 0, barrel 1 and a round stop */
@@ -59,8 +61,8 @@ struct glint_plan {
     unsigned sets;
     int half; /* 1: the flare is drawn at half resolution, with pixels twice as
                  wide and high as the picture's */
-    int dims; /* 1: dim ghosts are drawn with the rays of one wave, and the
-                 table frame->dim covers all lights */
+    int dims; /* 1: dim ghosts are drawn with the rays of one wavelength, and
+                 the table frame->dim covers all lights */
     int32_t round_q16; /* curvature of the stop's outline between its corners,
                           in 1 / stop radius: 0 is straight, 2^16 a circle */
     int shaded;        /* 1: the light through the stop varies over its area, by

@@ -15,11 +15,10 @@ static int64_t compute_root_mean_square(uint64_t sum, int n)
     return n ? (int64_t)q_root((uint64_t)q_divide((int64_t)sum, n)) << 5 : 0;
 }
 
-/* Returns how curved the map from the pupil box to the outputs A and B is, as a
- * distance on the sensor. It is the mean second difference of the outputs
- * divided by their mean first difference, times the mean first difference of
- * the sensor position. The unit is that of the sensor outputs times
- * 2^GLINT_PROBE_FINE_LOG2. */
+/* Returns the curvature of the map from the pupil to the outputs A and B, as a
+ * distance on the sensor: the mean second difference of the outputs / their
+ * mean first difference * the mean first difference of the sensor position. The
+ * unit is that of the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_output_curvature(const struct glint_probe *s, int a,
                                         int b)
 {
@@ -97,20 +96,19 @@ static int reduce_cells_for_codes(const struct glint_probe *s,
     return n;
 }
 
-/* Returns the ratio of the error allowed for outlines to the error allowed for
- * light: 10 or 5. It is 5 for a round stop, which curves all outlines. It is
- * also 5 if three or more barrels cut the bundle. Then the second barrel value
- * of a vertex is the tightest of all barrels but the first, which has kinks, so
- * that tips of outlines would depend on the grid. */
+/* Returns (error allowed for outlines) / (error allowed for light): 10 or 5. It
+ * is 5 for a round stop, which curves all outlines, and if three or more barrel
+ * apertures cut the ray bundle. The second barrel value of a vertex is then the
+ * tightest of all but the first; it has kinks, so that tips of outlines would
+ * depend on the grid. */
 static int choose_outline_tolerance_ratio(const struct glint_plan *p,
                                           const struct glint_transfer *t)
 {
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* Returns the number of cells per side that a stop with dust or masks needs.
- * Their image must be exact to a pixel within each cell
- * (edges/ghost_shade.h). */
+/* Returns the number of cells per side that a stop with dust or masks needs, so
+ * that the image of these is exact to a pixel within each cell. */
 static int compute_cells_for_shade(const struct glint_plan *p,
                                    const struct glint_probe *s,
                                    const struct glint_transfer *t)

@@ -37,12 +37,10 @@ struct glint_probe {
     /* [j % 3]: row j of rays, one of the last three */
     struct glint_probe_node row[3][GLINT_PROBE_ACROSS + 1];
     struct glint_probe_change change[GLINT_OUT_KINDS];
-    /* Numbers of cells. across: across the window. down: down half the window,
-     * or down all of it if rays have no mirror image. rows: down all of the
-     * window. */
+    /* Numbers of cells. across: across the window. rows: down the window. down:
+     * rows that are traced, half of them if rays have mirror images. */
     int across, down, rows;
-    int whole;  /* whole as in struct glint_transfer: 1 if rays have no mirror
-                   image */
+    int whole;  /* 1: rays have no mirror image */
     int n_rays; /* number of rays traced for this bundle, over all its probes */
     int n_bends, n_bent[2], n_inside, n_kinds;
     /* [n_kinds]: the outputs of this bundle's polynomials, except energy */
@@ -52,8 +50,8 @@ struct glint_probe {
                          is folded */
     /* extent of the rays that pass the stop and the barrels */
     struct glint_probe_extent seen;
-    /* extent of all corners of cells with at least one ray inside; it also
-     * contains the light between rays */
+    /* extent of all cells with at least one corner ray inside, which contains
+     * the light between rays, too */
     struct glint_probe_extent reach;
     int64_t energy;
     uint64_t least_area;            /* min area on the sensor of half a cell */

@@ -31,7 +31,7 @@ struct glint_bundle_slot {
                    the edges did not fit */
 };
 
-/* State of the plan and the bins that the next frame may reuse. */
+/* What the next frame may reuse of this frame. */
 enum glint_reusable {
     GLINT_REUSABLE_NOT,
     GLINT_REUSABLE_PLANNED, /* a plan without binned edges */
@@ -52,7 +52,7 @@ struct glint_flare {
      * stored, or computed by the polynomials of the plan */
     const struct glint_flare_rays *rays;
     struct glint_plan plan; /* the plan of a frame; plan.frame is NULL if the
-                               bundles were added without a plan */
+                               ray bundles were added by the caller instead */
     struct glint_bundle_plan
         *planned; /* [max_bundles]: the plan of each bundle */
     struct glint_real flux, brightest; /* total flux of all planned bundles; max
@@ -79,9 +79,9 @@ struct glint_reuse {
      * measures. */
     void *(*allocate_state)(struct glint_arena *a,
                             const struct glint_flare_config *c);
-    /* If the inputs equal those of the last plan, and its edges are still in
-     * the bins, reuses the plan and returns 1. Otherwise records the inputs for
-     * the next frame and returns 0. */
+    /* Returns 1 and reuses the last plan if its inputs equal these and its
+     * edges are still in the bins. Otherwise records the inputs for the next
+     * frame and returns 0. */
     int (*reuse_if_unchanged)(struct glint_flare *f,
                               const struct glint_flare_frame *frame,
                               const struct glint_light *lights, int n_lights);

@@ -7,7 +7,7 @@
 enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
 
 /* A job of the plan: one pair of a ghost and a light. Jobs are stored in the
- * memory of the bundle slots, which is unused until bundles have their final
+ * array slot of the flare, which is unused until ray bundles have their final
  * indices. */
 struct job {
     int ghost, light;
@@ -215,8 +215,8 @@ static void plan_chosen_set_job(void *ctx, int number, int worker)
         plan_waves_of_set(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Sets the wave set of jobs to UNSEEN if their ghost is invisible. A ghost is
- * invisible if the sum of its peaks over all lights is too faint. */
+/* Sets the wave set of jobs to UNSEEN if their ghost is invisible: the sum of
+ * its peaks over all lights is too faint. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;

@@ -62,9 +62,9 @@ static void trace_window_nodes(struct glint_window_nodes *n,
     n->n_rays += ACROSS * DOWN;
 }
 
-/* Returns 1/4 of the second difference of output K around node (I, J). That is
- * twice the distance by which the output may deviate from a straight line
- * between nodes. It is at most about 2^31, as values are below 2^30. */
+/* Returns 1/4 of the second difference of output K around node (I, J), which is
+ * twice the deviation of the output from a straight line between nodes; at most
+ * about 2^31, as values are below 2^30. */
 static int64_t
 compute_quarter_second_difference(const struct glint_window_nodes *n, int k,
                                   int i, int j)
@@ -109,8 +109,9 @@ static void classify_node_by_stop(struct glint_window_nodes *n, int i, int j)
     n->inside[j][i] = x * x + y * y < n->radius * n->radius;
 }
 
-/* Sets a bit in n->beyond of each node for each barrel outside of which the
- * node lies, by more than compute_quarter_second_difference(). */
+/* Sets a bit in n->beyond of each node for each barrel aperture outside of
+ * which the node certainly lies: by more than
+ * compute_quarter_second_difference(). */
 static void classify_nodes_by_barrels(struct glint_window_nodes *n,
                                       const struct glint_transfer *t)
 {

@@ -6,8 +6,8 @@
 #include "base/q.h"
 #include "flare/edges/outline.h"
 
-/* Numbers of cuts, as in struct glint_edge_part: side K of the stop is cut K,
- * barrel K is cut BARREL + K. */
+/* Numbers of cuts (outlines that clip edges): side K of the stop is cut K,
+ * barrel aperture K is cut BARREL + K. */
 enum { BARREL = 64, NOTHING = GLINT_CUT_NOTHING };
 
 /* ------------------------------------------------------------------- nodes */
@@ -33,8 +33,8 @@ static int count_parallel_side_pairs(const struct glint_stop *stop)
 
 /* Returns the value at V of the function whose zero line is the outline of a
  * round stop; it is positive inside. The function is 1 - (1 + r^2) / 2 minus
- * the stop's inset, where r is the distance from the stop's centre in stop
- * radii. The value is clamped far outside. */
+ * the stop's inset (by which soft edges shrink it), where r is the distance
+ * from the stop's centre in stop radii. The value is clamped far outside. */
 static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
                                        const struct glint_vertex *v)
 {

@@ -19,9 +19,9 @@
 #include "glint/bundle.h"
 #include "glint/light.h"
 
-/* The cuts for which a node of the grid lies on the cut or outside. sides: a
- * bit for each side of the stop (bit 0 for a round stop). barrels: a bit for
- * each barrel. */
+/* The cuts on or outside of which a node of the ray grid lies. sides: a bit for
+ * each side of the stop (bit 0 for a round stop). barrels: a bit for each
+ * barrel aperture. */
 struct glint_outside {
     uint64_t sides;
     uint8_t barrels;

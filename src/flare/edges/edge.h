@@ -41,9 +41,9 @@ struct glint_edge {     /* 32 bytes */
     /* light on the left and on the right side, packed by glint_light_pack();
      * negative for a mirrored ghost */
     int32_t left, right;
-    /* patch: 1 if this struct is not an edge but one slot of a patch (patch.h).
-     * whole: for edges, 1 if the edge is pixel-snapped; for patches, 1 in all
-     * slots but the first. */
+    /* patch: 1 if this struct is not an edge but one of those that store a
+     * patch (patch.h). whole: for edges, 1 if pixel-snapped; for patches, 1 in
+     * all structs but the first. */
     unsigned bundle : 30, patch : 1, whole : 1;
 };
 
@@ -68,9 +68,9 @@ static inline int64_t glint_light_unpack_q20(int32_t packed)
 /* size of the scratch memory of a patch function, bytes */
 enum { GLINT_PATCH_SCRATCH = 8192 };
 
-/* Function that adds the part of patch E in the tile of SUMS to the narrow or
- * to the wide sums. LIGHT is the patch's light through a clear stop, per
- * channel, in the units of the sums. */
+/* Adds the pixels of patch E in the tile of SUMS to the narrow (32-bit) or wide
+ * sums. LIGHT is the patch's light through a clear stop, per channel, in the
+ * units of the sums. */
 struct glint_edge_sums;
 typedef void glint_patch_fn(const struct glint_edge_sums *sums, int narrow,
                             const struct glint_edge *e, const int64_t light[3]);

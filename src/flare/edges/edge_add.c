@@ -283,7 +283,7 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
-    /* If n is 0, the edge may be so flat that its step overflows. */
+    /* An edge within one row may be so flat that its step overflows. */
     if (n > 0) {
         const int64_t step_q40 = e->slope_q40 * 256;
         const int is_narrow = step_q40 < ONE_Q40 && step_q40 > -ONE_Q40;
@@ -370,7 +370,7 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
-    /* If n is 0, the edge may be so flat that its step overflows. */
+    /* An edge within one row may be so flat that its step overflows. */
     if (n > 0) {
         add_complete_snapped_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256,
                                   s->stride);

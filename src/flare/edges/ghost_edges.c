@@ -179,7 +179,7 @@ int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
 }
 
 /* Returns the packed irradiance of a primitive that covers AREA2 / 2^FRAC
- * pixels. Its flux is 2^SHARE_LOG2 times that of a cell. SIGN is -1 for a
+ * pixels and has 2^SHARE_LOG2 times the flux of a cell. SIGN is -1 for a
  * mirrored cell, else 1. */
 static int32_t compute_packed_cell_light(struct glint_ghost_edges *g,
                                          int64_t area2, int frac,
@@ -284,8 +284,8 @@ static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
 }
 
 /* Adds the edges of a cell that is drawn as a closed outline and shares no
- * edges with its neighbours. TURN is the result of
- * find_convex_orientation(). */
+ * edges with its neighbours. TURN is the sign of the cell's area, or 0 if the
+ * cell is not convex. */
 static NEVER_INLINE void
 add_cell_separately(struct glint_ghost_edges *g,
                     const struct glint_ghost_cell *c,
@@ -368,7 +368,7 @@ static void set_grid_cell_corners(const struct glint_ghost_edges *g, int i,
 }
 
 /* Returns whether row J of cells lies in the hole of an annular pupil box. Such
- * rows have no light. They touch the middle row of nodes, for which no rays are
+ * rows have no light. They touch the middle row of nodes, whose rays are not
  * traced. */
 static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
 {
@@ -379,8 +379,8 @@ static int is_row_in_annulus_hole(const struct glint_ghost_edges *g, int j)
 }
 
 /* Multiplies the energy at the corners of a cell that is drawn separately by
- * the light that the stop's shade (soft edge, dust or masks) transmits. Stores
- * the new corners in DIMMED. Without a shade nothing changes. */
+ * the transmission of the stop (soft edge, dust or masks). Stores the new
+ * corners in DIMMED. For a uniform stop nothing changes. */
 static void dim_separate_cell(const struct glint_ghost_edges *g,
                               struct glint_ghost_cell *c,
                               struct glint_corners *corners,

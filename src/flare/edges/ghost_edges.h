@@ -70,10 +70,11 @@ struct glint_ghost_edges {
     const struct glint_flare_rays *rays;
     int worker; /* number of the worker, passed to the functions of rays */
     struct glint_place place;
-    const uint16_t *sag_q16; /* see struct glint_bundle_plan */
+    const uint16_t *sag_q16; /* interpolation errors (flare/plan.h) */
     const struct glint_bundle *bundle;
     uint32_t number; /* number of the bundle */
-    /* as in struct glint_bundle_plan; 0 if the bundle was not planned */
+    /* total flux, and mean light of a pixel (struct glint_bundle_plan); 0 if
+     * the ray bundle was not planned */
     struct glint_real flux, irradiance;
     const struct glint_stop *stop;
     int width, top, height; /* range of pixels that are drawn: columns 0 ..
@@ -84,10 +85,11 @@ struct glint_ghost_edges {
                          rounded; 0: irradiance is not rounded */
     int coded; /* 1: the picture has 8-bit codes, which resolve faint light more
                   coarsely */
-    int snap_codes_q8; /* see struct glint_flare_frame */
+    int snap_codes_q8; /* change of light, codes, below which edges are
+                          pixel-snapped; 0: none is */
     struct glint_ghost_rows *rows;
-    /* the patch over the cell that is being drawn separately, if the cell has
-     * dust or masks; else NULL */
+    /* patch that dims the cell being drawn by dust or masks (patch.h), or
+     * NULL */
     struct glint_patch *patch;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;

@@ -12,7 +12,7 @@
 /* Bits of a node in member barrels of struct glint_ghost_rows. NODE_BARRELS:
  * mask of the bits of the barrels. NODE_LOST: the ray is invalid. All others:
  * the node lies off-screen on the named side of the picture. The left side has
- * no bit, as edges on the left of the picture still add light to it. */
+ * no bit, as edges left of the picture still add light to the picture. */
 enum {
     NODE_BARRELS = 3,
     NODE_LOST = 4,

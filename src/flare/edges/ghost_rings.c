@@ -41,7 +41,7 @@ static int choose_rings_log2(const struct glint_ghost_edges *g)
     }
     if (g->irradiance.mantissa) {
         /* about 4 times the squared width of the soft edge, pixels^2: the
-         * ghost's area, pixels^2, times soft^2 */
+         * ghost's area times soft^2 */
         const struct glint_real soft = real_of(g->stop->shade->soft_q16, -16);
         const struct glint_real pixels2 = real_times(
             real_over(g->flux, g->irradiance), real_times(soft, soft));

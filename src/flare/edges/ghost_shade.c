@@ -27,17 +27,15 @@ static int compute_level_shift(const struct glint_shade *s, int level)
     return 17 - s->log2 + level;
 }
 
-/* Converts a coordinate in the stop, -1 .. 1 stop radii, to a coordinate in the
- * shade's table, 0 .. 2 stop radii from its first node. The result is
- * clamped. */
+/* Converts a coordinate in the stop, -1 .. 1 stop radii, to the distance from
+ * the first node of the transmission table, clamped to 0 .. 2 stop radii. */
 static int32_t clamp_stop_position_to_table(int64_t at_q16)
 {
     return q_clamp_sat(at_q16 + (1 << 16), 0, (1 << 17) - 1);
 }
 
-/* Returns the fraction of light that the shade transmits at (X, Y), stop radii.
- * It is interpolated between the four nodes of level LEVEL around that
- * point. */
+/* Returns the transmission of the stop at (X, Y), stop radii, interpolated
+ * between the four nodes of mip level LEVEL around that point. */
 static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
                                            int level, int64_t x_q16,
                                            int64_t y_q16)
@@ -56,9 +54,8 @@ static int32_t interpolate_shade_light_q15(const struct glint_shade *s,
     return (int32_t)q_shift(low * (one - v) + high * v, 2 * shift);
 }
 
-/* Returns how much detail the shade has near (X, Y), stop radii, that level
- * LEVEL of its table does not show: the max difference between LEVEL and finer
- * levels. */
+/* Returns the detail that mip level LEVEL of the stop's transmission lacks near
+ * (X, Y), stop radii: the max difference between LEVEL and finer levels. */
 static int read_roughness_q8(const struct glint_shade *s, int level,
                              int64_t x_q16, int64_t y_q16)
 {
@@ -72,9 +69,9 @@ static int read_roughness_q8(const struct glint_shade *s, int level,
                        ((clamp_stop_position_to_table(x_q16) + half) >> shift)];
 }
 
-/* Returns the level of the shade's table for a cell with the corners CORNER.
- * The distance of its nodes is between half and all of the max distance of the
- * corners in the stop. */
+/* Returns the mip level of the stop's transmission for a cell with the corners
+ * CORNER. The distance of the level's nodes is 1/2 to 1 times the max distance
+ * of the corners in the stop. */
 static int choose_shade_level(const struct glint_shade *s,
                               const struct glint_vertex *const *corner)
 {
@@ -140,9 +137,9 @@ static int64_t compute_slope_q24(int64_t a, int64_t b, int64_t c, int64_t d,
                         INT64_C(1) << 32);
 }
 
-/* Sets the map of patch P from pixels to positions in the stop. The map is
- * linear and fitted to the corners AT of a cell. The box of P must be set.
- * Returns 0 if a coefficient is out of range. */
+/* Sets the linear map of patch P from pixels to positions in the stop, fitted
+ * to the corners AT of a cell. The box of P must be set. Returns 0 if a
+ * coefficient is out of range. */
 static int set_pixel_to_stop_map(struct glint_patch *p,
                                  const struct glint_vertex *const *at)
 {
@@ -178,8 +175,8 @@ static int set_pixel_to_stop_map(struct glint_patch *p,
             sum_q16 * 64 + q_shift(across * (p->box.x0 * 256 + 128 - x_q8) +
                                        down * (p->box.y0 * 256 + 128 - y_q8),
                                    8);
-        /* The map is modulo 2^32, as it is used only for pixels within the
-         * cell. */
+        /* The map may wrap modulo 2^32, as it is used only for pixels within
+         * the cell. */
         p->at_q24[k] = (int32_t)(uint32_t)(uint64_t)from_q24;
         p->across_q24[k] = (int32_t)across;
         p->down_q24[k] = (int32_t)down;
@@ -277,9 +274,9 @@ static int compute_cell_size_log2(const struct glint_vertex *const *corner)
     return bit_length((uint64_t)far >> 8) - 1;
 }
 
-/* Returns an upper bound on how far the shade's light within a cell may deviate
- * from the mean of LIGHT. LIGHT has the shade's light at the cell's corners by
- * level LEVEL of its table. */
+/* Returns an upper bound on how far the stop's transmission within a cell may
+ * deviate from the mean of LIGHT, which is the transmission at the cell's
+ * corners by mip level LEVEL. */
 static int bound_cell_roughness_q8(const struct glint_shade *s, int level,
                                    const struct glint_vertex *const *corner,
                                    const int32_t light[4])

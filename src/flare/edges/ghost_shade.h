@@ -27,11 +27,11 @@ enum {
 struct glint_shade_method {
     /* Converts a bundle to edges; called by glint_ghost_emit_edges(). */
     void (*emit)(struct glint_ghost_edges *g);
-    /* Applies dust and masks to a convex cell of orientation TURN. CUTS cuts
-     * (sides of the stop, barrels) cross the cell. *ENERGY: on entry the mean
-     * energy of the cell's corners, on return the energy that the edges of the
-     * cell have to draw. Returns 0 if the cell was drawn completely. Such a
-     * cell shares no edges with its neighbours. */
+    /* Applies dust and masks to a convex cell, whose area has the sign TURN.
+     * CUTS: number of stop sides and barrel apertures that cross the cell.
+     * *ENERGY: on entry the mean energy of the cell's corners, on return the
+     * energy that the edges of the cell have to draw. Returns 0 if the cell was
+     * drawn completely and shares no edges with its neighbours. */
     int (*cell)(struct glint_ghost_edges *g, const struct glint_corners *c,
                 int turn, int cuts, int64_t *energy_q16);
     /* Stores the patch over the outline of a cell that is drawn separately.
@@ -39,8 +39,8 @@ struct glint_shade_method {
     void (*patch)(struct glint_ghost_edges *g, int32_t light);
     glint_patch_fn *draw;
     /* Multiplies the energy at the corners of cell C, which is drawn
-     * separately, by the light that SHADE transmits. Stores the new corners in
-     * DIMMED, and sets C to point to them. */
+     * separately, by the transmission SHADE. Stores the new corners in DIMMED,
+     * and sets C to point to them. */
     void (*corners)(const struct glint_shade *shade, struct glint_ghost_cell *c,
                     struct glint_vertex dimmed[4]);
 };

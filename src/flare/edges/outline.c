@@ -26,9 +26,9 @@ int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
                    30);
 }
 
-/* Sets VALUE[i], for each of N corners AT[i], to its distance inside side SIDE
- * of the stop, in stop radii; outside it is negative. If sides are round,
- * DISC[i] must be glint_disc_evaluate_function_q16() of AT[i]. */
+/* Sets VALUE[i] to the distance of corner AT[i], i below N, from side SIDE of
+ * the stop, stop radii, positive inside. If sides are round, DISC[i] must be
+ * glint_disc_evaluate_function_q16() of AT[i]. */
 static void compute_side_distances(const struct glint_stop *stop, int side,
                                    const struct glint_vertex *const *at, int n,
                                    const int64_t *disc, int64_t *value)
@@ -135,8 +135,8 @@ static int64_t interpolate_at_uv(const int64_t *value_q16,
                                   28);
 }
 
-/* Returns the coordinate of the zero of a linear function between A and B. The
- * function is FA at A and FB at B. Products are below 2^28 times 2^33. */
+/* Returns where a linear function, FA at A and FB at B, is zero. Products are
+ * below 2^28 times 2^33. */
 static int32_t find_zero_coordinate(int32_t a_q28, int32_t b_q28, int64_t fa,
                                     int64_t fb)
 {
@@ -199,7 +199,8 @@ static int64_t compute_disc_bulge_q16(const struct glint_vertex *const *at)
         const int64_t one = 1 << 16;
 
         if (dx > one || dx < -one || dy > one || dy < -one)
-            return 0; /* The triangle is too large for this approximation. */
+            return 0; /* The approximation does not hold for such a large
+                         triangle. */
         sum_q16 += (dx * dx + dy * dy) >> 16;
     }
     return sum_q16 / 24;
@@ -311,9 +312,9 @@ void glint_outline_set_unclipped(struct glint_outline *outline,
 
 /* ------------------------------------------------------------------- widen */
 
-/* Lengthens the strip from A to B to the min length of a strip. Coordinate 0
- * runs along the strip, with A[0] <= B[0]. Returns twice the strip's area,
- * pixels^2. */
+/* Lengthens the strip from A to B, which replaces a thin primitive, to the min
+ * length of a strip. Coordinate 0 runs along the strip, with A[0] <= B[0].
+ * Returns twice the strip's area, pixels^2. */
 static int64_t lengthen_strip(int64_t a[2], int64_t b[2])
 {
     const int64_t middle = (a[0] + b[0]) >> 1;

@@ -93,9 +93,9 @@ struct glint_outline {
     } uv[GLINT_OUTLINE_CORNERS], kept[GLINT_OUTLINE_CORNERS];
 };
 
-/* Returns the GLINT_CUT_ flags of the cuts that may cross the primitive.
- * Returns 0 if it is completely visible, -1 if it is completely outside. Masks
- * of the stop are ignored. */
+/* Returns the GLINT_CUT_ flags of the cuts that may cross the primitive, 0 if
+ * it is completely visible, or -1 if it is completely outside. Masks of the
+ * stop are ignored. */
 int glint_outline_classify_primitive(const struct glint_corners *corners,
                                      const struct glint_stop *stop);
 

@@ -4,7 +4,7 @@
  * sorted into tiles like edges. */
 #include "flare/edges/patch.h"
 
-enum { WORDS = 7 }; /* number of data words in a slot */
+enum { WORDS = 7 }; /* number of 32-bit data words in an array element */
 
 static void write_patch_word(struct glint_edge *e, int i, int32_t word)
 {

@@ -24,27 +24,29 @@
 struct glint_patch {
     struct glint_box box; /* bounding box, pixels of the picture */
     int32_t light;        /* packed light through a clear stop */
-    int level;            /* level of the shade's table whose nodes are about a
-                             pixel apart */
-    int clear;            /* 1: edges draw the polygon with the light of a clear
-                             stop; 0: without light */
+    int level;            /* mip level of the stop's transmission whose nodes
+                             are about a pixel apart */
+    int clear;            /* 1: edges draw the polygon as if the stop were
+                             clear; 0: as if it were opaque */
     /* Map from pixels to positions in the stop, stop radii. at: position for
      * the centre of the box's first pixel. across, down: change per pixel to
      * the right and per pixel downwards. */
     int32_t at_q24[2], across_q24[2], down_q24[2];
     const struct glint_vertex *cell[4]; /* corners of the cell under the patch;
-                                           not written to the slots */
+                                           not stored in the edge array */
     int n; /* number of corners, in cyclic order with a positive area */
     int32_t x_q8[GLINT_OUTLINE_CORNERS], y_q8[GLINT_OUTLINE_CORNERS];
 };
 
-/* Returns the number of edge slots that a patch of N corners occupies. */
+/* Returns the number of elements of the edge array that a patch of N corners
+ * occupies. */
 static inline int glint_patch_count_slots(int n)
 {
     return 1 + (7 + 2 * n + 6) / 7;
 }
 
-/* Writes patch P of bundle number BUNDLE to the slots from EDGE on. */
+/* Stores patch P of ray bundle number BUNDLE in elements of the edge array,
+ * from EDGE on. */
 void glint_patch_write_slots(struct glint_edge *edge,
                              const struct glint_patch *p, unsigned bundle);
 
@@ -54,7 +56,8 @@ void glint_patch_read_slots(struct glint_patch *p,
 /* Draws a patch: the value of member draw of struct glint_shade_method. */
 glint_patch_fn glint_patch_draw;
 
-/* Turns the N slots EDGE into continuation slots, which draw nothing. */
+/* Turns the N array elements EDGE into continuations of a patch, which draw
+ * nothing. */
 void glint_patch_fill_empty_slots(struct glint_edge *edge, int n);
 
 #endif

@@ -46,9 +46,9 @@ struct draw {
     const struct glint_edge_sums *sums;
     struct glint_patch patch;
     struct side side[GLINT_OUTLINE_CORNERS];
-    /* node: nodes of the patch's level of the shade's table. run: nodes of the
-     * level whose node distance is two runs of pixels; NULL if there is no such
-     * level. */
+    /* node: nodes of the patch's mip level of the stop's transmission. run:
+     * nodes of the level whose node distance is two runs of pixels; NULL if
+     * there is no such level. */
     const uint16_t *node_q15, *run_q15;
     int run_nodes, run_shift;
     uint32_t once_q24[2], twice_q24[2]; /* change of the position in the stop
@@ -58,8 +58,8 @@ struct draw {
                              their distance, _q24 */
     struct glint_box box; /* pixels of the patch's box within the tile */
     /* The current row. part: the sides of the patch that cut its pixels. area:
-     * for each pixel, the light through the shade minus the light that edges
-     * draw (convert_light_to_area()); then a 0. */
+     * for each pixel, the transmission minus that which edges draw (1 or 0),
+     * times the covered area; then a 0. */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
@@ -148,7 +148,7 @@ static int32_t clamp_to_table_q24(int32_t at_q24)
     return at_q24 < -one ? 0 : at_q24 >= one ? 2 * one - 1 : at_q24 + one;
 }
 
-/* Returns the light of the shade at position (S, T) in the stop, stop radii,
+/* Returns the transmission at position (S, T) in the stop, stop radii,
  * interpolated between the four nodes around it. */
 static inline int32_t interpolate_shade_light_q15(const struct draw *d,
                                                   int32_t s_q24, int32_t t_q24)
@@ -186,8 +186,8 @@ static struct place compute_stop_position_of_pixel(const struct draw *d, int y,
     return at;
 }
 
-/* Returns LIGHT minus the light that edges draw, in the units of areas in the
- * sums. Edges draw 1 for the clear stop, else 0. */
+/* Returns the transmission LIGHT minus that which edges draw (1 for a clear
+ * stop, else 0), in the units of areas in the sums. */
 static inline int32_t convert_light_to_area(const struct draw *d,
                                             int32_t light_q15)
 {
@@ -196,10 +196,9 @@ static inline int32_t convert_light_to_area(const struct draw *d,
     return d->sums->linear ? off_q15 * 2 : (off_q15 + 64) >> 7;
 }
 
-/* Returns whether the run of pixels that begins at AT needs no patch. The shade
- * is checked at the nearest node of the level whose nodes are two runs apart.
- * No patch is needed if the shade's light there equals the light that edges
- * draw, clear or dark. */
+/* Returns whether the run of pixels that begins at AT needs no patch, because
+ * the transmission equals that which edges draw. It is read at the nearest node
+ * of the mip level whose nodes are two runs apart. */
 static int is_run_uniform(const struct draw *d, struct place at)
 {
     const struct glint_patch *p = &d->patch;
@@ -365,8 +364,8 @@ static void add_areas_to_wide_sums(uint64_t *row, const int32_t *area, int n,
     }
 }
 
-/* Adds LIGHT times the areas (convert_light_to_area()) of the pixels of row Y
- * in the columns FROM .. END - 1 to the sums of the tile. */
+/* Adds LIGHT times the areas of the pixels of row Y in the columns FROM .. END
+ * - 1 to the sums of the tile. */
 static void add_patch_row_to_sums(const struct draw *d, int narrow, int y,
                                   int from, int end, const int64_t light[3])
 {

@@ -88,7 +88,8 @@ int64_t glint_compute_irradiance_q22(const struct glint_bundle *bundle,
     /* The area is normalised to 32 bits before the division. */
     const int up = q_count_normalising_shift((uint64_t)area);
     const uint32_t area_32 = q_shift_to_32_bits((uint64_t)area, up);
-    /* The quotient is exact if the area is a power of two, as it is rounded. */
+    /* The quotient is rounded, so that it is exact if the area is a power of
+     * two. */
     const int64_t ratio =
         (int64_t)(((uint64_t)bundle->flux_q31 * q_reciprocal(area_32) +
                    (1 << 30)) >>
