@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Collects statistics of a drawn frame per ghost, per light and per wave. It is
- * for programs that draw frames without an engine. */
+ * Collects statistics of a drawn frame per ghost, per light and per wavelength.
+ * It is for programs that draw frames without an engine. */
 #ifndef GLINT_ENGINE_EXPLAIN_FRAME_H
 #define GLINT_ENGINE_EXPLAIN_FRAME_H
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reports statistics of a drawn frame per bundle (one ghost, light and wave):
- * whether the bundle was drawn, the reason if it was not, and its cost. No
- * other file of the library calls these functions, so only programs that use
- * them link this file. */
+ * Reports statistics of a drawn frame per ray bundle (one ghost, light and
+ * wavelength): whether the bundle was drawn, the reason if it was not, and its
+ * cost. No other file of the library calls these functions, so only programs
+ * that use them link this file. */
 #include "base/q.h"
 #include "flare/by_edges.h"
 #include "flare/dim.h"
@@ -22,7 +22,7 @@ static int64_t compute_bundle_number(const struct glint_flare *f, int ghost,
            wave;
 }
 
-/* Returns the index of the first planned bundle whose number is at least
+/* Returns the index of the first planned ray bundle whose number is at least
  * NUMBER. Returns n_bundles if all numbers are lower. Planned bundles are
  * sorted by number, so this is a binary search. */
 static int find_first_planned_bundle(const struct glint_flare *f,
@@ -42,7 +42,7 @@ static int find_first_planned_bundle(const struct glint_flare *f,
     return low;
 }
 
-/* Returns the index of the planned bundle with number NUMBER, or -1 if that
+/* Returns the index of the planned ray bundle with number NUMBER, or -1 if that
  * bundle was not planned. */
 static int find_planned_bundle(const struct glint_flare *f, int64_t number)
 {

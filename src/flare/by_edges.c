@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Draws a flare in three parallel steps: converts bundles to edges, sorts edges
- * into tiles, and converts rows of tiles to pixels. */
+ * Draws a flare in three parallel steps: converts ray bundles to edges, sorts
+ * edges into tiles, and converts rows of tiles to pixels. */
 #include "base/divide.h"
 #include "base/q.h"
 #include "flare/by_edges.h"
@@ -10,7 +10,7 @@
 /* ------------------------------------------------------------------ memory */
 
 /* Returns the max number of jobs of a parallel step. The first step has a job
- * per bundle, the last a job per row of tiles. */
+ * per ray bundle, the last a job per row of tiles. */
 static size_t count_max_jobs(const struct glint_flare_config *c)
 {
     const size_t rows = glint_flare_count_tiles(1, c->height, c->tile_log2);
@@ -111,8 +111,8 @@ static int count_tile_row_edges(const struct glint_flare *f, int row)
 
 /* ----------------------------------------------------------------- bundles */
 
-/* Returns the flux that bundle B would have if all its rays had energy 1. The
- * unit is display white times pixels; the result is clamped to 2^26. */
+/* Returns the flux that ray bundle B would have if all its rays had energy 1.
+ * The unit is display white times pixels; the result is clamped to 2^26. */
 static int64_t compute_bundle_flux(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* at most 2^20 */
@@ -129,8 +129,8 @@ static int64_t compute_bundle_flux(const struct glint_bundle *b)
 /* Returns the max light that one cell of a ray grid may add to a pixel, 1 =
  * display white, so that sums do not overflow. Sums of _q36 in colours up to 4
  * stay below 2^63 as long as no pixel gets more than 2^24. A cell cannot add
- * more than its flux to a pixel. If the flux of all bundles reaches 2^24, each
- * cell is limited to 2^23 / number of cells. */
+ * more than its flux to a pixel. If the flux of all ray bundles reaches 2^24,
+ * each cell is limited to 2^23 / number of cells. */
 static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -157,10 +157,10 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
     return refs;
 }
 
-/* Converts bundle BUNDLE to edges and stores them after the earlier edges of
- * worker WORKER. Stores no edge if they do not all fit into the worker's range.
- * In this case, unless BINS is NULL, sets slot[BUNDLE].refs to the number of
- * entries in BINS that the edges would need. */
+/* Converts ray bundle BUNDLE to edges and stores them after the earlier edges
+ * of worker WORKER. Stores no edge if they do not all fit into the worker's
+ * range. In this case, unless BINS is NULL, sets slot[BUNDLE].refs to the
+ * number of entries in BINS that the edges would need. */
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {
@@ -300,9 +300,9 @@ static void emit_bundles_without_space(struct glint_flare *f)
         }
 }
 
-/* Converts all bundles to edges again, one after the other into one array. So
- * the choice of dropped bundles does not depend on the timing of workers. Drops
- * the first bundle that does not fit and all bundles after it. */
+/* Converts all ray bundles to edges again, one after the other into one array.
+ * So the choice of dropped bundles does not depend on the timing of workers.
+ * Drops the first bundle that does not fit and all bundles after it. */
 static void emit_bundles_in_order(struct glint_flare *f)
 {
     int full = 0;
@@ -345,7 +345,7 @@ static void emit_all_bundles(struct glint_flare *f)
 
 /* -------------------------------------------------------------------- bins */
 
-/* Reduces n_drawn to the number of leading bundles whose edges fit into the
+/* Reduces n_drawn to the number of leading ray bundles whose edges fit into the
  * bins. The counts in the bins are undefined afterwards. */
 static void drop_bundles_that_overflow_bins(struct glint_flare *f)
 {

@@ -11,9 +11,9 @@
 
 struct glint_by_edges {
     struct glint_edge *edge;
-    int32_t *order; /* order in which workers run jobs: first indices of bundles
-                       to convert to edges, then indices of rows of tiles to
-                       draw */
+    int32_t *order; /* order in which workers run jobs: first indices of ray
+                       bundles to convert to edges, then indices of rows of
+                       tiles to draw */
     /* max light that one cell of a ray grid may add to a pixel, 1 = display
      * white */
     int32_t limit_q8;
@@ -48,7 +48,7 @@ glint_flare_get_edges_worker(const struct glint_flare *f, int i)
     return f->worker[i].edges;
 }
 
-/* Max number of bundles of a frame. */
+/* Max number of ray bundles of a frame. */
 enum { GLINT_EDGES_MAX_BUNDLES = 1 << 20 };
 
 /* Allocate memory from arena A: the first function for the edges of a flare,
@@ -64,8 +64,8 @@ glint_edges_allocate_worker(struct glint_arena *a,
  * are 0 at the start. */
 void glint_edges_clear_sums(struct glint_flare *f);
 
-/* Converts all bundles of FLARE to edges and sorts the edges into tiles. Sets
- * n_drawn, the bins, and the statistics of primitives and references. */
+/* Converts all ray bundles of FLARE to edges and sorts the edges into tiles.
+ * Sets n_drawn, the bins, and the statistics of primitives and references. */
 void glint_edges_bin(struct glint_flare *flare);
 
 /* Draws the passes PASS[0 .. N_BELOW - 1], and the edges in front of them.

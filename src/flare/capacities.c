@@ -2,8 +2,8 @@
 #include "base/q.h"
 #include "glint/flare.h"
 
-/* Default max number of edges per light, per bundle, and per frame. The bins
- * have two entries per edge, so up to 131072 per light; the lenses of this
+/* Default max number of edges per light, per ray bundle, and per frame. The
+ * bins have two entries per edge, so up to 131072 per light; the lenses of this
  * repository need up to 67000 (1280x720, linear light). */
 enum { EDGES = 1 << 16, EDGES_OF_BUNDLE = 1 << 10, MOST_EDGES = 1 << 24 };
 

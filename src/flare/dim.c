@@ -2,9 +2,10 @@
  *
  * Reads the table of ghost brightness (dim.h). The table has logarithms at
  * sampled angles of the light (nodes), and they are interpolated between nodes.
- * So the fraction of a ghost that is drawn with rays of each wave changes
- * smoothly as the light moves or fades. If some wave of a ghost is blocked at a
- * node, the ghost counts as bright from the previous node to the next one. */
+ * So the fraction of a ghost that is drawn with rays of each wavelength changes
+ * smoothly as the light moves or fades. If some wavelength of a ghost is
+ * blocked at a node, the ghost counts as bright from the previous node to the
+ * next one. */
 #include "flare/dim.h"
 
 enum { BRIGHT_Q8 = 1 << 16 };

@@ -19,8 +19,8 @@ enum {
                             another number do not use it */
     GLINT_DIM_WHOLE_Q8 = 256,
     GLINT_DIM_LAST = GLINT_DIM_NODES - 1,
-    GLINT_DIM_DARK = INT16_MIN, /* table value of a wave that does not pass
-                                   through the lens */
+    GLINT_DIM_DARK = INT16_MIN, /* table value of a wavelength that does not
+                                   pass through the lens */
     GLINT_LIGHT_HELD =
         14 /* additional fraction bits of colours while lights are merged */
 };
@@ -40,8 +40,8 @@ struct glint_dim_method {
      * the ghost, the smaller is the merged fraction of the light. */
     void (*merge_near_lights)(struct glint_flare *flare, int n_lights);
     /* Returns the merged light that replaces LIGHT for GHOST, or NULL if
-     * max_bundles is too small. The pointer is valid until the first bundle of
-     * this ghost and light is planned. */
+     * max_bundles is too small. The pointer is valid until the first ray bundle
+     * of this ghost and light is planned. */
     struct glint_light *(*merged_light)(struct glint_flare *flare, int ghost,
                                         int light);
     /* Returns the fraction of LIGHT that is not merged into another light for
@@ -111,7 +111,7 @@ glint_dim_find_node_q16(const struct glint_flare_frame *frame, int32_t sine_q30)
 /* Returns the GLINT_DIM_VALUES table values of ghost GHOST at node NODE, for a
  * white light of power 1. All are logarithms to base 2 of light, 1 = display
  * white. Value 0: mean light in GLINT_DIM_WAVE; eight times that if the ghost
- * is folded. Value 1 + w: total light of wave w. */
+ * is folded. Value 1 + w: total light of wavelength w. */
 static inline int16_t *
 glint_dim_get_values(const struct glint_flare_frame *frame, int node, int ghost)
 {

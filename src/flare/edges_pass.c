@@ -13,7 +13,7 @@
 enum { FINE_OUTLINES = 1024 };
 
 /* Returns whether F has so many outlines that its sums need 20 fraction bits.
- * With a soft edge each bundle may have GLINT_SOFT_RINGS outlines. */
+ * With a soft edge each ray bundle may have GLINT_SOFT_RINGS outlines. */
 static int are_fine_sums_needed(const struct glint_flare *f)
 {
     const struct glint_shade *shade = f->cfg.stop.shade;

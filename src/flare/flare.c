@@ -227,15 +227,15 @@ static int count_lights_in_range(const struct glint_lens *lens,
     return n;
 }
 
-/* Worker function: plans the bundles of all waves for one ghost and one light.
- * JOB is the number of this pair. */
+/* Worker function: plans the ray bundles of all wavelengths for one ghost and
+ * one light. JOB is the number of this pair. */
 static void plan_ghost_and_light_job(void *ctx, int job, int worker)
 {
     struct glint_flare *f = ctx;
     const struct glint_flare_frame *r = f->plan.frame;
     const int n_ghosts = (int)r->lens->header->n_ghosts;
     const int ghost = job % n_ghosts, i = job / n_ghosts;
-    /* This is a copy, as the first bundle overwrites the memory of a merged
+    /* This is a copy, as the first ray bundle overwrites the memory of a merged
      * light. */
     const struct glint_light light =
         f->plan.dims ? *r->dim->method->merged_light(f, ghost, i)
@@ -276,8 +276,8 @@ static void remove_invisible_ghosts(struct glint_flare *f, int n)
     }
 }
 
-/* Removes the bundles with n_cells = 0 from the first N bundles and closes the
- * gaps. Sets n_bundles, flux and brightest. */
+/* Removes the ray bundles with n_cells = 0 from the first N bundles and closes
+ * the gaps. Sets n_bundles, flux and brightest. */
 static void compact_visible_bundles(struct glint_flare *f, int n)
 {
     for (int i = 0; i < n; i++) {
@@ -292,7 +292,7 @@ static void compact_visible_bundles(struct glint_flare *f, int n)
     }
 }
 
-/* Plans the bundles of N_JOBS pairs of a ghost and a light, in all waves.
+/* Plans the ray bundles of N_JOBS pairs of a ghost and a light.
  * Returns the number of planned bundles, at most max_bundles. */
 static int plan_all_bundles(struct glint_flare *f, int n_jobs)
 {

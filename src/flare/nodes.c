@@ -51,7 +51,8 @@ static void fill_ghost_entry_job(void *ctx, int ghost, int worker)
     for (int wave = 0; wave < GLINT_DIM_WAVES; wave++) {
         struct glint_bundle_plan planned = {.ghost = ghost, .wave = wave};
         struct glint_bundle bundle;
-        /* total light that the wave would have if all its rays had energy 1 */
+        /* total light that the wavelength would have if all its rays had energy
+         * 1 */
         struct glint_real light;
 
         value[1 + wave] = GLINT_DIM_DARK;

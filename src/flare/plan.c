@@ -36,7 +36,7 @@ static int64_t scale_by_enlargement(const struct glint_bundle_plan *s,
     return s->wider_q16 ? x_q8 * s->wider_q16 >> 16 : x_q8;
 }
 
-/* The bounding box of a bundle's light, pixels. One axis points along the
+/* The bounding box of a ray bundle's light, pixels. One axis points along the
  * light's azimuth, the other is perpendicular to it. The box has the centre
  * (middle, across) and half the size (wide, high). */
 struct reach {
@@ -97,8 +97,8 @@ static int64_t compute_interval_overlap_q8(int64_t middle, int64_t wide,
     return high > low && wide > 0 ? q_divide(255 * (high - low), 2 * wide) : 0;
 }
 
-/* Returns the fraction of a bundle's bounding box that is on-screen; 255 means
- * all of it. The box is axis-parallel and encloses E rotated by TURN. */
+/* Returns the fraction of a ray bundle's bounding box that is on-screen; 255
+ * means all of it. The box is axis-parallel and encloses E rotated by TURN. */
 static uint8_t compute_visible_fraction_q8(const struct glint_plan *p,
                                            struct glint_azimuth turn,
                                            const struct reach *e)
@@ -137,9 +137,9 @@ static int64_t compute_dim_factor_q16(const struct glint_plan *p,
                    8);
 }
 
-/* Sets RGB to the colour of the bundle, scaled such that its largest channel is
- * 1. The colour is the product of the colours of its light, its waves and its
- * tint. Returns the largest channel before scaling. */
+/* Sets RGB to the colour of the ray bundle, scaled such that its largest
+ * channel is 1. The colour is the product of the colours of its light, its
+ * wavelengths and its tint. Returns the largest channel before scaling. */
 static struct glint_real
 compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
                       const struct glint_bundle_plan *planned, int share_q8,
@@ -175,7 +175,7 @@ compute_bundle_colour(const struct glint_plan *p, const struct glint_light *b,
                 : real_of(most, -28);
 }
 
-/* Returns the flux that the bundle would have if all rays of its window had
+/* Returns the flux that the ray bundle would have if all rays of its window had
  * energy 2^EXPONENT, display white times pixels. The window is the rectangle of
  * the pupil that is traced. If the pupil is an annulus, the area of its hole is
  * excluded. */

@@ -3,8 +3,9 @@
  * Plans a frame: which ghosts, lights and wavelengths are visible, and the
  * fineness of their grids.
  *
- *   in   a baked lens, lights, waves, the picture's size
- *   out  a bundle for each ghost, light and wave visible in the picture
+ *   in   a baked lens, lights, wavelengths, the picture's size
+ *   out  a ray bundle for each ghost, light and wavelength visible in the
+ *        picture
  *
  * Method: a few rays of each bundle are traced by its polynomials. Their
  * positions on the sensor determine whether the ghost is on-screen and how
@@ -36,10 +37,10 @@ struct glint_bundle_plan {
     /* rectangle of the pupil's bounding box that the stop transmits */
     struct glint_box_window window;
     /* mean height of the straight lines between grid rays above the function (1
-     * + r^2) / 2, for barrel 0, barrel 1 and a round stop */
+     * + r^2) / 2, for barrel aperture 0, barrel 1 and a round stop */
     uint16_t sag_q16[3];
-    /* flux of the bundle if all its rays had the max energy of the probed rays,
-     * display white times pixels */
+    /* flux of the ray bundle if all its rays had the max energy of the probed
+     * rays, display white times pixels */
     struct glint_real flux;
     /* Enlargement of the ghost of a lamp that is sampled by several lights.
      * wider: factor, above 1; 0: no enlargement. centre: fixed point of the
@@ -83,8 +84,8 @@ struct glint_plan_scratch {
 int glint_plan_is_light_outside_model(const struct glint_lens *lens,
                                       const struct glint_light *light);
 
-/* Plans the bundle whose ghost, light and wave are set in PLANNED, for light
- * LIGHT. Sets the other members of PLANNED and BUNDLE. Returns
+/* Plans the ray bundle whose ghost, light and wavelength are set in PLANNED,
+ * for light LIGHT. Sets the other members of PLANNED and BUNDLE. Returns
  * GLINT_OUTCOME_DRAWN, or the reason why the bundle is invisible. An invisible
  * bundle has n_cells = 0. */
 enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
@@ -93,8 +94,8 @@ enum glint_outcome glint_plan_bundle(const struct glint_plan *plan,
                                      struct glint_bundle *bundle,
                                      struct glint_plan_scratch *scratch);
 
-/* Sets TRANSFER to the polynomials of bundle PLANNED, restricted to its window.
- */
+/* Sets TRANSFER to the polynomials of ray bundle PLANNED, restricted to its
+ * window. */
 void glint_plan_set_transfer(const struct glint_plan *plan,
                              const struct glint_bundle_plan *planned,
                              struct glint_transfer *transfer);

@@ -65,8 +65,9 @@ static int64_t compute_stop_radius(const struct glint_probe *s)
 
 /* Like compute_output_curvature(), for the outline of a stop whose sides have
  * the curvature ROUND. A round stop cuts a ghost where (1 + r^2) / 2 is 1, like
- * a barrel. At r = 1 this function changes as fast as the stop position s, and
- * its second difference is the square of the first difference of s. */
+ * a barrel aperture. At r = 1 this function changes as fast as the stop
+ * position s, and its second difference is the square of the first difference
+ * of s. */
 static int64_t compute_round_stop_curvature(const struct glint_probe *s,
                                             int32_t round_q16)
 {
@@ -229,9 +230,9 @@ static uint16_t compute_sag_q16(int64_t bowl_q16, int n_cells)
         q_divide(bowl_q16, 12 * (int64_t)n_cells * n_cells), 0, 1 << 12);
 }
 
-/* The function (1 + r^2) / 2 of a barrel is a paraboloid. After the sag is
- * subtracted from it, drawn outlines deviate to the outside as often as to the
- * inside. */
+/* The function (1 + r^2) / 2 of a barrel aperture is a paraboloid. After the
+ * sag is subtracted from it, drawn outlines deviate to the outside as often as
+ * to the inside. */
 void glint_plan_set_sags(struct glint_bundle_plan *planned,
                          const struct glint_probe *probe,
                          const struct glint_transfer *transfer, int n_cells,

@@ -19,9 +19,10 @@ plan_compute_pixels_per_mm(const struct glint_plan *p)
     return x;
 }
 
-/* Returns the number of cells per side of the ray grid of a bundle. IRRADIANCE
- * is its mean light, 1 = display white. For an annular pupil box the number
- * includes the two rows of cells next to the middle, which have no light. */
+/* Returns the number of cells per side of the ray grid of a bundle.
+ * IRRADIANCE is its mean light, 1 = display white. For an annular pupil box the
+ * number includes the two rows of cells next to the middle, which have no
+ * light. */
 int glint_plan_choose_cells(const struct glint_plan *plan,
                             const struct glint_probe *probe,
                             const struct glint_transfer *transfer,

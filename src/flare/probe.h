@@ -11,7 +11,7 @@
 #include "glint/transfer.h"
 
 /* A bounding box of rays on the sensor, in units of the sensor outputs. If the
- * bundle is symmetric in y, y_low is -y_high. */
+ * ray bundle is symmetric in y, y_low is -y_high. */
 struct glint_probe_extent {
     int64_t low, high, y_low, y_high;
 };
@@ -21,8 +21,8 @@ enum { GLINT_PROBE_ACROSS = 16, GLINT_PROBE_DOWN = 8 };
 
 struct glint_probe_node {
     int32_t at[GLINT_OUT_KINDS];
-    int inside; /* nonzero: the ray passes the stop and the barrels, or misses
-                   by at most 5 % of their radius */
+    int inside; /* nonzero: the ray passes the stop and the barrel apertures, or
+                   misses by at most 5 % of their radius */
 };
 
 /* Changes of one output from ray to ray: sums of the squared first and second
@@ -41,14 +41,15 @@ struct glint_probe {
      * rows that are traced, half of them if rays have mirror images. */
     int across, down, rows;
     int whole;  /* 1: rays have no mirror image */
-    int n_rays; /* number of rays traced for this bundle, over all its probes */
+    int n_rays; /* number of rays traced for this ray bundle, over all its
+                   probes */
     int n_bends, n_bent[2], n_inside, n_kinds;
-    /* [n_kinds]: the outputs of this bundle's polynomials, except energy */
+    /* [n_kinds]: the outputs of this ray bundle's polynomials, except energy */
     uint8_t kind[GLINT_OUT_KINDS];
     int n_up, n_down; /* numbers of half cells of positive (n_up) and negative
                          (n_down) orientation on the sensor; a ghost with both
                          is folded */
-    /* extent of the rays that pass the stop and the barrels */
+    /* extent of the rays that pass the stop and the barrel apertures */
     struct glint_probe_extent seen;
     /* extent of all cells with at least one corner ray inside, which contains
      * the light between rays, too */

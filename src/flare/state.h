@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The private members of struct glint_flare: bundles and plan (flare.c), edges
- * and tiles (by_edges.c). */
+ * The private members of struct glint_flare: ray bundles and plan (flare.c),
+ * edges and tiles (by_edges.c). */
 #ifndef GLINT_FLARE_STATE_H
 #define GLINT_FLARE_STATE_H
 
@@ -24,7 +24,8 @@ struct glint_flare_worker {
 
 struct glint_bundle_slot {
     int first_vertex;
-    int first; /* index of the bundle's first edge; -1: the edges did not fit */
+    int first; /* index of the ray bundle's first edge; -1: the edges did not
+                  fit */
     int n, n_dropped, n_held;
     int worker; /* index of the worker that emitted the edges */
     int refs;   /* number of bin entries that the edges would need; set only if
@@ -46,18 +47,18 @@ struct glint_flare {
      * the picture. */
     int half, width, height;
     const struct glint_half *quads; /* functions for half resolution, or NULL */
-    int n_bundles, n_vertices;      /* numbers of bundles and vertices that have
-                                       been added */
+    int n_bundles, n_vertices;      /* numbers of ray bundles and vertices that
+                                       have been added */
     /* source of vertices that are computed on demand; NULL: vertices are
      * stored, or computed by the polynomials of the plan */
     const struct glint_flare_rays *rays;
     struct glint_plan plan; /* the plan of a frame; plan.frame is NULL if the
                                ray bundles were added by the caller instead */
     struct glint_bundle_plan
-        *planned; /* [max_bundles]: the plan of each bundle */
-    struct glint_real flux, brightest; /* total flux of all planned bundles; max
-                                          of their mean irradiances */
-    int n_drawn; /* number of drawn bundles: the edges of the first n_drawn
+        *planned; /* [max_bundles]: the plan of each ray bundle */
+    struct glint_real flux, brightest; /* total flux of all planned ray bundles;
+                                          max of their mean irradiances */
+    int n_drawn; /* number of drawn bundles: the edges of the first n_drawn ray
                     bundles are in the bins */
     struct glint_bundle *bundle;
     struct glint_bundle_slot *slot;
@@ -85,8 +86,8 @@ struct glint_reuse {
     int (*reuse_if_unchanged)(struct glint_flare *f,
                               const struct glint_flare_frame *frame,
                               const struct glint_light *lights, int n_lights);
-    /* Sets the colours of the binned bundles to their planned colours times the
-     * frame's gain for each light (gain_q14). */
+    /* Sets the colours of the binned ray bundles to their planned colours times
+     * the frame's gain for each light (gain_q14). */
     void (*apply_gains)(struct glint_flare *f);
 };
 

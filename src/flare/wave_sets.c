@@ -11,11 +11,11 @@ enum { UNSEEN = -1, ROWS = 3, FARTHEST_Q8 = 1 << 25 };
  * indices. */
 struct job {
     int ghost, light;
-    int set;      /* index of the chosen wave set; UNSEEN if the ghost is
+    int set;      /* index of the chosen wavelength set; UNSEEN if the ghost is
                      invisible */
     int peak_q20; /* sum of peak_q20 (see struct glint_bundle_plan) over all
-                     waves, at most 2^20 */
-    int first;    /* index of the job's first bundle */
+                     wavelengths, at most 2^20 */
+    int first;    /* index of the job's first ray bundle */
 };
 
 typedef char
@@ -27,8 +27,8 @@ static struct job *get_job_array(struct glint_flare *f)
     return (struct job *)(void *)f->slot;
 }
 
-/* Returns the index of the first wave of set SET in the list of the waves of
- * all sets. */
+/* Returns the index of the first wavelength of set SET in the list of the
+ * wavelengths of all sets. */
 static int find_first_wave_of_set(const struct glint_wave_sets *sets, int set)
 {
     int first = 0;
@@ -51,7 +51,7 @@ int glint_wave_sets_find_set_of_wave(const struct glint_wave_sets *sets,
 /* -------------------------------------------------------------- the choice */
 
 /* Sets AT to the positions, pixels, at which sample rays of PLANNED hit the
- * picture. The rays are spread evenly over half of the bundle's window. */
+ * picture. The rays are spread evenly over half of the ray bundle's window. */
 static void trace_sample_rays(const struct glint_plan *plan,
                               const struct glint_bundle_plan *planned,
                               struct glint_transfer *t,
@@ -80,10 +80,10 @@ static void trace_sample_rays(const struct glint_plan *plan,
     }
 }
 
-/* Returns the distance between the outlines of a ghost in two waves, pixels.
- * FIRST and LAST are the bundles of the outermost waves of the first set. The
- * distance is the root mean square over pairs of rays at the same point of the
- * pupil. */
+/* Returns the distance between the outlines of a ghost in two wavelengths,
+ * pixels. FIRST and LAST are the ray bundles of the outermost wavelengths of
+ * the first set. The distance is the root mean square over pairs of rays at the
+ * same point of the pupil. */
 static int64_t compute_outline_distance_q8(
     const struct glint_plan *plan, const struct glint_bundle_plan *first,
     const struct glint_bundle_plan *last, struct glint_transfer *t)
@@ -104,7 +104,8 @@ static int64_t compute_outline_distance_q8(
     return q_root(squares / (ROWS * GLINT_RAYS));
 }
 
-/* Returns the range of 1 / wavelength^2, um^-2, that wave set SET covers. */
+/* Returns the range of 1 / wavelength^2, um^-2, that wavelength set SET
+ * covers. */
 static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
                                       int set)
 {
@@ -114,12 +115,12 @@ static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
     return span < 0 ? -span : span;
 }
 
-/* Returns whether set SET has enough waves for a ghost of total light LIGHT:
- * the steps of brightness from wave to wave are invisible. From one of n waves
- * to the next, light changes by about 5 LIGHT / n. The step is invisible if a
- * tenth of that is below s->step, or if the outlines of neighbouring waves are
- * closer than s->apart_q8. APART: distance between the outermost outlines of
- * the first set, pixels _q8. */
+/* Returns whether set SET has enough wavelengths for a ghost of total light
+ * LIGHT: the steps of brightness from wavelength to wavelength are invisible.
+ * From one of n wavelengths to the next, light changes by about 5 LIGHT / n.
+ * The step is invisible if a tenth of that is below s->step, or if the outlines
+ * of neighbouring wavelengths are closer than s->apart_q8. APART: distance
+ * between the outermost outlines of the first set, pixels _q8. */
 static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
                                     int64_t apart, struct glint_real light)
 {
@@ -133,9 +134,9 @@ static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
                s->apart_q8 * gaps * compute_wave_set_width(r, 0);
 }
 
-/* Returns the index of the smallest wave set that draws a ghost without visible
- * steps of brightness. PLANNED and BUNDLE are the ghost's bundles of the first
- * set. */
+/* Returns the index of the smallest wavelength set that draws a ghost without
+ * visible steps of brightness. PLANNED and BUNDLE are the ghost's ray bundles
+ * of the first set. */
 static int choose_smallest_wave_set(const struct glint_plan *plan,
                                     const struct glint_bundle_plan *planned,
                                     const struct glint_bundle *bundle,
@@ -180,7 +181,7 @@ static void plan_waves_of_set(struct glint_flare *f, const struct job *job,
     }
 }
 
-/* Worker function: plans job NUMBER with the waves of the first set, and
+/* Worker function: plans job NUMBER with the wavelengths of the first set, and
  * chooses the smallest sufficient set. */
 static void plan_first_set_job(void *ctx, int number, int worker)
 {
@@ -215,8 +216,8 @@ static void plan_chosen_set_job(void *ctx, int number, int worker)
         plan_waves_of_set(f, job, job->first, job->set, f->worker[worker].plan);
 }
 
-/* Sets the wave set of jobs to UNSEEN if their ghost is invisible: the sum of
- * its peaks over all lights is too faint. */
+/* Sets the wavelength set of jobs to UNSEEN if their ghost is invisible: the
+ * sum of its peaks over all lights is too faint. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const int n_ghosts = (int)f->plan.frame->lens->header->n_ghosts;
@@ -232,8 +233,8 @@ static void remove_invisible_ghosts(struct glint_flare *f, int n)
     }
 }
 
-/* Moves N bundles and their plans from index FROM to index TO. The ranges may
- * overlap. */
+/* Moves N ray bundles and their plans from index FROM to index TO. The ranges
+ * may overlap. */
 static void move_planned_bundles(struct glint_flare *f, int from, int to, int n)
 {
     for (int i = 0; i < n && from != to; i++) {
@@ -244,7 +245,7 @@ static void move_planned_bundles(struct glint_flare *f, int from, int to, int n)
     }
 }
 
-/* Removes the jobs of invisible ghosts (set UNSEEN) from N jobs, and their
+/* Removes the jobs of invisible ghosts (set UNSEEN) from N jobs, and their ray
  * bundles, and closes the gaps. Returns the number of jobs left. */
 static int compact_visible_jobs(struct glint_flare *f, int n)
 {
@@ -260,10 +261,10 @@ static int compact_visible_jobs(struct glint_flare *f, int n)
     return kept;
 }
 
-/* Assigns bundle indices to the waves of the chosen set of each of N jobs. If
- * the set of a job does not fit into max_bundles, the job gets the first set.
- * Returns the number of bundles. Sets *NEED to the number that all chosen sets
- * would need. */
+/* Assigns ray bundle indices to the wavelengths of the chosen set of each of N
+ * jobs. If the set of a job does not fit into max_bundles, the job gets the
+ * first set. Returns the number of bundles. Sets *NEED to the number that all
+ * chosen sets would need. */
 static int assign_bundle_indices(struct glint_flare *f, int n, int64_t *need)
 {
     const int *size = f->plan.frame->sets->size;

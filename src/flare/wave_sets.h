@@ -7,13 +7,14 @@
  *   out  bundles as by glint_plan_bundle(), one after the other
  *
  * Method: all ghosts are planned with the first set, which finds the visible
- * ghosts and their brightness. Rays of the first set's two outermost waves are
- * then traced through the same points of the pupil box. The box follows the
- * ghost's outline from wave to wave, so the distance between two such rays on
- * the sensor equals the distance between the two outlines. Ghosts that need
- * more waves are planned again with a larger set. From one of n waves to the
- * next, light changes by at most about 5 / n of the ghost's light in any
- * channel; a tenth of that is compared with the smallest visible step. */
+ * ghosts and their brightness. Rays of the first set's two outermost
+ * wavelengths are then traced through the same points of the pupil box. The box
+ * follows the ghost's outline from wavelength to wavelength, so the distance
+ * between two such rays on the sensor equals the distance between the two
+ * outlines. Ghosts that need more wavelengths are planned again with a larger
+ * set. From one of n wavelengths to the next, light changes by at most about 5
+ * / n of the ghost's light in any channel; a tenth of that is compared with the
+ * smallest visible step. */
 #ifndef GLINT_FLARE_WAVE_SETS_H
 #define GLINT_FLARE_WAVE_SETS_H
 
@@ -21,12 +22,12 @@
 
 struct glint_wave_planner {
     /* Plans N_JOBS pairs of a ghost and a light, sorted by light, then by
-     * ghost. Returns the number of bundles. Sets the statistics of needed and
-     * dropped bundles. */
+     * ghost. Returns the number of ray bundles. Sets the statistics of needed
+     * and dropped bundles. */
     int (*plan)(struct glint_flare *flare, int n_jobs);
 };
 
-/* Returns the index of the set that contains wave WAVE. */
+/* Returns the index of the set that contains wavelength WAVE. */
 int glint_wave_sets_find_set_of_wave(const struct glint_wave_sets *sets,
                                      int wave);
 

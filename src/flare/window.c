@@ -13,8 +13,8 @@ enum {
     LEAST_HALF_Q30 = 1 << 12
 };
 
-/* A rectangle within the window of a bundle. The unit is the distance between
- * nodes of its grid; the origin is the first node. */
+/* A rectangle within the window of a ray bundle. The unit is the distance
+ * between nodes of its grid; the origin is the first node. */
 struct extent {
     int32_t low_q16[2], high_q16[2]; /* [across, down] */
 };
@@ -229,7 +229,7 @@ static void extend_extent_by_cell(struct extent *e,
 }
 
 /* Returns the rectangle of the window of T that contains all rays that may pass
- * the stop and the barrels. */
+ * the stop and the barrel apertures. */
 static struct extent find_transmitted_extent(struct glint_window_nodes *n,
                                              struct glint_transfer *t)
 {

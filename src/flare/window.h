@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * Narrows the window of a bundle, a rectangle of its pupil box, to the rays
+ * Narrows the window of a ray bundle, a rectangle of its pupil box, to the rays
  * that pass a stop that is narrower than the stop of the model.
  *
  *   in   the polynomials of a bundle, the stop's radius
  *   out  a window of the box
  *
- * Method: the polynomials of stop and barrels are evaluated at the nodes of a
- * coarse grid over the window. A cell is discarded if all four corners lie
- * outside the same side of an octagon around the stop, or outside the same
- * barrel, by more than the outputs deviate from straight lines between nodes.
- * The window shrinks to the remaining cells, repeatedly, until it shrinks by
- * less than an eighth. Where cells are small, the sides of the window are
- * placed where the stop's circle crosses the lines of the grid, so that they
- * move smoothly with the stop's radius. */
+ * Method: the polynomials of stop and barrel apertures are evaluated at the
+ * nodes of a coarse grid over the window. A cell is discarded if all four
+ * corners lie outside the same side of an octagon around the stop, or outside
+ * the same barrel, by more than the outputs deviate from straight lines between
+ * nodes. The window shrinks to the remaining cells, repeatedly, until it
+ * shrinks by less than an eighth. Where cells are small, the sides of the
+ * window are placed where the stop's circle crosses the lines of the grid, so
+ * that they move smoothly with the stop's radius. */
 #ifndef GLINT_FLARE_WINDOW_H
 #define GLINT_FLARE_WINDOW_H
 

@@ -191,8 +191,8 @@ static bool does_cut_reduce_work(const struct glint_cost_plan *plan, int cut)
 }
 
 /* Chooses the cut and the quality step with the smallest estimated error that
- * fit the budget. Sets b->cut and returns the step. If there are many bundles,
- * only a sample of them is evaluated. */
+ * fit the budget. Sets b->cut and returns the step. If there are many ray
+ * bundles, only a sample of them is evaluated. */
 static int choose_quality_step_and_cut(struct glint_budget *b,
                                        const struct glint_cost_plan *plan)
 {

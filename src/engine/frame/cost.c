@@ -77,8 +77,8 @@ struct bundle {
                           ghost), which affects the number of edges */
     double rings;      /* number of nested outlines of a soft edge; 1 for a hard
                           edge */
-    double share;      /* expected number of bundles drawn per planned bundle;
-                          below 1 if dim ghosts share rays */
+    double share;      /* expected number of ray bundles drawn per planned
+                          bundle; below 1 if dim ghosts share rays */
 };
 
 /* Returns the number of steps per octave to which the irradiance of a ghost is
@@ -128,10 +128,10 @@ static double estimate_drawn_fraction(const struct glint_cost_plan *p,
 
 /* ------------------------------------------------------------------- counts */
 
-/* This function estimates the number of edges of a bundle; the next function
- * estimates the number of pixel rows that these edges cross. Both are products
- * of powers, fitted to the bundles of 48 random frames of four lenses (Poisson
- * regression). Sums over a frame have a median error of 15 percent. */
+/* This function estimates the number of edges of a ray bundle; the next
+ * function estimates the number of pixel rows that these edges cross. Both are
+ * products of powers, fitted to the bundles of 48 random frames of four lenses
+ * (Poisson regression). Sums over a frame have a median error of 15 percent. */
 static double estimate_edge_count(const struct bundle *b, double log_steps)
 {
     const double n = log(b->cells);
@@ -149,7 +149,7 @@ static double estimate_edge_row_count(const struct bundle *b, double log_steps,
                0.293 * b->log_bright);
 }
 
-/* Predicts how planned bundle B would be drawn with the quality parameters
+/* Predicts how planned ray bundle B would be drawn with the quality parameters
  * THEN. LARGER is the factor by which the number of pixels changes. */
 static struct bundle predict_bundle_at_quality(const struct glint_cost_plan *p,
                                                const struct glint_planned *b,

@@ -246,7 +246,7 @@ static void apply_quality_to_flare_config(struct glint_frame *f)
         glint_frame_apply_config(f);
 }
 
-/* Allocates memory for the max number of bundles, and plans the frame. */
+/* Allocates memory for the max number of ray bundles, and plans the frame. */
 static enum glint_status plan_frame(struct glint_frame *f,
                                     const struct glint_flare_frame *rays)
 {

@@ -68,12 +68,12 @@ struct glint_frame_rays {
                               double scale, const struct glint_image *image,
                               struct glint_flare_stats *stats, double times[5]);
     /* Predicts SCALE for LAMPS, or sets it to {0, 0} if there is no light.
-     * Returns GLINT_E_MEMORY if memory is short or LAMPS have too many
+     * Returns GLINT_E_MEMORY if memory is short or LAMPS have too many ray
      * bundles. */
     enum glint_status (*scale)(struct glint_frame *frame,
                                const struct glint_lamp *lamps, int n_lamps,
                                struct glint_frame_scale *scale);
-    /* Returns the number of bundles of the last frame. */
+    /* Returns the number of ray bundles of the last frame. */
     int (*n_bundles)(const struct glint_frame *frame);
     int (*ghost)(const struct glint_frame *frame, int bundle);
     void (*finish)(struct glint_frame *frame);

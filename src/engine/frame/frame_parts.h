@@ -75,8 +75,8 @@ enum glint_status glint_frame_ensure_plan_capacity(struct glint_frame *frame);
 enum glint_status glint_frame_use_static_lights(struct glint_frame *frame,
                                                 int32_t near_q30);
 
-/* Returns the number of distinct ghosts among the N bundles of the last frame.
- */
+/* Returns the number of distinct ghosts among the N ray bundles of the last
+ * frame. */
 int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 
 /* Returns true if the frame can be drawn after binning with the result STATS:

@@ -9,7 +9,7 @@
 #include "engine/frame/block.h"
 #include "engine/setup/dirt.h"
 
-/* max number of bundles of a frame */
+/* max number of ray bundles of a frame */
 enum { MAX_BUNDLES = 1 << 20 };
 /* min fineness to which limits of memory and work may reduce grids */
 enum { LEAST_FINENESS = 8 };
@@ -256,8 +256,8 @@ enum glint_status glint_frame_use_static_lights(struct glint_frame *f,
     return GLINT_OK;
 }
 
-/* Returns whether the memory block suffices to plan N bundles of the frame's
- * lights. */
+/* Returns whether the memory block suffices to plan N ray bundles of the
+ * frame's lights. */
 static bool has_plan_capacity(const struct glint_frame *f, int n)
 {
     return f->memory.block && n <= f->cfg.max_bundles &&

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Converts lamps (doubles, angles in degrees) and wavelengths (nm) to the
- * integer lights and waves from which flares are drawn, and back. */
+ * integer lights and wavelengths from which flares are drawn, and back. */
 #ifndef GLINT_ENGINE_FRAME_LIGHT_H
 #define GLINT_ENGINE_FRAME_LIGHT_H
 

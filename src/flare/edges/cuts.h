@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Clips the edges of a ray grid: finds where the stop's sides and the barrels
- * of the lens cut them.
+ * Clips the edges of a ray grid: finds where the stop's sides and the barrel
+ * apertures of the lens cut them.
  *
  *   in   the rays at the ends of an edge, or at the corners of a cell
  *   out  the visible part of the edge; where two cuts cross in a cell

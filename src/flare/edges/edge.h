@@ -143,7 +143,7 @@ int glint_edge_count_bin_entries(const struct glint_edge *edge,
                                  const struct glint_bins *bins);
 
 /* Adds the edges EDGE[REF[0 .. N_REFS - 1]] to SUMS, each in the colour of its
- * bundle. The light of both sides is multiplied by the colour before it is
+ * ray bundle. The light of both sides is multiplied by the colour before it is
  * subtracted, so that edges still cancel exactly. */
 void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const struct glint_edge *edge,

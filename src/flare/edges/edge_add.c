@@ -283,7 +283,8 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
-    /* An edge within one row may be so flat that its step overflows. */
+    /* An edge that crosses no complete row may be so flat that its step
+     * overflows. */
     if (n > 0) {
         const int64_t step_q40 = e->slope_q40 * 256;
         const int is_narrow = step_q40 < ONE_Q40 && step_q40 > -ONE_Q40;
@@ -370,7 +371,8 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
         p.y_q8 += height_q8;
     }
     n = (p.end_q8 - p.y_q8) >> 8;
-    /* An edge within one row may be so flat that its step overflows. */
+    /* An edge that crosses no complete row may be so flat that its step
+     * overflows. */
     if (n > 0) {
         add_complete_snapped_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256,
                                   s->stride);
@@ -393,7 +395,7 @@ static int64_t multiply_by_colour_q20(int32_t light, int32_t colour_q14)
 }
 
 /* Returns the light on the right of E minus the light on its left, for a
- * channel in which the bundle's colour is COLOUR. The last LESS of the 20
+ * channel in which the ray bundle's colour is COLOUR. The last LESS of the 20
  * fraction bits are dropped. */
 static int64_t compute_light_change(const struct glint_edge *e,
                                     int32_t colour_q14, int less)

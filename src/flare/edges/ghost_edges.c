@@ -321,9 +321,9 @@ static void find_visible_side_part(const struct glint_ghost_edges *g,
     }
 }
 
-/* Adds the chords of a cell that is cut by the stop or a barrel. Chords are
- * edges that connect the visible parts of the cell's sides, and so close its
- * outline. */
+/* Adds the chords of a cell that is cut by the stop or a barrel aperture.
+ * Chords are edges that connect the visible parts of the cell's sides, and so
+ * close its outline. */
 static void add_cell_chords(struct glint_ghost_edges *g,
                             const struct glint_ghost_cell *c, int32_t light)
 {
@@ -421,8 +421,8 @@ static int32_t find_cell_light(struct glint_ghost_edges *g, int i, int j)
         add_cell_as_triangles(g, &cell);
         return 0;
     }
-    /* All four corners lie outside the same side of the stop or the same
-     * barrel, or they lie off-screen on the same side of the picture, where
+    /* All four corners lie outside the same side of the stop or the same barrel
+     * aperture, or they lie off-screen on the same side of the picture, where
      * edges change no pixel. */
     if ((s[0] & s[1] & t[0] & t[1]) | (a[0] & a[1] & b[0] & b[1]))
         return 0;

@@ -10,9 +10,9 @@
  * neighbouring cells is stored once, with the irradiance on either side. It is
  * left out if both irradiances are equal. Irradiance is rounded to steps, so
  * that equal values are frequent. Only the part of an edge within the stop's
- * sides and the barrels is stored. Stop and barrels are functions of the
- * position, which are interpolated linearly along the edge. Where a side or a
- * barrel crosses a cell, a chord closes the outline of the cell. The visible
+ * sides and the barrel apertures is stored. Stop and barrels are functions of
+ * the position, which are interpolated linearly along the edge. Where a side or
+ * a barrel crosses a cell, a chord closes the outline of the cell. The visible
  * part depends only on the two ends of the edge, so that neighbouring cells
  * agree to the bit and outlines close.
  *
@@ -50,8 +50,8 @@ struct glint_ghost_rows {
     uint64_t sides[2][GLINT_MAX_CELLS + 1]; /* [row modulo 2][i]: bit mask of
                                                the stop's sides outside of which
                                                node i lies */
-    /* [row modulo 2][i]: bit mask of the barrels outside of which node i lies,
-     * and NODE_ bits (ghost_parts.h) */
+    /* [row modulo 2][i]: bit mask of the barrel apertures outside of which node
+     * i lies, and NODE_ bits (ghost_parts.h) */
     uint8_t barrels[2][GLINT_MAX_CELLS + 1];
     int32_t light[2][GLINT_MAX_CELLS]; /* packed irradiance of the cells in two
                                           rows */
@@ -72,7 +72,7 @@ struct glint_ghost_edges {
     struct glint_place place;
     const uint16_t *sag_q16; /* interpolation errors (flare/plan.h) */
     const struct glint_bundle *bundle;
-    uint32_t number; /* number of the bundle */
+    uint32_t number; /* number of the ray bundle */
     /* total flux, and mean light of a pixel (struct glint_bundle_plan); 0 if
      * the ray bundle was not planned */
     struct glint_real flux, irradiance;
@@ -99,8 +99,8 @@ struct glint_ghost_edges {
     /* the two rows of nodes in use, by row number modulo 2 */
     const struct glint_vertex *row[2];
     /* Results. */
-    int n_edges; /* number of edges of the bundle; only the first max_edges are
-                    stored */
+    int n_edges; /* number of edges of the ray bundle; only the first max_edges
+                    are stored */
     int more_refs; /* number of bin entries that the edges after the first
                       max_edges need */
     int n_dropped; /* number of cells with an invalid corner, which are drawn as

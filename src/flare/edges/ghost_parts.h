@@ -10,9 +10,10 @@
 #include "flare/edges/ghost_edges.h"
 
 /* Bits of a node in member barrels of struct glint_ghost_rows. NODE_BARRELS:
- * mask of the bits of the barrels. NODE_LOST: the ray is invalid. All others:
- * the node lies off-screen on the named side of the picture. The left side has
- * no bit, as edges left of the picture still add light to the picture. */
+ * mask of the bits of the barrel apertures. NODE_LOST: the ray is invalid. All
+ * others: the node lies off-screen on the named side of the picture. The left
+ * side has no bit, as edges left of the picture still add light to the
+ * picture. */
 enum {
     NODE_BARRELS = 3,
     NODE_LOST = 4,
@@ -34,8 +35,8 @@ get_ghost_node(const struct glint_ghost_edges *g, int i, int j)
     return &g->row[j & 1][i];
 }
 
-/* Adds the edges of the bundle with a hard outline of the stop: a soft edge is
- * ignored. */
+/* Adds the edges of the ray bundle with a hard outline of the stop: a soft edge
+ * is ignored. */
 void glint_ghost_emit_hard_outline(struct glint_ghost_edges *g);
 
 /* Computes row J of nodes, which is valid until row J + 2 is computed. */
@@ -49,9 +50,9 @@ int32_t glint_ghost_pack_cell_light(struct glint_ghost_edges *g,
                                     int sign);
 
 /* Adds the edges of a convex primitive of N corners, clipped by the stop and
- * the barrels. The flux of the primitive is 2^SHARE_LOG2 times that of a cell.
- * The light of a thin primitive is spread over a strip that is a sixteenth of a
- * pixel wide. */
+ * the barrel apertures. The flux of the primitive is 2^SHARE_LOG2 times that of
+ * a cell. The light of a thin primitive is spread over a strip that is a
+ * sixteenth of a pixel wide. */
 void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
                                        const struct glint_vertex *const *corner,
                                        int n, int share_log2);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Computes rows of nodes of a ray grid: the vertex of each node, and bit masks
- * of what the node lies outside of, which are sides of the stop, barrels, and
- * sides of the picture. */
+ * of what the node lies outside of, which are sides of the stop, barrel
+ * apertures, and sides of the picture. */
 #include "flare/edges/ghost_parts.h"
 
 #include <stddef.h>

@@ -25,7 +25,7 @@ enum {
 }; /* max number of nested outlines that draw a soft edge */
 
 struct glint_shade_method {
-    /* Converts a bundle to edges; called by glint_ghost_emit_edges(). */
+    /* Converts a ray bundle to edges; called by glint_ghost_emit_edges(). */
     void (*emit)(struct glint_ghost_edges *g);
     /* Applies dust and masks to a convex cell, whose area has the sign TURN.
      * CUTS: number of stop sides and barrel apertures that cross the cell.
@@ -45,8 +45,8 @@ struct glint_shade_method {
                     struct glint_vertex dimmed[4]);
 };
 
-/* Converts the bundle to edges: once if the stop has a hard outline, otherwise
- * once for each ring of its soft edge. Value of member emit. */
+/* Converts the ray bundle to edges: once if the stop has a hard outline,
+ * otherwise once for each ring of its soft edge. Value of member emit. */
 void glint_rings_emit_edges(struct glint_ghost_edges *g);
 
 /* Returns whether softness and table size of SHADE are in range. */

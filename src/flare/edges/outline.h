@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Clips a primitive by the stop and two barrels; the visible part is a convex
- * polygon.
+ * Clips a primitive by the stop and two barrel apertures; the visible part is a
+ * convex polygon.
  *
  *   in   a triangle of a primitive's corners, the stop, two barrels
  *   out  the polygon that the stop's sides and the barrels leave, all of them
@@ -57,8 +57,8 @@ glint_side_compute_straight_distance_q16(const struct glint_stop *stop,
 }
 
 /* Return the distance of V from side SIDE of the stop, in stop radii, and the
- * value 1 - (1 + r^2) / 2 of V for a barrel, with r in barrel radii. Both are
- * positive inside and negative outside. */
+ * value 1 - (1 + r^2) / 2 of V for a barrel aperture, with r in barrel radii.
+ * Both are positive inside and negative outside. */
 static inline int64_t
 glint_side_compute_signed_distance_q16(const struct glint_stop *stop, int side,
                                        const struct glint_vertex *v)
@@ -104,8 +104,8 @@ void glint_outline_set_unclipped(struct glint_outline *outline,
                                  const struct glint_corners *corners);
 
 /* Sets OUTLINE to the triangle of the corners 0, K + 1 and K + 2, clipped by
- * the stop and the barrels. CUT has the GLINT_CUT_ flags of the cuts to
- * apply. */
+ * the stop and the barrel apertures. CUT has the GLINT_CUT_ flags of the cuts
+ * to apply. */
 void glint_outline_clip_triangle(struct glint_outline *outline,
                                  const struct glint_corners *corners, int k,
                                  const struct glint_stop *stop, int cut);

@@ -12,7 +12,7 @@
 
 enum {
     GLINT_CUT_STOP = 1,   /* the outline of the stop may cross the cell */
-    GLINT_CUT_BARREL = 2, /* a barrel may cross the cell */
+    GLINT_CUT_BARREL = 2, /* a barrel aperture may cross the cell */
     /* the functions of round cuts have already been corrected for interpolation
      * (sags) */
     GLINT_CUT_LOWERED = 16
