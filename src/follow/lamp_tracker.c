@@ -23,8 +23,8 @@ enum {
 };
 
 #define MAX_ELAPSED_US 10000000
-/* Growth of the search radius of a lost lamp: it grows by reach_q8 in each
- * REACH_US (us), up to MAX_REACHES times reach_q8. */
+/* The search radius of a lost lamp grows from reach_q8 by reach_q8 per REACH_US
+ * (us), up to MAX_REACHES times reach_q8. */
 #define REACH_US    1000000
 #define MAX_REACHES 3
 /* Time in which the remembered white level falls to 1/e, us; this is a fall of
@@ -174,8 +174,8 @@ static int32_t compute_search_radius_q8(const struct glint_lamp_tracker *t,
     return t->reach_q8 + (more_q8 < most_q8 ? (int32_t)more_q8 : most_q8);
 }
 
-/* Sets up the input of the matcher: one seeker per track, at the track's
- * predicted position. */
+/* Sets the lamps (seekers) for which spots are searched: one per track, at the
+ * track's predicted position. */
 static void set_matcher_input_from_tracks(struct glint_lamp_tracker *t)
 {
     struct glint_match *m = &t->match;
@@ -198,8 +198,8 @@ static void set_matcher_input_from_tracks(struct glint_lamp_tracker *t)
     }
 }
 
-/* Returns the max squared distance, pixels^2, between a matched spot and the
- * predicted position at which both count as the same lamp. It shrinks with N,
+/* Returns the max squared distance, pixels^2, of a spot from the predicted
+ * position of its lamp at which both count as the same lamp. It shrinks with N,
  * the number of spots in the picture, because among many spots one is near by
  * chance. */
 static int64_t
@@ -228,7 +228,7 @@ static int64_t compute_common_flux(const struct glint_seeker *s,
     return p_q16 < q_q16 ? p_q16 : q_q16;
 }
 
-/* Sums over all lamps of one picture, before or after a possible cut: their
+/* Sums over all lamps of the picture before or after a possible cut: their
  * flux, the flux that also occurs in the other picture (kept), and their number
  * n. */
 struct side {
@@ -236,9 +236,9 @@ struct side {
     int n;
 };
 
-/* Returns whether at least the fraction cut_q15 of the flux of A is missing in
- * B. If A has no flux, returns whether B has at least MANY_LIGHTS lamps,
- * because so many lamps appear or vanish at once only at a cut. */
+/* Returns whether B lacks at least the fraction cut_q15 of the flux of A or, if
+ * A has no flux, whether B has at least MANY_LIGHTS lamps, because so many
+ * appear or vanish at once only at a cut. */
 static int is_flux_mostly_unmatched(const struct glint_lamp_tracker *t,
                                     const struct side *a, const struct side *b)
 {

@@ -6,9 +6,8 @@
 
 enum {
     NEAREST_SPOTS = 8,
-    /* Log2 of the factor by which the squared distance of a faint spot is
-     * multiplied. If the lamp is lost, the squared distance is multiplied by
-     * this factor again. */
+    /* log2 of the factor on the squared distance of a faint spot, and of the
+     * factor on that of any spot if the lamp is lost */
     FAR_LOG2 = 2,
     PIXEL2_Q16 = 1 << 16
 };
@@ -86,10 +85,11 @@ static int is_pair_before(const void *ctx, int32_t a, int32_t b)
 
 /* -------------------------------------------------------------------- pairs */
 
-/* Returns the cost of assigning SPOT to lamp S: the squared distance between
- * both in pixels^2, multiplied by 2^FAR_LOG2 if the spot is faint, and again if
- * the lamp is lost. Returns -1 if the assignment is not allowed, because SPOT
- * lies outside the reach of S, or is faint and too large. */
+/* Returns the cost of assigning SPOT to lamp S: their squared distance,
+ * pixels^2. If the spot is faint or the lamp is lost, 1 is added and the sum
+ * multiplied by 2^FAR_LOG2; if both, by 4^FAR_LOG2. Returns -1 if SPOT cannot
+ * be assigned, as it lies outside the search radius of S, or is faint and too
+ * large. */
 static int64_t compute_match_cost_q16(const struct glint_seeker *s,
                                       const struct glint_spot *spot)
 {
@@ -129,7 +129,7 @@ static int find_first_spot_from_x(const struct glint_match *m,
 
 /* Inserts PAIR into the list of pairs of its seeker, which begins at index
  * FIRST and is sorted by cost. Pairs of equal cost have the order of by_x. Only
- * the NEAREST_SPOTS cheapest pairs are stored. */
+ * the NEAREST_SPOTS pairs of lowest cost are stored. */
 static void insert_pair_if_among_nearest(struct glint_match *m, int first,
                                          struct glint_pair pair)
 {

@@ -24,8 +24,8 @@ struct glint_seeker {
      * lower number is assigned first. */
     uint32_t id;
     int32_t x_q8, y_q8;
-    int32_t reach_q8;       /* max distance of the spot from (x, y), pixels, 0
-                               .. 2^23 */
+    int32_t reach_q8;       /* search radius: max distance of the spot from (x,
+                               y), pixels, 0 .. 2^23 */
     int32_t max_faint_area; /* max area of a faint spot that may be assigned,
                                pixels */
     int is_lost;

@@ -45,8 +45,8 @@
 #define CHANGE_Q15 Q_CONST(0.95, 15)
 #define SUDDEN     6
 
-/* Returns X times GAIN, rounded away from 0. An error that is corrected
- * repeatedly therefore reaches 0. */
+/* Returns X times GAIN, rounded away from 0, so that an error that is corrected
+ * repeatedly reaches 0. */
 static int64_t multiply_rounding_away(int64_t x, int32_t gain_q15)
 {
     return x < 0 ? -((-x * gain_q15 + ONE_Q15 - 1) >> 15)
@@ -163,8 +163,8 @@ static int32_t step_filter_q15(struct glint_follow *f, int64_t target,
     return change_q15;
 }
 
-/* Moves the filter's value from AHEAD, the prediction, towards TARGET as if the
- * error were noise of magnitude SPREAD or more. */
+/* Moves the filter's value from AHEAD, the prediction, towards TARGET, the
+ * measured number, as if the error were noise of magnitude SPREAD or more. */
 static void step_filter_as_noise(struct glint_follow *f, int64_t ahead,
                                  int64_t target, int64_t spread,
                                  const struct glint_pace *pace)
@@ -221,8 +221,8 @@ int64_t glint_record_clamp_power_q16(const struct glint_spot *spot)
     return clamp_i64(spot->power_q16, 0, MAX_FLUX_Q16);
 }
 
-/* Computes cosine and sine of twice the orientation angle of spot S, which are
- * equal for both directions of its major axis. */
+/* Computes cosine and sine of twice the orientation of spot S, which are the
+ * same for both directions of the major axis. */
 static void compute_double_angle(const struct glint_spot *s, int64_t *cos2_q15,
                                  int64_t *sin2_q15)
 {
@@ -286,8 +286,9 @@ static int are_spots_equal(const struct glint_spot *a,
 }
 
 /* Returns whether spots A and B of one lamp differ in flux by more than a
- * quarter of the larger flux. Then lamps have merged or separated, or the lamp
- * has been partly covered.
+ * quarter of the larger flux. Then lamps have merged or separated, or an object
+ * covers part of the lamp.
+ *
  */
 static int has_lamp_shape_changed(const struct glint_spot *a,
                                   const struct glint_spot *b)
@@ -439,9 +440,9 @@ static int is_lamp_leaving_picture(const struct glint_record *r,
 /* -------------------------------------------------------------------- light */
 
 /* Returns how the filter treats CHANGE, an error in a channel other than
- * position: as change if it exceeds a quarter of LARGER plus four times FLOOR.
- * Powers are excepted unless pictures repeat: the power of a clipped core is
- * estimated from its rim, and noise may halve or double it. */
+ * position: as a change if it exceeds a quarter of LARGER plus four times
+ * FLOOR. This does not apply to powers unless pictures repeat: the power of a
+ * clipped core is estimated from its rim, and noise may halve or double it. */
 static enum follow_as judge_light_error(int channel, int64_t change,
                                         int64_t larger, int64_t floor,
                                         int is_repeat)

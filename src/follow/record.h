@@ -64,7 +64,7 @@ struct glint_record {
     int n_same; /* number of consecutive pictures whose spot equals the one
                    before */
     int is_new; /* number of further pictures in which the first motion sets the
-                   velocity; 0: the velocity was set, or stays 0 */
+                   velocity; 0: motion is averaged into the velocity */
     int64_t velocity_q16[2]; /* velocity of the lamp, pixels per second */
     int64_t ahead_q16[2];    /* predicted position of the lamp, pixels, _q16 */
     int32_t level_q30;
@@ -78,7 +78,8 @@ struct glint_record {
 struct glint_record_step {
     const struct glint_lamp_tracker_config *cfg;
     struct glint_pace pace;
-    int is_fresh; /* 1: new lamps are shown at full fade level at once */
+    int is_fresh; /* 1: new lamps are shown at full level at once, without a
+                     fade */
 };
 
 /* Returns the flux of SPOT, clamped to 0 .. 2^42. The limit is the flux of an

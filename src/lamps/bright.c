@@ -23,8 +23,8 @@ void glint_bright_allocate(struct glint_bright *b, struct glint_arena *arena,
         glint_arena_allocate(arena, count_blocks(width), sizeof *b->marked);
 }
 
-/* Clears the brightness values after pixel WIDTH - 1 in the last block, as this
- * block is read in whole words. */
+/* Clears the brightness of the last block after pixel WIDTH - 1, as blocks are
+ * read in whole words. */
 void glint_bright_clear_padding(struct glint_bright *b, int width)
 {
     const int padded = (int)count_blocks(width) * BRIGHT_BLOCK;
@@ -36,8 +36,8 @@ void glint_bright_clear_padding(struct glint_bright *b, int width)
 }
 
 /* Fills BEYOND, a table from the luma of a clipped pixel to the pixel's
- * brightness. The brightness is 250 for luma below 192, then 1 more per 15 of
- * luma, up to 255 for luma of 252 or more. */
+ * brightness: 250 for luma below 192, then 1 more per 15 of luma, up to 255 for
+ * luma of 252 or more. */
 static void fill_clipped_brightness_table(uint8_t beyond[256])
 {
     for (int luma = 0; luma < 256; luma++)

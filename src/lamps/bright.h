@@ -101,9 +101,9 @@ int glint_bright_scan_row(struct glint_bright *b, int y);
 void glint_bright_read_pixel_light(const struct glint_bright *b, int x,
                                    int32_t rgb_q20[3]);
 
-/* Returns the resolution of the pixel format at LIGHT: the linear light of the
- * next higher code of channel C minus LIGHT. Returns 0 for formats with 8 bits
- * or more. */
+/* Returns the linear light of the next higher code of channel C minus LIGHT,
+ * which is the resolution of the pixel format there; or 0 for formats with 8
+ * bits or more. */
 int32_t glint_bright_compute_code_step_q20(const struct glint_bright *b, int c,
                                            int32_t light_q20);
 

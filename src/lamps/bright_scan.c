@@ -210,7 +210,6 @@ static WHOLLY_INLINE void find_byte_extremes(struct extremes *e,
     compute_extremes_modulo_4(e, half);
 }
 
-/* Returns the max over the four elements. */
 static WHOLLY_INLINE int get_largest_byte(const struct extremes *e)
 {
     return bright_larger(bright_larger(e->most[0], e->most[1]),
@@ -265,11 +264,12 @@ static int can_packed_block_be_bright(const struct glint_bright *b,
                                (const int[]){e.least[cb], e.least[cr]});
 }
 
-/* max distance, in codes, of a quiet block's chroma from grey */
+/* Max distance of chroma from grey, codes, in a quiet block: a block that is
+ * neither bright nor strongly coloured. */
 enum { QUIET_CHROMA = 24 };
 
 /* Returns the min luma code, 0 .. 256, of a bright pixel whose chroma is within
- * QUIET_CHROMA of grey. Blocks that reach this luma are loud. */
+ * QUIET_CHROMA of grey. Blocks that reach this luma are loud (not quiet). */
 static int find_min_loud_luma(const struct glint_bright *b)
 {
     const int most[2] = {128 + QUIET_CHROMA, 128 + QUIET_CHROMA};
@@ -281,17 +281,17 @@ static int find_min_loud_luma(const struct glint_bright *b)
     return q_clamp_sat(left_q16 > 0 ? luma : 0, 0, 256);
 }
 
-/* Returns a number with which four bytes are tested at once, each in a lane of
- * 16 bits. If this number is added to the four bytes, bit 8 of a lane is set if
- * its byte is CODE or more. */
+/* Returns a number that tests four bytes at once, each in a lane of 16 bits:
+ * when it is added to them, bit 8 of a lane becomes 1 if the lane's byte is
+ * CODE or more. */
 static uint64_t compute_threshold_carry(int code)
 {
     return (uint64_t)(256 - code) * UINT64_C(0x0001000100010001);
 }
 
-/* Returns whether a block exceeds the limits of quiet blocks. MOST has the max
- * of its bytes, INVERSE the max of 255 minus its bytes. Luma is in the low
- * bytes of pairs if Y is 0, otherwise in the high bytes. */
+/* Returns whether a block is loud. MOST has the max of its bytes, INVERSE the
+ * max of 255 minus its bytes. Luma is in the low bytes of pairs if Y is 0,
+ * otherwise in the high bytes. */
 static WHOLLY_INLINE int is_block_loud(uint64_t most, uint64_t inverse, int y,
                                        uint64_t luma_carry,
                                        uint64_t chroma_carry)
@@ -309,9 +309,8 @@ static WHOLLY_INLINE int is_block_loud(uint64_t most, uint64_t inverse, int y,
 /* number of blocks of YUYV or UYVY that are tested together */
 enum { TOGETHER = 4 };
 
-/* The limits of quiet blocks (QUIET_CHROMA and find_min_loud_luma()). For each
- * index modulo 16 it has the max allowed byte and the max allowed 255 minus the
- * byte. */
+/* The limits of quiet blocks (QUIET_CHROMA and find_min_loud_luma()): for each
+ * byte index modulo 16, the max byte and the max of 255 minus the byte. */
 struct quiet {
     uint8_t most[16], inverse[16];
 };
@@ -338,8 +337,8 @@ static WHOLLY_INLINE uint8_t find_min_of_8_strided_bytes(const uint8_t *p)
                   min_u8(min_u8(p[64], p[80]), min_u8(p[96], p[112])));
 }
 
-/* Tests TOGETHER blocks at P. Sets ABOVE[i] to nonzero if a byte exceeds QUIET
- * whose index modulo 16 is i. Compilers vectorise this function like
+/* Tests TOGETHER blocks at P. Sets ABOVE[i] to nonzero if a byte whose index
+ * modulo 16 is i exceeds QUIET. Compilers vectorise this function like
  * find_byte_max_and_inverted_min(). */
 static NEVER_INLINE void
 find_bytes_above_limits(uint8_t above[restrict 16], const uint8_t *restrict p,
@@ -371,13 +370,12 @@ static WHOLLY_INLINE int are_blocks_quiet(const uint8_t *p,
 }
 
 /* Marks the complete blocks of a row of YUYV or UYVY at PX that can have bright
- * pixels. Y is the offset of the first luma byte. Most blocks are quiet:
- * neither bright nor strongly coloured. First, TOGETHER blocks are tested for
- * this at once, by the max of their luma and the extremes of their chroma. If
- * they are not quiet, each block is tested separately. Blocks that are not
- * quiet (loud) are tested again, by the extremes of Cb and of Cr. Loud blocks
- * are usually neighbours, so the TOGETHER blocks after a loud block are tested
- * one by one. If find_min_loud_luma() is 0, no block is quiet. */
+ * pixels. Y is the offset of the first luma byte. Most blocks are quiet, so
+ * TOGETHER blocks are first tested for this at once, by the max of their luma
+ * and the extremes of their chroma. If one is loud, each block is tested
+ * separately, and loud blocks again by the extremes of Cb and of Cr. Loud
+ * blocks are usually neighbours, so the TOGETHER blocks after a loud block are
+ * tested one by one. If find_min_loud_luma() is 0, no block is quiet. */
 static WHOLLY_INLINE int mark_bright_yuyv_blocks(struct glint_bright *b,
                                                  const uint8_t *px, int y)
 {
@@ -736,7 +734,7 @@ int glint_bright_scan_row(struct glint_bright *b, int y)
     b->n_marked = 0;
     glint_bright_select_row(b, y);
     any = mark_bright_blocks_of_row(b);
-    /* An incomplete last block has not been tested, so it is always marked. */
+    /* An incomplete last block cannot be tested and is always marked. */
     if (n_blocks * BRIGHT_BLOCK > b->width)
         any = b->block[n_blocks - 1] = 1;
     for (int i = 0; any && i < n_blocks; i++)

@@ -25,9 +25,8 @@ enum { DEFAULT_HIGH_Q8 = -26, DEFAULT_LOW_Q8 = -38 };
 /* --------------------------------------------------------------------- list
  */
 
-/* If more than MAX lamps are found, only the first MAX remain. Each excess lamp
- * is merged into the nearest remaining lamp that is within JOIN_REACH merge
- * distances. */
+/* Max distance, in merge distances, of a remaining lamp into which a lamp is
+ * merged if there are too many. */
 #define JOIN_REACH 4
 
 static int is_candidate_brighter(const struct glint_lamp_finder *f, int32_t a,
@@ -225,18 +224,18 @@ static void reduce_lamps_to_max(struct glint_lamp_finder *f, int max)
 
 /* ------------------------------------------------------------------- levels */
 
-/* log2 of (area of a region / min number of its pixels at the upper threshold);
- * a region with fewer such pixels is a lit surface, not a lamp */
+/* log2 of (area of a region / min number of its pixels at the upper brightness
+ * threshold); a region with fewer such pixels is a lit surface, not a lamp */
 #define SEED_LOG2 3
 
-/* Costs of levels. Of several nested regions, the finder chooses the region
- * with the highest score minus the cost of its level. Regions at the thresholds
- * have the lamp's full width. These costs make them win over the lamp's clipped
- * core unless the score of the core is clearly higher. Regions of a level whose
- * white is below clipping win only if they contain no other lamp. So do regions
- * at thresholds below the defaults. DARK_SHARE: max fraction of the picture at
- * or above the lower threshold for which levels with a white below clipping are
- * used. */
+/* Costs of brightness levels. Of nested regions, the finder chooses the one
+ * with the highest score minus the cost of its level. Regions at the configured
+ * thresholds, which have the lamp's full width, are thus preferred to the
+ * lamp's clipped core unless the score of the core is clearly higher. Regions
+ * of a level whose white is below clipping, or whose thresholds are below the
+ * defaults, are chosen only if they contain no other lamp. DARK_SHARE: max
+ * fraction of the picture at or above the lower threshold for which levels with
+ * a white below clipping are used. */
 #define COST_CLIPPED_Q8 64
 #define COST_WHITE_Q8   32
 #define COST_DARK_Q8    1024
@@ -254,8 +253,8 @@ static int is_threshold_below_default(const struct glint_lamp_finder_config *c)
                         c->threshold_low_q8 < DEFAULT_LOW_Q8);
 }
 
-/* Adds a level. Its regions consist of pixels above the thresholds T, relative
- * to the white LIGHT. */
+/* Adds a brightness level, whose regions consist of pixels above the thresholds
+ * T, relative to the white LIGHT. */
 static void add_threshold_level(struct glint_lamp_finder *f, int32_t light_q20,
                                 struct thresholds t, int32_t cost_q8)
 {
@@ -268,10 +267,9 @@ static void add_threshold_level(struct glint_lamp_finder *f, int32_t light_q20,
     level->cost_q8 = cost_q8;
 }
 
-/* Adds two levels for a picture whose white is below clipping. The regions of
- * the first are above the lower threshold, those of the second above the upper
- * threshold. Adds no level if more than DARK_SHARE of the picture reaches the
- * lower threshold. */
+/* Adds two brightness levels for a picture whose white is below clipping:
+ * pixels above the lower, and above the upper threshold. Adds none if more than
+ * DARK_SHARE of the picture reaches the lower threshold. */
 static void add_dark_picture_levels(struct glint_lamp_finder *f,
                                     struct thresholds t, int32_t cost_q8)
 {
@@ -305,8 +303,7 @@ static void add_all_threshold_levels(struct glint_lamp_finder *f,
     }
 }
 
-/* Adds a level whose regions consist of clipped pixels of brightness LOW or
- * more. */
+/* Adds a brightness level of clipped pixels of brightness LOW or more. */
 static void add_clipped_level(struct glint_lamp_finder *f, int low,
                               int32_t cost_q8)
 {
@@ -314,7 +311,6 @@ static void add_clipped_level(struct glint_lamp_finder *f, int low,
         (struct glint_level){low, BRIGHT_CLIPPED, BRIGHT_CLIPPED, cost_q8};
 }
 
-/* Sorts the levels by rising brightness. */
 static void sort_levels_by_brightness(struct glint_lamp_finder *f)
 {
     for (int i = 1; i < f->n_levels; i++)
@@ -327,8 +323,9 @@ static void sort_levels_by_brightness(struct glint_lamp_finder *f)
 }
 
 /* Measures the picture's white, and sets the brightness levels at which regions
- * are searched. Thresholds below the defaults add levels to the default levels.
- * So every lamp that the defaults find is found with lower thresholds, too. */
+ * are searched. Thresholds below the defaults add levels to the default ones,
+ * so that every lamp that the defaults find is also found with lower
+ * thresholds. */
 static void choose_brightness_levels(struct glint_lamp_finder *f)
 {
     const struct thresholds t = {f->cfg.threshold_high_q8,
@@ -407,8 +404,8 @@ static WHOLLY_INLINE int count_codes_at_least(const uint8_t *value, int n,
     return (int)found;
 }
 
-/* Returns how many pixels of RUN have a brightness of CODE or more. LEAST is a
- * brightness that all pixels of RUN have at least. */
+/* Returns how many pixels of RUN have a brightness of CODE or more. All pixels
+ * of RUN have at least LEAST. */
 static int count_run_pixels_at_least(const uint8_t *value,
                                      const struct glint_run *run, int least,
                                      int code)
@@ -438,8 +435,8 @@ static void add_run_to_region_counts(struct glint_region *sum,
 }
 
 /* Marks the pixels of RUN, as their light is needed for sums. The mark is
- * stored in the run of the first level that contains RUN. That run is *OUTER or
- * a later run of its row; sets *OUTER to it. */
+ * stored in the run of the darkest level that contains RUN, which is *OUTER or
+ * a later run of the row. Sets *OUTER to it. */
 static void mark_needed_pixels(struct glint_run **outer,
                                const struct glint_run *run)
 {
@@ -634,8 +631,8 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
 
 /* -------------------------------------------------------------------- score */
 
-/* Returns the min score of a lamp. If thresholds are below the defaults, their
- * regions can lower this min, but not raise it. */
+/* Returns the min score of a lamp. Regions of thresholds below the defaults can
+ * lower it, but not raise it. */
 static int32_t find_min_lamp_score(struct glint_lamp_finder *f,
                                    const struct glint_score *score)
 {

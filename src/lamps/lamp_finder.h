@@ -15,7 +15,7 @@
 enum {
     LIGHT_CANDIDATES = 2048, /* max number of candidates, more than the max of
                                 1024 lamps per picture */
-    LIGHT_LEVELS_LOWER = 3,  /* max number of levels that are added for
+    LIGHT_LEVELS_LOWER = 3,  /* max number of brightness levels added for
                                 thresholds below the defaults */
     LIGHT_LEVELS = 6 + LIGHT_LEVELS_LOWER
 };
@@ -44,7 +44,8 @@ struct glint_lamp_finder {
     int dropped;
 };
 
-/* Finds the candidates of IMAGE; drops all earlier candidates. */
+/* Finds the candidates (regions that may be lamps) of IMAGE; drops all earlier
+ * candidates. */
 void glint_lamps_collect_candidates(struct glint_lamp_finder *f,
                                     const struct glint_image *image);
 

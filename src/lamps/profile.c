@@ -40,9 +40,8 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
     return GLINT_OK;
 }
 
-/* The measurement changes each spot in place. It does not change position and
- * size_q8 of a spot, which are the only members that the measurement of other
- * spots reads. */
+/* Spots are changed in place. The measurement of other spots reads only the
+ * position and size_q8 of a spot, which do not change. */
 void glint_profile_measure(struct glint_profile *profile,
                            const struct glint_image *image,
                            struct glint_spot *spots, int n)

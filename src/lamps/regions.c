@@ -60,16 +60,16 @@ void glint_region_compute_centroid(const struct glint_region *sum,
     *y_q8 = compute_mean_coordinate_q8(sum->wy_q14, sum->w_q14);
 }
 
-/* Returns the RMS distance from the centre of a uniformly lit box. DIAGONAL2 is
- * the square of the box's diagonal. */
+/* Returns the RMS distance of the points of a uniformly lit box from its
+ * centre. DIAGONAL2 is the square of the box's diagonal. */
 static int32_t compute_box_radius_q8(uint64_t diagonal2)
 {
     return (int32_t)q_root((diagonal2 << 16) / 12);
 }
 
 /* The origin of the sums is first moved to the pixel nearest to the centroid.
- * The sums may have wrapped, but the result is exact, as it is computed modulo
- * 2^64. */
+ * Sums may have wrapped modulo 2^64, but the moved ones do not and are
+ * exact. */
 int32_t glint_region_compute_rms_radius_q8(const struct glint_region *sum)
 {
     const int64_t across = sum->x1 - sum->x0, down = sum->y1 - sum->y0;
@@ -92,9 +92,9 @@ int32_t glint_region_compute_rms_radius_q8(const struct glint_region *sum)
 }
 
 /* Clipped pixels carry little colour information. So their weight is 1/64 of
- * that of the unclipped pixels in the region and beside it. A large rim of
- * unclipped pixels determines the colour. Without such pixels the region
- * becomes white. The transition is continuous. */
+ * that of unclipped pixels in the region and next to it: a large unclipped rim
+ * determines the colour, and a region without a rim becomes white, with a
+ * continuous transition. */
 void glint_region_compute_colour(const struct glint_region *sum,
                                  int32_t rgb_q15[3])
 {
@@ -236,8 +236,8 @@ static void find_row_runs(struct glint_run_row *row,
     append_run(row, begin, next < b->width ? next : b->width);
 }
 
-/* Labels each run of row Y. A run joins all regions that it touches in the row
- * above into one. If it touches no region, it begins a new one. */
+/* Labels each run of row Y. A run unites all regions that it touches in the row
+ * above, or begins a new one. */
 static void link_runs_to_row_above(struct glint_regions *r, int y)
 {
     const struct glint_run_row *above = &r->above;

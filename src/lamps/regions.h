@@ -92,7 +92,6 @@ region_compute_pixel_light(const int32_t rgb_q20[3])
     return light;
 }
 
-/* Returns 0 + 1 + 4 + ... + (n - 1)^2. */
 static inline int64_t region_sum_squares_below(int64_t n)
 {
     return (n - 1) * n * (2 * n - 1) / 6;
@@ -126,8 +125,8 @@ struct glint_component {
 struct glint_run {
     int32_t x0, x1; /* first pixel of the run, and the pixel after its last */
     int32_t label;
-    int32_t want0, want1; /* range of pixels of the row, want0 .. want1 - 1,
-                             whose light the caller sums; 0, 0: none */
+    int32_t want0, want1; /* the caller sums the light of pixels want0 .. want1
+                             - 1 of the row; both 0: none */
 };
 
 struct glint_run_row {
@@ -150,7 +149,7 @@ void glint_regions_allocate(struct glint_regions *r, struct glint_arena *arena,
 
 void glint_regions_begin_picture(struct glint_regions *r);
 
-/* Fills r->here with the runs of pixels of row Y that have brightness LOW or
+/* Fills r->here with the runs of pixels of row Y whose brightness is LOW or
  * more. Assigns each run to the region of the runs that it touches in the row
  * above. LOW must not be below the min brightness that was set for BRIGHT. */
 void glint_regions_link_row(struct glint_regions *r,

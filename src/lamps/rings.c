@@ -7,9 +7,11 @@
 
 #define WHITE_Q20 LINEAR_WHITE_Q20
 #define ONE_Q16   (1 << 16)
-/* linear light of about code 231, from which pixels count as partly clipped */
+/* linear light of about sRGB code 231, from which pixels count as partly
+ * clipped */
 #define CLIP_FIRST Q_CONST(0.80, 20)
-/* linear light of about code 253, from which pixels count as fully clipped */
+/* linear light of about sRGB code 253, from which pixels count as fully clipped
+ */
 #define CLIP_LAST     Q_CONST(0.98, 20)
 #define RIM_LIGHT     Q_CONST(0.95, 20)
 #define MAX_BLACK_Q20 Q_CONST(15.0 / 16, 20)
@@ -49,8 +51,8 @@ struct window {
     int x, y;   /* pixel in the middle of the window */
     int radius; /* radius of the inner disc, pixels; the outer radius of ring i
                    is radius << i */
-    int step;   /* distance between samples in the inner disc, pixels; in ring i
-                   it is step << i */
+    int step;   /* distance between samples in the inner disc, pixels; step << i
+                   in ring i */
 };
 
 /* A sampled pixel. SHARE is the number of pixels that it represents; DX, DY is
@@ -256,9 +258,9 @@ static void sort_sectors_by_light(struct part *part, int n)
         }
 }
 
-/* Returns the mean light of the samples of a ring between two quantiles, FROM
- * eighths and TO eighths, in order of light. PART: the N sectors of the ring,
- * sorted by mean light; ALL: number of samples. */
+/* Returns the mean light of the samples of a ring between two quantiles, FROM /
+ * 8 and TO / 8. PART: the N sectors of the ring, sorted by mean light; ALL:
+ * number of samples. */
 static int32_t compute_mean_of_quantiles(const struct part *part, int n,
                                          int64_t all, int from, int to)
 {
@@ -276,9 +278,10 @@ static int32_t compute_mean_of_quantiles(const struct part *part, int n,
     return all ? (int32_t)q_divide(sum, (to - from) * all) : 0;
 }
 
-/* Sets the background light of channel C from the ring's sectors, sorted by
- * light. Its mean is that of the middle half. Its spread is the mean of the
- * last quarter of that half minus the mean of the first quarter. */
+/* Sets the background light of channel C from the sectors of the outermost
+ * ring, sorted by light: its mean to that of the middle half of the samples,
+ * its spread to the mean of the last quarter of that half minus that of the
+ * first. */
 static void set_channel_background(struct glint_profile_channel *of,
                                    const struct sectors *sectors, int c)
 {
@@ -315,10 +318,10 @@ static int32_t compute_clipped_fraction_q8(int32_t light_q20)
                                         ((CLIP_LAST - CLIP_FIRST) >> 4);
 }
 
-/* Counts a sample of light U, which represents SHARE pixels. Adds SHARE to the
- * pixels of the level of U, and a fraction of SHARE to the level's area.
- * add_brighter_levels_to_areas() later adds all pixels of a level to the areas
- * of the darker levels. */
+/* Counts a sample that has light U and represents SHARE pixels, in its
+ * brightness level. Adds SHARE to the level's pixels, and a fraction of SHARE
+ * to the level's area. add_brighter_levels_to_areas() later adds the pixels of
+ * brighter levels to the area. */
 static void count_sample_in_level(struct glint_profile_channel *of,
                                   int32_t u_q16, int share, int ring)
 {
@@ -368,8 +371,8 @@ static int32_t read_max_channel(const struct window *w, int32_t x_q8,
 }
 
 /* Returns the drop of light along ray I at the rim of a core of radius RADIUS,
- * as a fraction of white. Returns 0 if the rim is near the middle, as such a
- * core is a ring. Returns -1 if the drop cannot be measured. */
+ * as a fraction of white. Returns 0 if the rim is near the middle, as in a core
+ * that is a ring, or -1 if the drop cannot be measured. */
 static int32_t measure_light_drop_at_rim(const struct window *w, int i,
                                          int32_t radius_q8)
 {

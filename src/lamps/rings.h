@@ -38,8 +38,8 @@
 enum {
     GLINT_PROFILE_RINGS = 3,
     GLINT_PROFILE_LEVELS = 7,
-    /* levels up to this one are bright, and are only counted in the disc and
-     * the first ring */
+    /* brightness levels up to this one are only counted in the disc and the
+     * first ring */
     GLINT_PROFILE_NEAR = 3,
     GLINT_PROFILE_SPOTS = 1024
 };
@@ -49,18 +49,17 @@ struct glint_profile_channel {
                                      scale_q16: 1 / (1 - background), at most 16
                                      */
     int32_t spread_q16;           /* spread of the background's light, in u */
-    int32_t step_q16; /* resolution of u at the background: the distance to the
-                         next higher code if codes have fewer than 8 bits, else
-                         0 */
+    int32_t step_q16; /* difference of u to the next higher code at the
+                         background if codes have fewer than 8 bits, else 0 */
     /* [k]: number of pixels whose u is 2^-k or more, where pixels below 2^(1 -
      * k) count as fractions; [0]: number of clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
     /* [k]: number of pixels whose u is 2^-k or more and below 2^(1 - k); [0]:
      * number of pixels whose u is 1 or more */
     int64_t n[GLINT_PROFILE_LEVELS + 1];
-    int64_t fringe_q16; /* fringe: sum of the light of unclipped pixels; white:
-                           that of clipped pixels. The weight of a pixel is the
-                           max of u over its channels. */
+    int64_t fringe_q16; /* sums of light, weighted by the max of u over a
+                           pixel's channels; fringe: of unclipped pixels; white:
+                           of clipped pixels */
     int64_t white_q16;
 };
 

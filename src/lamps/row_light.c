@@ -18,8 +18,8 @@ void glint_row_light_begin_row(struct glint_row_light *row)
     row->end = -1;
 }
 
-/* Sets OF to the amounts that a pixel of linear light RGB adds to the sums. A
- * pixel with a channel of CLIPPED or more adds nothing to the sums for the
+/* Sets OF to the amounts that a pixel of linear light RGB adds to the sums.
+ * Pixels with a channel of CLIPPED or more add nothing to the sums for the
  * rim. */
 static WHOLLY_INLINE void compute_pixel_sums(int32_t of[ROW_LIGHT_SUMS],
                                              const int32_t rgb_q20[3],
@@ -52,7 +52,6 @@ add_pixel_to_prefix_sum(struct glint_row_sum *restrict next,
     next->wx2_q14 = sum->wx2_q14 + wx_q14 * x;
 }
 
-/* Returns 0 + 1 + .. + (n - 1). */
 static int64_t sum_integers_below(int64_t n)
 {
     return n * (n - 1) / 2;
@@ -207,8 +206,8 @@ void glint_row_light_sum_pixels(struct glint_row_light *row,
         row->end = x1;
 }
 
-/* Returns the prefix sum over the pixels left of X. If that sum is not stored,
- * computes it and stores it in *ROOM. */
+/* Returns the prefix sum over the pixels left of X: a stored one, or *ROOM, in
+ * which it is computed. */
 static const struct glint_row_sum *
 get_prefix_sum(const struct glint_row_light *row, int x,
                struct glint_row_sum *room)

@@ -23,8 +23,8 @@ enum {
     SCORE_PARTS = EVIDENCE_DARK_32 - EVIDENCE_DARK_2 + 1
 };
 
-/* A term of the score: WEIGHT times (EVIDENCE clamped to LEAST .. MOST, minus
- * LEAST). EVIDENCE is the value of the measure MEASURE. */
+/* A term of the score: WEIGHT times (value of the measure MEASURE, clamped to
+ * LEAST .. MOST, minus LEAST). */
 struct term {
     int8_t measure;
     int16_t least_q8, most_q8, weight_q8;
@@ -33,8 +33,8 @@ struct term {
 /* Weights from a logistic regression. Each has the sign that is plausible for
  * its measure. tests/corpus/fit prints them. A score that is higher by 64
  * multiplies the odds of a lamp by e. The last weight is set by hand: no lamp
- * of the corpus fills its box, but a bright box in the dark is a lamp
- * nevertheless. */
+ * of the corpus fills its bounding box, but a bright rectangle in the dark is a
+ * lamp nevertheless. */
 enum { BIAS_Q8 = -1438 };
 
 static const struct term terms[] = {
@@ -71,9 +71,8 @@ static void compute_log2_of_light(const int64_t rgb_q20[3], int32_t stops_q8[2])
 }
 
 /* Returns the contrast between a region, whose log2 of light is IN, and pixel X
- * of the current row, 1/256 stops. There are two differences: that of the
- * largest channel and that of the luminance. The contrast is the larger of
- * these. */
+ * of the current row, 1/256 stops: the larger of the differences in the largest
+ * channel and in luminance. */
 static int32_t compute_contrast_to_pixel(const struct glint_score *s,
                                          const int32_t in_q8[2], int x)
 {
@@ -198,8 +197,7 @@ static void compute_mean_log2_of_light(const struct glint_region *sum,
     compute_log2_of_light(mean_q20, stops_q8);
 }
 
-/* Returns VALUE times the degree to which the region of C is large: 0 for small
- * regions, 1 for large regions. */
+/* Returns VALUE times the degree to which C is a large region, 0 .. 1. */
 static int32_t scale_by_largeness_q8(const struct glint_candidate *c,
                                      int32_t value_q8)
 {
@@ -222,8 +220,8 @@ static int32_t compute_disc_fill_q8(const struct glint_region *sum)
     return q_clamp_sat(((int64_t)sum->area << 24) / disc_q16, 0, 512);
 }
 
-/* Returns EVIDENCE_DRAWN of region SUM. BOX is the fraction of its bounding box
- * that it fills. */
+/* Returns EVIDENCE_DRAWN, the degree to which region SUM is a full rectangle.
+ * BOX is the fraction of its bounding box that it fills. */
 static int32_t compute_box_filling_degree_q8(const struct glint_region *sum,
                                              int32_t box_q8)
 {
@@ -344,9 +342,8 @@ static int32_t compute_score_from_evidence(const int32_t evidence_q8[EVIDENCES])
     return sum_q16 >> 8;
 }
 
-/* Returns the doubt that a low value of MEASURE causes, for
- * glint_score_choose_doubt(). Measures of which only some lamps have high
- * values cause no doubt. */
+/* Returns the doubt (reason why a region may not be a lamp) that a low value of
+ * MEASURE causes. Measures that are high only for some lamps cause no doubt. */
 static enum glint_doubt get_doubt_of_evidence(int measure)
 {
     switch (measure) {
@@ -398,8 +395,8 @@ enum glint_doubt glint_score_choose_doubt(const struct glint_candidate *c)
     return get_doubt_of_evidence(worst);
 }
 
-/* Returns the number of the last ring on which MEASURE depends. Returns
- * SCORE_RINGS if MEASURE does not depend on rings. */
+/* Returns the number of the last ring on which MEASURE depends, or SCORE_RINGS
+ * if it depends on none. */
 static int find_last_ring_of_evidence(int measure)
 {
     switch (measure) {
@@ -431,10 +428,10 @@ static int32_t compute_max_score_from_rings(int first)
     return (sum_q16 >> 8) + 1;
 }
 
-/* Sets the measures of C such that its score is an upper bound before rings are
- * read. Measures of rings are set so low that they add nothing, as
- * compute_max_score_from_rings() adds their max. That function omits
- * EVIDENCE_WIDE_HALO, so this measure is set to its max. */
+/* Prepares C for an upper bound of its score before rings are read. Measures of
+ * rings are set so low that they add nothing, as the caller adds their max by
+ * compute_max_score_from_rings(). That function omits EVIDENCE_WIDE_HALO, so
+ * this measure is set to its max. */
 static void assume_best_ring_evidence(struct glint_candidate *c)
 {
     for (int i = 0; i < EVIDENCES; i++)
@@ -530,8 +527,7 @@ void glint_score_score_candidates(const struct glint_score *score,
 
 /* ------------------------------------------------------------------- choice */
 
-/* Limits of ranks. glint_score_choose_among_nested() chooses the lamp among
- * nested regions by rank. */
+/* Limits of ranks. The nested region of the highest rank is the lamp. */
 enum {
     SURE_Q8 = 384
 }; /* max score that is used for ranks; higher scores are

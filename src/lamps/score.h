@@ -41,9 +41,9 @@ enum {
     SCORE_DOUBT = 256,
     SCORE_SEVERAL = 2,
     SCORE_COMPANY = 96,
-    SCORE_ALONE = 48, /* negated min score, in a still picture, of a region that
-                         is a lamp although no score reaches 0; see
-                         tests/figures/finder.md */
+    SCORE_ALONE = 48, /* in a still picture in which no score reaches 0, the
+                         best region is a lamp if its score is at least
+                         -SCORE_ALONE (tests/figures/finder.md) */
     SCORE_ALONE_VIDEO = 32,
     SCORE_LEVELS = 9
 };
@@ -104,8 +104,8 @@ struct glint_candidate {
     int32_t rank_q8;
     uint8_t faint;
     uint8_t doubt; /* value of enum glint_doubt */
-    uint8_t gone;  /* 1: the region has been merged into another region, or a
-                      region of higher rank has replaced it */
+    uint8_t gone;  /* 1: the region has been merged into another one or replaced
+                      by one of higher rank */
     int32_t evidence_q8[EVIDENCES];
 };
 
@@ -124,9 +124,9 @@ struct glint_score {
     const struct glint_white *white;
     int width, height;
     const struct glint_level *level;
-    int is_brief;     /* 1: reading the rings of a region stops once its score
-                         is certain to be below -SCORE_DOUBT; the returned score
-                         is then an upper bound below -SCORE_DOUBT */
+    int is_brief;     /* 1: stop reading the rings of a region once its score is
+                         certain to be below -SCORE_DOUBT; the returned score is
+                         then an upper bound */
     int32_t alone_q8; /* If no score reaches 0, the region with the highest
                          score is a lamp if this score is at least -alone_q8. */
 };
@@ -136,8 +136,8 @@ void glint_score_score_candidates(const struct glint_score *score,
                                   struct glint_candidate *candidate,
                                   const int32_t *order, int n);
 
-/* Returns the main reason why C may not be a lamp. It is the measure whose term
- * is farthest below the middle of its range. */
+/* Returns the main reason why C may not be a lamp, by the measure whose term is
+ * farthest below the middle of its range. */
 enum glint_doubt glint_score_choose_doubt(const struct glint_candidate *c);
 
 /* Returns the min score of a lamp: 0; -SCORE_COMPANY in a picture with

@@ -14,8 +14,7 @@ enum {
     LEVELS = GLINT_PROFILE_LEVELS,
     FEATURES = GLINT_UNCLIP_FEATURES,
     UNITS = GLINT_UNCLIP_UNITS,
-    SHOWN = 5 /* darkest level whose pixels count as visible light of the lamp
-               */
+    SHOWN = 5 /* darkest brightness level that counts as light of the lamp */
 };
 
 /* ------------------------------------------------------------------- colour */
@@ -28,8 +27,8 @@ static int64_t compute_luminance(const int64_t v[3])
 }
 
 /* Sets the colour of SPOT. Clipped light has 1/63 of the weight of the
- * unclipped light around it (fringe). So a large fringe determines the colour,
- * and a spot without a fringe becomes white. The transition is continuous. */
+ * unclipped light around it (fringe): a large fringe determines the colour, and
+ * a spot without a fringe becomes white, with a continuous transition. */
 static void set_spot_colour(struct glint_spot *spot,
                             const struct glint_profile_sums *sums)
 {
@@ -58,7 +57,7 @@ static int32_t compute_axis_from_moment_q8(int64_t square_q16, int step)
 }
 
 /* Sets M to the second moments xx, yy, xy of the core about its centroid, in
- * squared steps. */
+ * squared sample distances. */
 static void compute_central_moments(const struct glint_profile_sums *sums,
                                     int64_t m_q16[3])
 {
@@ -161,9 +160,9 @@ static int32_t compute_area_log2(int64_t area_q8)
            8 * ONE_Q16;
 }
 
-/* Returns the weight of level K's area as a feature. It is 1 for levels 1 and
- * 2. For other levels it is 1 if the background's spread is at most half of the
- * level's min light. It falls to 0 where the spread equals that light. */
+/* Returns the weight of the area of brightness level K: 1 for levels 1 and 2,
+ * and for darker ones if the background's spread is at most half of the level's
+ * min light. It falls to 0 where the spread equals that light. */
 static int32_t compute_level_weight_q16(const struct glint_profile_channel *of,
                                         int k)
 {
@@ -174,10 +173,10 @@ static int32_t compute_level_weight_q16(const struct glint_profile_channel *of,
                   : q_clamp_sat(-k * ONE_Q16 - spread_q16, 0, ONE_Q16);
 }
 
-/* Returns the visible light of a lamp: the sum of u over the pixels of levels
- * up to SHOWN. Level k covers u from 2^-k to 2^(1 - k). The sum of its area
- * times 2^-k over all levels is the sum of u - 2^-SHOWN. The area of level
- * SHOWN adds the missing 2^-SHOWN. */
+/* Returns the visible light of a lamp: the sum of u (light above the
+ * background, 1 = white) over the pixels of levels up to SHOWN. Level k covers
+ * u from 2^-k to 2^(1 - k). The sum of (area of a level) 2^-k is the sum of u -
+ * 2^-SHOWN; the area of level SHOWN adds the missing 2^-SHOWN. */
 static int64_t compute_shown_flux_q16(const struct glint_profile_channel *of)
 {
     int64_t sum_q16 = 0;
@@ -191,7 +190,6 @@ static int64_t compute_shown_flux_q16(const struct glint_profile_channel *of)
                              8);
 }
 
-/* Returns the max over the channels of the area of LEVEL. */
 static int64_t find_max_channel_area_q8(const struct glint_profile_sums *sums,
                                         int level)
 {
@@ -203,7 +201,6 @@ static int64_t find_max_channel_area_q8(const struct glint_profile_sums *sums,
     return area_q8;
 }
 
-/* Returns the min over the channels of the clipped area. */
 static int64_t find_min_clipped_area_q8(const struct glint_profile_sums *sums)
 {
     int64_t area_q8 = sums->of[0].area_q8[0];
@@ -214,8 +211,8 @@ static int64_t find_min_clipped_area_q8(const struct glint_profile_sums *sums)
     return area_q8;
 }
 
-/* Returns the largest channel of the spot's colour, where the colour is scaled
- * to luminance 1. Returns 0.5 if the spot has no colour. */
+/* Returns the largest channel of the spot's colour at luminance 1, or 0.5 if
+ * the spot has no colour. */
 static int32_t find_max_colour_channel_q15(const struct glint_spot *spot)
 {
     int32_t most = Q_CONST(0.5, 15);
@@ -225,9 +222,8 @@ static int32_t find_max_colour_channel_q15(const struct glint_spot *spot)
     return most;
 }
 
-/* Returns the degree to which the codes of the picture resolve LEVEL. It is 1
- * if the level's min light is two code steps above the background, 0 if it is
- * one step above. */
+/* Returns the degree to which the codes of the picture resolve LEVEL: 0 if its
+ * min light is one code step above the background, 1 from two steps on. */
 static int32_t
 compute_level_resolution_q16(const struct glint_profile_sums *sums, int level)
 {

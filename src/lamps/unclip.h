@@ -21,9 +21,9 @@ void glint_unclip_compute_features(int32_t feature_q16[GLINT_UNCLIP_FEATURES],
                                    const struct glint_spot *spot,
                                    const struct glint_profile_sums *sums);
 
-/* Sets SEEN to the visible light of SPOT, above the background. Sets CORE to
- * the light that its clipped core would have if its brightest channel were
- * exactly white. Unit: light of one white pixel. */
+/* Sets SEEN to the visible light of SPOT, above the background, and CORE to the
+ * light that the clipped core would have if its brightest channel were exactly
+ * white. Unit: light of one white pixel. */
 void glint_unclip_compute_shown_light(int64_t *seen_q16, int64_t *core_q16,
                                       const struct glint_spot *spot,
                                       const struct glint_profile_sums *sums);
