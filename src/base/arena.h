@@ -31,8 +31,8 @@ struct glint_arena glint_arena_begin_measuring(void);
 struct glint_arena glint_arena_init_in_memory(void *mem, size_t bytes);
 
 /* Allocates COUNT items of BYTES bytes each and returns the uninitialised
- * memory. Returns NULL if the arena only measures or is full. If COUNT times
- * BYTES overflows, the arena is full afterwards. */
+ * memory. Returns NULL if the arena only counts bytes or is full. If COUNT
+ * times BYTES overflows, the arena is full afterwards. */
 void *glint_arena_allocate(struct glint_arena *arena, size_t count,
                            size_t bytes);
 

@@ -96,8 +96,8 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* sum of the sizes of all sections that glint_blob_find_section() returned,
-     * bytes; a section counts once for each call */
+    /* bytes of all sections that glint_blob_find_section() returned, once for
+     * each call */
     uint64_t referred;
 };
 

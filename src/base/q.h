@@ -87,7 +87,6 @@ static inline uint32_t q_root(uint64_t x)
     return (uint32_t)root;
 }
 
-/* Return the min and the max of two numbers. */
 static inline int32_t q_smaller(int32_t a, int32_t b)
 {
     return a < b ? a : b;

@@ -58,8 +58,8 @@ static inline uint8_t round_chroma_mean(int32_t sum_q7, int log2)
         q_larger((sum_q7 + (1 << (6 + log2))) >> (7 + log2), 0), 255);
 }
 
-/* Adds the chroma of a row to the sums of its pixel pairs. If the width is odd,
- * the last pixel counts twice. */
+/* Adds the chroma of a row to the sums of its pixel pairs. In a row of odd
+ * width, the last pixel counts twice. */
 static void add_chroma_to_pair_sums(struct stretch *s, int16_t *const ycc_q7[3])
 {
     const int end = s->n_x & ~1;

@@ -12,8 +12,8 @@
             (int16_t)(x), (int16_t)(x), (int16_t)(x)                          \
     }
 
-/* Factors of kernels/tone.h. A unit of R'G'B' is 255 / 32767 of a code; the
- * factor 32640 / 32768 converts it to _q7. */
+/* Factors of kernels/tone.h. White is 32767 in R'G'B' and 32640 in _q7; the
+ * factor from one to the other is 32640 / 32768. */
 #define FACTORS(toe, rise, turn)                                    \
     {                                                               \
         {toe, rise, turn, 32640, 0x0202},                           \
@@ -66,7 +66,6 @@ static void set_factor_in_all_lanes(struct glint_factors *f, int i, int64_t x)
     repeat_value_in_all_lanes(f->all[i], f->one[i]);
 }
 
-/* Returns N / D, rounded; D > 0. */
 static int64_t divide_and_round(int64_t n, int64_t d)
 {
     return (2 * n + (n < 0 ? -d : d)) / (2 * d);
@@ -112,9 +111,9 @@ static void set_rgb_to_ycc_factors(struct glint_mix *mix,
     for (int c = 0; c < 3; c++)
         set_factor_in_all_lanes(f, GLINT_MIX_LUMA + c,
                                 divide_and_round(m_q15[0][c] * 256, 257));
-    /* Cb is PER (B' - Y'), and Cr is PER (R' - Y'). Y' contains a fraction of
-     * B' and R'. Therefore PER is larger than the factor of B' in Cb, or of R'
-     * in Cr, in the matrix. */
+    /* Cb is PER (B' - Y'), and Cr is PER (R' - Y'). As Y' contains a fraction
+     * of B' and R', PER exceeds the factor of B' in Cb, or of R' in Cr, in the
+     * matrix. */
     for (int k = 0; k < 2; k++) {
         const int own = k ? 0 : 2;
         const int64_t own_q15 = m_q15[k + 1][own];

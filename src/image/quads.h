@@ -27,9 +27,8 @@ struct glint_quads_rows {
 /* Adds LIGHT to N_X x N_Y pixels of IMAGE from (X, Y) to the right and down. X
  * must be a multiple of 8 and Y even. N_X is at most GLINT_CODES_WIDTH, and may
  * be odd only at the right side of the picture. N_Y is 2, or 1 in the picture's
- * last row. A quad is 2 x 2 pixels. LIGHT[c] holds channel c of (N_X + 1) / 2
- * quads, is aligned to 32 bytes, and has memory for that number of quads
- * rounded up to a multiple of GLINT_LANES. */
+ * last row. LIGHT[c] has channel c of (N_X + 1) / 2 quads (2 x 2 pixels),
+ * aligned to 32 bytes, in memory for a multiple of GLINT_LANES quads. */
 typedef void glint_resolve_quads_fn(const struct glint_resolve *resolve,
                                     const struct glint_image *image, int x,
                                     int y, int n_x, int n_y,

@@ -57,9 +57,9 @@ static void compute_luminance(const struct glint_light_rows *light, int row,
                                  16);
 }
 
-/* Adds light to one row of chroma that has one sample per pixel. OWN is the
- * change of B' if the row is Cb, and of R' if it is Cr. LUMA is the change of
- * Y'. FACTOR[2] are the factors from OWN and LUMA to chroma. */
+/* Adds light to a row CODE of chroma that has one sample per pixel. OWN is the
+ * change of B' for Cb, of R' for Cr; LUMA that of Y'; FACTOR[2] converts both
+ * to the change of chroma. */
 static void add_change_to_chroma(uint8_t *code, const int16_t *own,
                                  const int16_t *luma, const int16_t *factor_q15,
                                  int n, const int16_t *round)

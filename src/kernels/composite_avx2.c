@@ -84,7 +84,6 @@ static inline __m128i interleave_codes(V x, V y)
         both, _mm_set_epi64x(0x0f070e060d050c04, 0x0b030a0209010800));
 }
 
-/* Returns X with its halves swapped. */
 static inline V swap_halves(V x)
 {
     return _mm256_permute2x128_si256(x, x, 1);
@@ -160,7 +159,6 @@ static inline uint32_t w_get_first_lane(V x)
     return (uint32_t)_mm256_cvtsi256_si32(x);
 }
 
-/* Returns the prefix sums of the lanes of X. */
 static inline V w_prefix_sums(V x)
 {
     V low;
@@ -178,7 +176,6 @@ static inline V w_repeat_last_lane(V x)
     return _mm256_permutevar8x32_epi32(x, _mm256_set1_epi32(7));
 }
 
-/* Returns A and B clamped to 0 .. 65535. */
 static inline V w_clamp_to_uint16(V a, V b)
 {
     return _mm256_permute4x64_epi64(_mm256_packus_epi32(a, b), 0xd8);

@@ -130,15 +130,14 @@ void glint_add_luma_c(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
     }
 }
 
-/* Returns the mean of A and B, rounded up. */
 static int16_t average_rounded_up(int a, int b)
 {
     return (int16_t)((a + b + 1) >> 1);
 }
 
-/* Returns the new chroma code. CODE is the old one. The mean of its pixels
- * changed by OWN in B' (for Cb) or R' (for Cr), and by LUMA in Y'. K is the
- * index in to_ycc of the factor of OWN; the factor of LUMA follows it. */
+/* Returns the new code of chroma whose code was CODE. Its pixels changed, in
+ * the mean, by OWN in B' (for Cb) or R' (for Cr), and by LUMA in Y'. K is the
+ * index in to_ycc of the factor of OWN; the factor of LUMA is next. */
 static uint8_t add_change_to_chroma(int code, int own, int luma, int k,
                                     const struct glint_mix *mix,
                                     int16_t round_q7)

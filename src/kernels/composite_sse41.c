@@ -95,7 +95,6 @@ static inline uint32_t w_get_first_lane(V x)
     return (uint32_t)_mm_cvtsi128_si32(x);
 }
 
-/* Returns the prefix sums of the lanes of X. */
 static inline V w_prefix_sums(V x)
 {
     x = OP(add_epi32)(x, _mm_slli_si128(x, 4));

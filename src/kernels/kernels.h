@@ -32,8 +32,8 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* How a row of 4:2:2 or 4:2:0 changes chroma that pairs of pixels share. Chroma
- * changes by the mean changes of R', B' and Y' over all pixels that share
+/* When a row of 4:2:2 or 4:2:0 changes the chroma that pairs of pixels share:
+ * it changes by the mean changes of R', B' and Y' over all pixels that share
  * it. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* 4:2:2: the row's pairs have their own chroma */

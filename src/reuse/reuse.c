@@ -8,8 +8,8 @@
 #include "flare/state.h"
 
 struct reuse {
-    /* Number of lights stored; -1: none, because the frame had more than
-     * reuse_lights lights. */
+    /* Number of lights stored; -1: the frame had more than reuse_lights lights,
+     * and none is stored. */
     int n_lights;
     struct glint_flare_frame frame;
     uint64_t digest; /* digest of the waves, wave sets and tints that FRAME

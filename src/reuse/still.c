@@ -47,9 +47,9 @@ static int64_t compute_channel_over_power_q20(const struct glint_light *b,
     return real_integer(real_over(x, unit), 20, INT64_C(1) << 24);
 }
 
-/* Sets the gains of planned light I to (power that was assigned to it, sum_q20)
- * / (its planned power). Returns 0 if a gain would exceed 1.5, or if the gains
- * would change the colour by more than 1/64. */
+/* Sets the gains of planned light I to sum_q20, the power of the lights
+ * assigned to it, / its planned power. Returns 0 if a gain would exceed 1.5, or
+ * change the colour by more than 1/64. */
 static int compute_light_gain(struct glint_still *s, int i)
 {
     const int64_t *sum_q20 = s->sum_q20[i];
@@ -74,10 +74,10 @@ static int compute_light_gain(struct glint_still *s, int i)
     return serves;
 }
 
-/* Assigns each of N LIGHTS to the nearest planned light and sets the gains of
- * the planned lights. Returns 0 if a light has no planned light within
- * NEAR_Q30, or if a gain is out of range: the lights then have to be planned
- * again. */
+/* Assigns each of N LIGHTS to the nearest planned light, and sets the planned
+ * lights' gains (factors on their colours). Returns 0, so that the lights must
+ * be planned again, if a light has no planned light within NEAR_Q30, or a gain
+ * is out of range. */
 static int match_lights_and_set_gains(struct glint_still *s,
                                       const struct glint_light *lights, int n,
                                       int32_t near_q30)

@@ -17,12 +17,12 @@ enum {
     GLINT_STAR_INVERSES = 128
 };
 
-/* A light that is drawn: its position, its power in units of the tables, and
- * the distances up to which it is visible. */
+/* A lamp whose starburst is drawn: its position, its power in units of the
+ * tables, and the distances up to which the starburst is visible. */
 struct glint_star_lamp {
     int32_t x_q8, y_q8;
-    uint64_t inner_q16; /* lower bound of r^2 in the factor 1 / r^2, pixels^2,
-                           where r is the distance from the lamp */
+    uint64_t inner_q16; /* light falls with 1 / r^2 only where r^2, the squared
+                           distance from the lamp, exceeds this, pixels^2 */
     int is_bare;        /* 1: the picture does not show the lamp, so its core is
                            drawn, too */
     /* Power per channel in three forms. line: light where the line profile is
@@ -30,8 +30,8 @@ struct glint_star_lamp {
      * power of the lamp, a mantissa of 15 bits times 2^core_exponent. halo:
      * log2 of the power. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
-    /* Scale of the line profiles, which the lamp's radius widens: profile steps
-     * per pixel, and pixels per profile step. */
+    /* Scale of the profiles across lines, which the lamp's radius widens:
+     * profile steps per pixel, and pixels per profile step. */
     int32_t per_pixel_q16, pixels_q16;
     /* Tables between which the halo is interpolated: for the nearest tabulated
      * radius below the lamp's radius (halo) and above it (next_halo).
@@ -39,8 +39,8 @@ struct glint_star_lamp {
      * both pointers are equal. */
     const glint_star_halo_row *halo, *next_halo;
     int halo_part_q15;
-    /* Distances from the lamp, pixels, up to which the lines (reach) and the
-     * halo are visible. */
+    /* Distances from the lamp, pixels, up to which lines (reach) and halo
+     * (halo_reach) are visible. */
     int reach, halo_reach;
     /* Distance from the lamp, pixels, up to which the light diffracted by dirt
      * in the stop (the smear) is visible. */
@@ -91,14 +91,12 @@ struct glint_star {
 glint_star_part_fn glint_star_add_lines_row, glint_star_add_halo_row,
     glint_star_add_core_row;
 
-/* Returns whether a line of LAMP may light pixels of BOX. May return 1 although
- * no line does, never the reverse. */
+/* Returns 0 if certainly no line of LAMP lights pixels of BOX, else 1. */
 int glint_star_can_lines_reach_box(const struct glint_star *star,
                                    const struct glint_star_lamp *lamp,
                                    struct glint_box box);
 
-/* Returns the distance in pixels up to which the core table extends from a
- * light. */
+/* Returns the distance from a lamp, pixels, to which the core table extends. */
 static inline int glint_star_compute_core_reach(const struct glint_star *star)
 {
     const int steps = star->tables->core_per_pixel_q16 >> 16;

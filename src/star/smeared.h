@@ -33,7 +33,7 @@ glint_star_part_fn glint_star_add_smear_row;
 
 struct glint_star_smear {
     glint_star_part_fn *part; /* glint_star_add_smear_row() */
-    /* for each square, the light of a table value of 1 */
+    /* for each square, light per unit of the table */
     struct glint_real step[GLINT_STAR_SMEAR_RINGS];
     /* Table values, [square][row][column][channel], rows for y >= 0 only. The
      * other half is the point reflection of this half through the centre. */

@@ -109,8 +109,8 @@ static int compute_exp2_ceil(int32_t log2_of_q16)
     return (int)(far_q16 >> 16) + 1;
 }
 
-/* Returns the number of steps of the line profiles, counted from the line's
- * centre, up to the last one whose light exceeds 2^MIN_LOG2; 0 if none does. */
+/* Returns the number of steps of the line profiles from the line's centre to
+ * the last step whose light exceeds 2^MIN_LOG2; 0 if none does. */
 static int count_visible_profile_steps(const struct glint_star_tables *t,
                                        int32_t min_log2_q16)
 {
@@ -125,8 +125,8 @@ static int count_visible_profile_steps(const struct glint_star_tables *t,
 }
 
 /* Divides the distances 0 .. reach around LAMP into zones, and sets the number
- * of visible profile steps in each zone. OVER is log2 of a ratio: (light at a
- * distance of 1 pixel where the profile is 1) / (min visible light). */
+ * of visible profile steps in each zone. OVER is log2 of (light 1 pixel from
+ * the lamp where the profile is 1) / (min visible light). */
 static void divide_distances_into_zones(struct glint_star_lamp *lamp,
                                         const struct glint_star_tables *t,
                                         int32_t over_log2_q16)
@@ -148,8 +148,8 @@ static void divide_distances_into_zones(struct glint_star_lamp *lamp,
     }
 }
 
-/* Returns the distance in pixels up to which the halo of a light of power
- * 2^POWER_LOG2 is brighter than 2^MIN_LOG2; 0 if it is brighter nowhere. */
+/* Returns the distance, pixels, up to which the halo of a light of power
+ * 2^POWER_LOG2 is brighter than 2^MIN_LOG2; 0 if nowhere. */
 static int compute_halo_reach(const struct glint_star_tables *t,
                               int32_t power_log2_q16, int32_t min_log2_q16)
 {
@@ -191,9 +191,9 @@ static struct glint_real clamp_lamp_power(struct glint_real power)
     return real_less(most, power) ? most : power;
 }
 
-/* Returns the factor by which the disc of a lamp of RADIUS pixels makes its
- * lines wider and dimmer; at most 2^10. The profile of a uniform disc is 1.73
- * radii wide at half its brightness. */
+/* Returns the factor by which a lamp of RADIUS pixels makes its lines wider and
+ * dimmer; at most 2^10. The profile of a uniform disc is 1.73 radii wide at
+ * half its max. */
 static int64_t compute_line_widening_q8(const struct glint_star_tables *t,
                                         int32_t radius_q8)
 {

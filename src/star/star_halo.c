@@ -6,7 +6,7 @@
 #include "base/log2.h"
 #include "star/parts.h"
 
-/* State for drawing the halo of one lamp in one row of pixels. */
+/* State while the halo of one lamp is drawn in one row of pixels. */
 struct span {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
@@ -35,8 +35,7 @@ static int32_t interpolate_int32(int32_t a, int32_t b, int part_q15)
 }
 
 /* A pixel at which the halo is evaluated: its column (x), its distance from the
- * lamp along x (dx), its distance from the nearest line (v), and its light per
- * channel. */
+ * lamp along x (dx) and from the nearest line (v), and its light. */
 struct node {
     int x;
     int64_t dx_q8, v_q8;
@@ -134,8 +133,8 @@ static int is_halo_nearly_linear(const struct span *s, const struct node *a,
 }
 
 /* Returns the number of pixels from FROM, up to X1 at most, over which the halo
- * is interpolated linearly: 8, 4 or 1. Such a run begins at a multiple of its
- * length, so that pictures do not depend on tile borders. */
+ * is interpolated linearly: 8, 4 or 1. A run of 8 or 4 begins at a multiple of
+ * its length, so that pictures do not depend on tile borders. */
 static int choose_interpolated_run_length(const struct span *s,
                                           const struct glint_star_line *line,
                                           const struct node *from, int x1)

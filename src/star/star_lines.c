@@ -41,8 +41,7 @@ struct strip {
     struct glint_star_stretch *row;
 };
 
-/* Looks up 1 / R2, where R2 is in pixels^2. Sets *BITS; the result times 2^(1 -
- * *BITS) is 1 / R2. */
+/* Looks up 1 / R2, where R2 is in pixels^2: the result times 2^(1 - *BITS). */
 static uint32_t look_up_inverse_square(const struct glint_star *star,
                                        uint64_t r2_q16, int *bits)
 {

@@ -25,7 +25,7 @@ struct span {
     const struct glint_star_lamp *lamp;
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
     int ring;
-    /* Light of a table value of 1 per channel, _q20, times 2^shift. */
+    /* light per unit of the table, per channel, _q20, times 2^shift */
     int32_t share[3];
     int shift; /* right shift for the product of SHARE and a table value */
 };
@@ -71,9 +71,9 @@ static void add_smear_light_to_pixel(const struct span *s, int at,
     }
 }
 
-/* Returns the index of the ring that contains the distance FAR = max(|dx|,
- * |dy|), pixels, from the lamp; at least LEAST. Returns RINGS or more if FAR is
- * outside all rings. */
+/* Returns the index, at least LEAST, of the ring at the distance FAR =
+ * max(|dx|, |dy|), pixels, from the lamp; RINGS or more if FAR is outside all
+ * rings. */
 static int find_smear_ring(int64_t far_q8, int least)
 {
     const int bits = bit_length((uint64_t)far_q8) - FIRST_LOG2;
@@ -88,8 +88,7 @@ void glint_star_add_smear_row(const struct glint_star *star,
     struct span s = {.table = star->tables->smear,
                      .lamp = lamp,
                      .light_q20 = row->light_q20,
-                     .ring = RINGS}; /* an invalid ring, so that the first pixel
-                                        sets a valid one */
+                     .ring = RINGS}; /* invalid until the first pixel */
     const int64_t dy_q8 = (int64_t)row->y * 256 + 128 - lamp->y_q8;
     const int64_t high_q8 = dy_q8 < 0 ? -dy_q8 : dy_q8;
     const int middle = lamp->x_q8 >> 8;

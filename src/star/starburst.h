@@ -63,9 +63,9 @@ struct glint_star_line {
     int32_t across_q16; /* 1 / sin of the angle, at most 2^12 */
     /* cotangent of the angle midway between this line and the next */
     int32_t border_q16;
-    /* Profile across the line. Entry i is the light at v = i reach / 128,
-     * multiplied by r^2 / (1 - (v / r)^2), where r is the distance from the
-     * lamp. The unit is STEP of the tables. Entries from 128 on are 0. */
+    /* Profile across the line. Entry i is the light at v = i reach / 128, times
+     * r^2 / (1 - (v / r)^2), where r is the distance from the lamp, in units of
+     * member step of the tables. Entries from 128 on are 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
@@ -93,8 +93,8 @@ struct glint_star_tables {
                                    .. 4 */
     /* full width at half maximum of the profiles, pixels */
     int32_t width_q8;
-    int32_t inner_q8; /* distance from the lamp, pixels, within which the factor
-                         1 / r^2 is constant */
+    int32_t inner_q8; /* distance from the lamp, pixels, up to which light does
+                         not fall with 1 / r^2 */
     /* Halo of a point light. With r, the distance from the lamp in pixels, log2
      * of light times r^2 is halo_log2_q16 plus the entry of HALO, _q11.
      * halo_max: max of each row. */

@@ -30,8 +30,8 @@ struct glint_bins {
 void glint_bins_init(struct glint_bins *bins, struct glint_box region,
                      int tile_log2, int32_t *start, int32_t *ref);
 
-/* Returns the number of tiles that BOX overlaps: the number of list entries
- * that an item with BOX needs. */
+/* Returns the number of tiles that BOX overlaps, which is the number of list
+ * entries for an item with that box. */
 int glint_bins_count_overlapped_tiles(const struct glint_bins *bins,
                                       struct glint_box box);
 

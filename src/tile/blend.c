@@ -3,8 +3,8 @@
 
 #include "base/q.h"
 
-/* Returns the part of LIGHT that passes through a layer in front of it, whose
- * cover is COVER: LIGHT (1 - COVER). */
+/* Returns LIGHT (1 - COVER): the light that passes a layer of cover COVER in
+ * front of it. */
 static int64_t attenuate_light(int64_t light, int cover_q8)
 {
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
@@ -46,8 +46,8 @@ static void blend_linear_light(const struct glint_pass_rows *rows, int n_x,
 }
 
 /* Combines the cover of the current pass with the total cover of the passes
- * behind it: 1 - (1 - total) (1 - cover). If no earlier pass gave cover,
- * COVERED is 0 and the total is not initialised yet. */
+ * behind it: 1 - (1 - total) (1 - cover). COVERED is 0 if no earlier pass gave
+ * cover, so that the total is not initialised yet. */
 static void add_pass_cover_to_total(struct glint_blend_rows *s, int row,
                                     int n_x, int covered)
 {

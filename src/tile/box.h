@@ -10,7 +10,6 @@ struct glint_box {
     int x0, y0, x1, y1;
 };
 
-/* Returns the intersection of A and B. */
 static inline struct glint_box glint_box_intersect(struct glint_box a,
                                                    struct glint_box b)
 {

@@ -61,7 +61,7 @@ struct glint_pass {
 
 /* The picture that is drawn onto, in tiles. */
 struct glint_tiles {
-    /* The whole picture, in pixels of the drawing resolution. */
+    /* the picture, in pixels of the drawing resolution */
     struct glint_box region;
     int tile_log2; /* log2 of the side of a tile, 3 .. 6 */
     int half; /* 1: half resolution: each pixel drawn is 2 x 2 pixels of the

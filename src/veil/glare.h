@@ -51,10 +51,10 @@ enum {
 /* A Gaussian kernel by which the light of cells is scattered, separable in x
  * and y. */
 struct glint_veil_spread {
-    /* Scattered fractions for a row of n cells, which is continued by mirroring
-     * with period 2 n. Entry D, D = 0 .. n, is the fraction of its light that a
-     * cell scatters to a cell at a distance of D cells. Entry 0 plus entry n
-     * plus twice all others is 2^30. */
+    /* Kernel for a row of n cells, which is continued by mirroring with period
+     * 2 n. Entry D, D = 0 .. n, is the fraction of its light that a cell
+     * scatters to a cell at a distance of D cells. Entry 0 plus entry n plus
+     * twice all others is 2^30. */
     int32_t across_q30[GLINT_VEIL_CELLS + 1], down_q30[GLINT_VEIL_CELLS + 1];
     /* fraction of all light that this kernel scatters, above 0 */
     struct glint_real share;
@@ -130,8 +130,9 @@ void glint_veil_spread_light(struct glint_veil *veil,
 
 /* Computes the light that dirt on the front element scatters, by convolving the
  * light of the cells with N Gaussians. Their shares are the scattered fractions
- * where the cover is at its max. FRONT must stay valid while the veil is drawn;
- * NULL, the initial state: no dirt. Requires has_front in the configuration. */
+ * of light where dirt covers the beam of a pixel most. FRONT must stay valid
+ * while the veil is drawn; NULL, the initial state: no dirt. Requires has_front
+ * in the configuration. */
 void glint_veil_front(struct glint_veil *veil,
                       const struct glint_veil_front *front,
                       const struct glint_veil_spread *spreads, int n);

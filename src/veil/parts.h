@@ -22,8 +22,8 @@ struct glint_veil_axis {
      * the position in the cell, they are (1 - t)^2 / 2 for the previous cell,
      * t^2 / 2 for the next cell, and the rest to 1 for the pixel's cell. */
     uint16_t *share_q16[3];
-    /* for each cell, (exact width in pixels) / (number of pixels that are
-     * summed), so that a uniform picture gives uniform cells */
+    /* for each cell, exact width / number of pixels summed, so that a uniform
+     * picture gives uniform cells */
     uint32_t *fill_q16;
 };
 

@@ -185,8 +185,7 @@ static int compute_shift_to_30_bits(const int64_t *light_q16, int n)
 }
 
 /* Sets SHARE[i], for each of N cells in a row, to the fraction of its light
- * that cell i scatters to cell TO. It includes the light that is mirrored at a
- * border. */
+ * that cell i scatters to cell TO, directly and mirrored at the borders. */
 static void
 compute_spread_fractions_to_cell(const int32_t *table_q30, int n, int to,
                                  int32_t share_q30[GLINT_VEIL_CELLS])

@@ -20,7 +20,7 @@ void glint_veil_front(struct glint_veil *veil,
         glint_veil_spread_light_to(veil, spreads, n, veil->front_q20);
     for (int i = 0; i < 3 * veil->n_x * veil->n_y && veil->any_front; i++)
         max_q20 = q_larger(max_q20, veil->front_q20[i]);
-    /* shift after which the brightest cell fits into 16 bits */
+    /* sets the shift after which the brightest cell fits into 16 bits */
     veil->front_down = 4;
     while (max_q20 >> veil->front_down > 65534)
         veil->front_down++;

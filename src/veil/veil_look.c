@@ -20,8 +20,8 @@ static void add_light_to_cell(const struct look *l, int x, int y,
     const struct glint_veil *v = l->veil;
 
     for (int c = 0; c < 3; c++) {
-        /* In units of 2^-11, 2^16 white pixels need 28 bits. Larger sums are
-         * clamped to 31 bits. */
+        /* The unit is 2^-11, so that 2^16 white pixels need 28 bits. Larger
+         * sums are clamped to 31 bits. */
         const int64_t seen = q_clamp_sat(q_shift(sum_q20[c], 9), 0, INT32_MAX);
         const int64_t part =
             q_clamp_sat(q_shift(q_shift(seen * v->across.fill_q16[x], 16) *

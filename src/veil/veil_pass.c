@@ -62,9 +62,9 @@ static inline uint16_t multiply_high(uint16_t a, uint16_t b)
 }
 
 /* Interpolates between three neighbouring cells with LIGHT, 0 .. 65534, for the
- * N pixels from X on; also writes pixels up to the end of the last vector. Each
- * product is truncated and loses 2^-17 on average. Adding 2^-16 where there is
- * light compensates for part of the loss. */
+ * N pixels from X on; also writes pixels up to the end of the last vector.
+ * Truncation loses 2^-17 per product on average; 2^-16 is added where there is
+ * light to compensate for part of it. */
 static void interpolate_code_pixels(const struct glint_veil_axis *axis, int x,
                                     int n, const int32_t light_q16[3],
                                     uint16_t *restrict to_q16)

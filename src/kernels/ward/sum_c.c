@@ -124,10 +124,10 @@ static void project_direction_to_map(const struct sample *s,
     *v_q17 = ONE_Q16 + (toward_q14[2] < 0 ? -q_q16 : q_q16);
 }
 
-/* Returns the mip level with the strongest blur that does not exceed the blur
- * of sample K. Sets *SHARE_Q8 to the weight of the next level, which has four
- * times the variance of the returned level. The blend of both levels has the
- * variance of the sample. */
+/* Returns the coarsest mip level whose variance does not exceed that of sample
+ * K. Sets *SHARE_Q8 to the weight of the next level, of four times the
+ * variance, with which the blend of both levels has the variance of the
+ * sample. */
 static int32_t choose_mip_level(const struct glint_ward_lobe *lobe, int k,
                                 int32_t ho_q14, int32_t last,
                                 uint32_t *share_q8)

@@ -24,7 +24,8 @@ struct glint_found {
 /* Sets four entries of AT and WEIGHT_Q22 to the texels of LEVEL nearest to (U,
  * V), which is 0 .. 1 across and down the square. Their total weight is
  * SHARE_Q8. A texel outside the square is replaced by its mirror image about
- * the middle of the nearest edge, because the octahedron folds there. */
+ * the middle of the nearest edge, as the octahedron is unfolded into the
+ * square. */
 static inline void
 glint_choose_texels_to_read(const struct glint_texels_level *level,
                             int32_t u_q17, int32_t v_q17, uint32_t share_q8,
