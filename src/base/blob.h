@@ -60,27 +60,30 @@ enum glint_blob_fault {
  * THING names the file type in the messages, and THINGS is its plural. DONE is
  * the participle of the operation that makes the file ("baked"). The message of
  * GLINT_BLOB_OK is NULL. */
-#define GLINT_BLOB_FAULT_TEXT(thing, things, done)                            \
-    {                                                                         \
-        [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes",   \
-        [GLINT_BLOB_FOREIGN] = "not a baked " thing,                          \
-        [GLINT_BLOB_NEWER] = "the " thing " was " done " by a newer glint",   \
-        [GLINT_BLOB_NO_VERSION] =                                             \
-            "glint has never " done " " things " of version 0",               \
-        [GLINT_BLOB_OLDER] =                                                  \
-            "the " thing " was " done " by an older glint: bake it again",    \
-        [GLINT_BLOB_TRUNCATED] = "the " thing " is truncated",                \
-        [GLINT_BLOB_LONGER] = "the " thing " is longer than its header says", \
-        [GLINT_BLOB_DAMAGED] =                                                \
-            "the checksum is wrong: the " thing " is damaged",                \
-        [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",       \
-        [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte above 0x7f",         \
-        [GLINT_BLOB_NAME_ENDLESS] = "the name is not zero-terminated",        \
-        [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                         \
+#define GLINT_BLOB_FAULT_TEXT(thing, things, done)                          \
+    {                                                                       \
+        [GLINT_BLOB_UNALIGNED] = "the " thing " is not aligned to 4 bytes", \
+        [GLINT_BLOB_FOREIGN] = "not a baked " thing,                        \
+        [GLINT_BLOB_NEWER] =                                                \
+            "the " thing " was " done " by a newer glint: update glint",    \
+        [GLINT_BLOB_NO_VERSION] =                                           \
+            "glint has never " done " " things " of version 0",             \
+        [GLINT_BLOB_OLDER] =                                                \
+            "the " thing " was " done " by an older glint: bake it again",  \
+        [GLINT_BLOB_TRUNCATED] = "the " thing " is truncated",              \
+        [GLINT_BLOB_LONGER] =                                               \
+            "the " thing " is longer than its header states",               \
+        [GLINT_BLOB_DAMAGED] =                                              \
+            "the checksum is wrong: the " thing " is damaged",              \
+        [GLINT_BLOB_NAME_CONTROL] = "the name has a control character",     \
+        [GLINT_BLOB_NAME_FOREIGN] = "the name has a byte above 0x7f",       \
+        [GLINT_BLOB_NAME_ENDLESS] = "the name is not zero-terminated",      \
+        [GLINT_BLOB_NAME_EMPTY] = "the name is empty"                       \
     }
 
 /* Checks at compile time that the struct HEADER begins with the members of
- * struct glint_blob_header. HEADER names the variant VARIANT_FIELD. */
+ * struct glint_blob_header. VARIANT_FIELD is the name of the member variant in
+ * HEADER. */
 #define GLINT_BLOB_HEADER(header, variant_field)           \
     GLINT_BLOB_SAME_PLACE(header, magic, magic);           \
     GLINT_BLOB_SAME_PLACE(header, version, version);       \

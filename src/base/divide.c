@@ -8,10 +8,9 @@ static uint32_t multiply_high(uint32_t a, uint32_t b)
     return (uint32_t)((uint64_t)a * b >> 32);
 }
 
-/* Returns an approximation of 2^63 / X for X >= 2^31 that is never too large.
- * The linear start value has an error of at most 1/17. Each of three steps of
- * Newton's method squares the error. Products are truncated, so the result is
- * never too large. */
+/* Returns an approximation of 2^63 / X for X >= 2^31. The linear start value
+ * has an error of at most 1/17, which each of three steps of Newton's method
+ * squares. Products are truncated, so that the result is never too large. */
 static uint32_t approximate_reciprocal(uint32_t x)
 {
     /* start value: 48/17 - 32/17 x in _q31, modulo 2^32, where x is X in
@@ -36,9 +35,9 @@ uint32_t glint_compute_reciprocal(uint32_t x)
 }
 
 /* Computes the quotient by long division. Each step divides the upper 32 bits
- * of the remainder by the upper 32 bits of D, which gives up to 30 bits of the
- * quotient. Both operands are rounded so that these bits are never too large.
- * The loop ends when the remainder is less than four times D. */
+ * of the remainder by those of D, which gives up to 30 bits of the quotient.
+ * Both are rounded so that the quotient is never too large. The loop ends when
+ * the remainder is less than four times D. */
 int64_t glint_divide(int64_t n, int64_t d)
 {
     const uint64_t by = q_magnitude(d);

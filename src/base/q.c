@@ -3,8 +3,8 @@
 
 #ifdef GLINT_Q_CHECK
 /* Stops the program when a fixed-point operation overflows in a build with
- * CONFIG=qcheck; a debugger then shows the operation on the stack. Prints
- * nothing, since the run-time half has no stdio. */
+ * CONFIG=qcheck. Prints nothing, as the run-time half has no stdio; a debugger
+ * shows the operation. */
 void glint_q_abort_on_overflow(const char *operation, int64_t exact)
 {
     (void)operation;
@@ -12,7 +12,6 @@ void glint_q_abort_on_overflow(const char *operation, int64_t exact)
     __builtin_trap();
 }
 #else
-typedef int glint_q_is_all_inline; /* C99 requires at least one declaration in
-                                      each translation unit, and all functions
-                                      of q.h may be inline */
+typedef int glint_q_is_all_inline; /* C99 requires a declaration in each
+                                      translation unit */
 #endif

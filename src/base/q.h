@@ -54,8 +54,8 @@ static inline int32_t q_mul(int32_t a, int32_t b, int s)
 }
 
 /* Returns X / 2^S, rounded, for any S. LIMIT is at most 2^30. If the magnitude
- * of the result would reach LIMIT, returns 0 and sets all bits of *LOST;
- * otherwise *LOST is unchanged. */
+ * would reach LIMIT, returns 0 and sets all bits of *LOST, which is unchanged
+ * otherwise. */
 static inline int32_t q_scaled(int64_t x, int s, int32_t limit, int32_t *lost)
 {
     int64_t y = 0;

@@ -485,8 +485,8 @@ glint_engine_change_stop(struct glint_engine *engine,
         status = glint_engine_setup(&setup, f->lens, camera, &dirt, error);
     else
         snprintf(error->text, sizeof error->text,
-                 "the stop belongs to the caller's setup, so the engine cannot "
-                 "change it");
+                 "the engine cannot change the stop of camera.setup; leave "
+                 "camera.setup NULL");
     if (status != GLINT_OK)
         return status;
     swap_engine_stop(engine, &setup, &other, &dirt);

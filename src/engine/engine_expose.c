@@ -147,9 +147,8 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
         find->is_cut || (find->is_searched && elapsed_us > 0 &&
                          glint_lamp_tracker_was_cut(find->detector.tracks));
     const bool is_drawn = elapsed_us == 0 && f->budget.ms <= 0 && x->by_drawing;
-    /* This placeholder replaces a measured response, which is not needed. The
-     * exposure that is computed from it is replaced when the flare has been
-     * drawn. */
+    /* No measured response is needed: the exposure that is computed from this
+     * placeholder is replaced when the flare has been drawn. */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
 

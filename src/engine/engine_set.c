@@ -45,8 +45,7 @@ static enum glint_status apply_option(struct glint_engine *engine,
     return GLINT_OK;
 }
 
-/* Sets option NAME to the value that TEXT gives, or to VALUE if TEXT is
- * NULL. */
+/* Sets option NAME to the value of TEXT, or to VALUE if TEXT is NULL. */
 static enum glint_status set_engine_option(struct glint_engine *engine,
                                            const char *name, const char *text,
                                            double value,

@@ -50,9 +50,9 @@ struct glint_response {
 /* Draws the flare of N lamps with the lens of FRAME in a small picture of about
  * PIXELS pixels, and sets LIGHT to its brightness. The powers of LAMPS are
  * those for the picture of FRAME. The peak is the light that 1/10000 of the
- * pixels reach; smaller specks are ignored. Sets SEEN to the visibility of the
- * flare on the picture GROUND, unless either is NULL. Exact rays are cached for
- * the next picture of FRAME. Returns GLINT_E_MEMORY on failure. */
+ * pixels reach. Sets SEEN to the visibility of the flare on the picture GROUND,
+ * unless either is NULL. Exact rays are cached for the next picture of FRAME.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_response_draw_and_measure(
     struct glint_frame *frame, const struct glint_lamp *lamps, int n,
     int pixels, const struct glint_ground *ground,

@@ -82,8 +82,8 @@ struct glint_strength {
     bool is_drawn; /* true: LIGHT was measured by drawing the flare of this
                       picture; false: it was computed from the response */
 
-    /* Private: log2 of the factor, without strength and gain, which change at
-     * once. It changes gradually over time. */
+    /* Private: log2 of the factor without strength and gain. It changes
+     * gradually, while strength and gain take effect at once. */
     double factor_log2;
     bool follows;
 };

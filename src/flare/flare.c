@@ -149,8 +149,8 @@ enum glint_status glint_flare_set_stop(struct glint_flare *flare,
 
 /* ------------------------------------------------------------------ bundles */
 
-/* Sets the size of the drawn area, in pixels of the drawing resolution. If HALF
- * is 1, it has half the width and half the height of the picture. */
+/* Sets the size of the drawn area, in drawn pixels, which are 2 x 2 pixels of
+ * the picture if HALF is 1. */
 static void set_drawn_size(struct glint_flare *f, int half)
 {
     f->half = half;
@@ -340,8 +340,8 @@ void glint_flare_plan(struct glint_flare *flare,
         .shaded = flare->cfg.stop.shade != NULL,
         .opening_q30 = flare->cfg.stop.opening_q30 ? flare->cfg.stop.opening_q30
                                                    : WHOLE_OPENING_Q30};
-    /* The table of dim ghosts depends only on the angle of a light off the
-     * axis, so it is not used with models that also depend on the azimuth
+    /* The table of ghost brightness has only the angle of a light off the axis,
+     * so it is not used with models that also depend on the azimuth
      * (GLINT_BASIS_LENS). */
     if (frame->dim && frame->dimmest.mantissa && !frame->sets &&
         frame->n_waves == GLINT_DIM_WAVES &&

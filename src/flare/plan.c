@@ -15,8 +15,8 @@ enum {
     FEW_INSIDE = 6,
     ONE_Q16 = 1 << 16,
     WIDEST_Q16 = 64 << 16, /* max enlargement of a ghost */
-    FARTHEST_Q8 = 1 << 20  /* max distance of the fixed point of the enlargement
-                              from the picture's middle, pixels */
+    FARTHEST_Q8 = 1 << 20  /* max distance of the point about which a ghost is
+                              enlarged from the picture's middle, pixels */
 };
 
 /* Converts X, a length in units of the sensor outputs of T, to pixels, clamped

@@ -8,13 +8,13 @@
  *
  * Method: all ghosts are planned with the first set, which finds the visible
  * ghosts and their brightness. Rays of the first set's two outermost
- * wavelengths are then traced through the same points of the pupil box. The box
- * follows the ghost's outline from wavelength to wavelength, so the distance
- * between two such rays on the sensor equals the distance between the two
- * outlines. Ghosts that need more wavelengths are planned again with a larger
- * set. From one of n wavelengths to the next, light changes by at most about 5
- * / n of the ghost's light in any channel; a tenth of that is compared with the
- * smallest visible step. */
+ * wavelengths are then traced through the same points of the ghost's pupil. The
+ * pupil follows the ghost's outline from wavelength to wavelength, so the
+ * distance between two such rays on the sensor is that between the outlines.
+ * Ghosts that need more wavelengths are planned again with a larger set. From
+ * one of n wavelengths to the next, light changes by at most about 5 / n of the
+ * ghost's light in any channel; a tenth of that is compared with the smallest
+ * visible step. */
 #ifndef GLINT_FLARE_WAVE_SETS_H
 #define GLINT_FLARE_WAVE_SETS_H
 

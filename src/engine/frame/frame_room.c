@@ -65,8 +65,8 @@ static size_t compute_frame_memory_limit(const struct glint_frame *f)
     return (size_t)((double)f->limits.most_bytes * f->limits.share);
 }
 
-/* Returns the frame's configuration with the capacities that are needed
- * according to STATS, the result of binning. */
+/* Returns the frame's configuration with the capacities that STATS, the result
+ * of binning, requires. */
 static struct glint_flare_config
 make_config_with_needed_capacity(const struct glint_frame *f,
                                  const struct glint_flare_stats *s)
@@ -124,17 +124,17 @@ static bool fit_capacity_to_bytes(struct glint_frame *f, size_t bytes)
     return most > 0 && set_primitive_capacity(f, most) <= bytes;
 }
 
-/* Returns the number of primitives that set_primitive_capacity() needs to
- * provide enough primitives and references for S. */
+/* Returns the capacity for edges with which set_primitive_capacity() provides
+ * enough edges and references for S. */
 static double count_needed_primitives(const struct glint_flare_stats *s)
 {
     return fmax(s->need_primitives * UNEVEN, s->need_refs / 2.0);
 }
 
 /* Makes grids coarser if the memory that S requires exceeds the limit or the
- * reserved memory. Returns whether it did so. The result depends neither on the
- * number of workers nor on earlier frames. A block that is not reserved grows
- * to its limit, so that the coarser grids fit. */
+ * reserved memory. Returns whether they changed. The result depends neither on
+ * the number of workers nor on earlier frames. Memory that is not reserved
+ * grows to its limit, so that the coarser grids fit. */
 static bool coarsen_grids_to_memory(struct glint_frame *f,
                                     const struct glint_flare_stats *s)
 {
@@ -200,8 +200,8 @@ enum glint_status glint_frame_reallocate_flare(struct glint_frame *f)
         bytes = glint_flare_bytes(&f->cfg);
     }
 
-    /* A block of the right size is reused. This happens in videos where every
-     * frame reaches the limit. */
+    /* A block of the right size is reused, as in videos whose every frame
+     * reaches the limit. */
     if (!f->memory.block || f->memory.bytes != bytes) {
         free(f->memory.mem);
         f->memory.bytes = 0;
@@ -305,8 +305,7 @@ enum glint_status glint_frame_reserve_memory(struct glint_frame *f, void *mem,
     f->cfg.workers = workers;
     if (!fit_capacity_to_bytes(f, bytes))
         return GLINT_E_MEMORY;
-    /* Everything is allocated here, as quality parameters may change later,
-     * when allocation is not allowed. */
+    /* Everything is allocated now, as quality parameters may change later. */
     if (glint_frame_allocate_ghost_data(f) != GLINT_OK ||
         (f->lens && glint_frame_allocate_dim_table(f) != GLINT_OK) ||
         glint_frame_allocate_lights(f, n_lamps) != GLINT_OK ||
@@ -378,7 +377,7 @@ bool glint_frame_limit_probing(struct glint_frame *f)
 }
 
 /* Returns whether dust causes more than half of COST, and coarser tables of
- * dust are available. */
+ * dust exist. */
 static bool is_cost_mostly_dust(const struct glint_frame *f,
                                 const struct glint_cost_plan *plan,
                                 const struct glint_cost *cost)

@@ -80,8 +80,7 @@ static void set_speck_bounding_square(struct glint_speck *s)
 void glint_dust_generate_specks(struct glint_dust *dust, double amount,
                                 int seed)
 {
-    /* A disc covers a fraction of the stop that is the square of the disc's
-     * radius. */
+    /* A disc of radius r covers r^2 of the stop. */
     const int n_lines = (int)ceil(fmin(8, 40 * amount));
     const int n_smudges = (int)ceil(fmin(4, 20 * amount));
     struct draw d = {(uint64_t)(uint32_t)seed * UINT64_C(0x9e3779b97f4a7c15)};

@@ -156,7 +156,7 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
         return status;
     if (h->n_ghosts > GLINT_MAX_GHOSTS) {
         snprintf(error->text, sizeof error->text,
-                 "model %s has too many ghosts: %lu", h->name,
+                 "model %s has %lu ghosts, more than glint can draw", h->name,
                  (unsigned long)h->n_ghosts);
         return GLINT_E_LENS;
     }

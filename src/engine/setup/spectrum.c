@@ -104,9 +104,8 @@ static double compute_wavelength_density(double nm)
                                               proportional to nm^-3. */
 }
 
-/* Places N wavelengths. The spectrum is divided into N ranges with equal
- * integrals of the density, and each wavelength divides the integral of its
- * range into halves. */
+/* Places N wavelengths: each at the median of one of N ranges of the spectrum
+ * with equal integrals of the density. */
 static void place_wavelengths(int n, double *wavelength_nm)
 {
     double sum = 0, passed = 0;

@@ -18,8 +18,8 @@ enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
                                              double airy_px);
 
 /* Sets RGB to the light of lines and halo at (X, Y), pixels from a light of
- * power 1, according to TABLES. The drawn light differs from it only by integer
- * rounding. */
+ * power 1, by TABLES. Only integer rounding distinguishes the drawn light from
+ * it. */
 void glint_star_evaluate_far_tables(const struct glint_star_tables *tables,
                                     double x, double y, double rgb[3]);
 

@@ -38,8 +38,8 @@ struct glint_psf {
     double rotation_deg;
     double soft; /* width of the soft edge of the stop, stop radii; 0: hard edge
                   */
-    int fans; /* 1: blades are round or have a soft edge, and diffract into fans
-                 (wide lines) */
+    int fans;    /* 1: blades are round or have a soft edge, and diffract light
+                    into fans instead of lines */
     double round;           /* curvature of blades with fans, 1 / stop radius */
     struct glint_arcs arcs; /* arcs of a stop with fans; the stop's rotation is
                                not included */
@@ -52,8 +52,8 @@ struct glint_psf {
     int n_lines, n_pair;
     double edge, area, perimeter; /* length of an edge, area and perimeter of
                                      the stop of radius 1 */
-    /* [edge]: unit normal of an edge, which points along its line of the
-     * starburst, y down */
+    /* [edge]: unit normal of an edge, along which the edge diffracts its line
+     * of light; y down */
     double normal[GLINT_MAX_BLADES][2];
     double width_px; /* distance from the middle of a line's profile to its
                         first zero at 550 nm, pixels */

@@ -43,9 +43,9 @@ static double compute_soft_edge_transmission(double soft, double depth)
     return in * in * (3 - 2 * in);
 }
 
-/* Sets AT[i] to the amplitudes in row J of cells of the stop: the real part is
- * g, with dirt, the imaginary part is o, without dirt. Row 0 has the lowest y.
- * Adds to the sums T. */
+/* Sets AT[i] to the amplitudes of light in row J of cells of the stop: real
+ * part g, with dirt; imaginary part o, without. Row 0 has the lowest y. Adds to
+ * the sums T. */
 static void set_amplitude_row(const struct glint_dirt *d, int j,
                               double (*at)[2], struct totals *t)
 {
@@ -80,8 +80,9 @@ static const double *get_transform_element(double (*at)[2], int i, int k)
     return at[(size_t)((i + N) % N) * N + (size_t)((k + N) % N)];
 }
 
-/* Returns D (smear.h) at element (I, K). It is computed from G and O, the
- * transforms of the real and of the imaginary part of AT. */
+/* Returns D, the change of the diffraction pattern by dirt (smear.h), at
+ * element (I, K), from the transforms G and O of the real and imaginary parts
+ * of AT. */
 static double compute_pattern_difference(double (*at)[2], int i, int k,
                                          const struct totals *t, double clear)
 {

@@ -48,8 +48,8 @@ static double compute_ring_step_px(int k)
     return exp2(k) * GLINT_STAR_SMEAR_PX / HALF;
 }
 
-/* Sets LIGHT to the light at all table nodes of ring K. Returns the max over
- * nodes and channels. */
+/* Sets LIGHT to the light at all table nodes of ring K, and returns its max
+ * over nodes and channels. */
 static double compute_ring_light(const struct glint_smear *smear,
                                  const struct glint_psf *psf, double airy_px,
                                  int k, double (*light)[3])

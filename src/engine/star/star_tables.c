@@ -246,12 +246,11 @@ static void set_profile_sizes(struct glint_star_tables *t,
     t->inner_q8 = (int32_t)lrint(256 * fmax(2, psf->airy_px));
 }
 
-/* min fraction of the clear stop's pattern in the tables; 0 has no logarithm */
+/* min fraction of lines and halo that dirt leaves; 0 has no logarithm */
 static const double least_clear = 1e-6;
 
-/* Adds dirt to the tables of the clear stop. Scales lines and halo by the
- * fraction of their light that remains with dirt, and makes the table of
- * SMEAR. */
+/* Adds dirt to the tables of the clear stop: scales lines and halo by the
+ * fraction of light that dirt leaves, and makes the table of SMEAR. */
 static enum glint_status make_dirt_smear_table(struct glint_star_tables *t,
                                                const struct glint_psf *psf,
                                                const struct glint_smear *smear,

@@ -59,10 +59,10 @@ static inline fast convert_area_to_sum_units(const struct run *r,
     return (area_q16 + (1 << less >> 1)) >> less;
 }
 
-/* Adds a piece of an edge that lies in one row and spans several pixels. It
- * runs from x = A to B (A <= B) and is HEIGHT high. From pixel to pixel the
- * covered area rises from 0 to HEIGHT. Each pixel of the tile gets the increase
- * from the pixel on its left. */
+/* Adds a piece of an edge that lies in one row, runs over several pixels from x
+ * = A to B (A <= B) and is HEIGHT high. The covered area rises from 0 to HEIGHT
+ * from left to right, and each pixel of the tile gets the increase from the
+ * pixel on its left. */
 static void add_piece_over_many_pixels(const struct run *r, enum mode mode,
                                        int64_t a_q40, int64_t b_q40,
                                        fast height_q16)
@@ -421,9 +421,9 @@ static int64_t add_patch_light(const struct glint_edge_sums *s, enum mode mode,
 }
 
 /* Adds the edges to the wide or narrow sums, by MODE. Returns an upper bound on
- * the distance of a running sum from its start: the sum of the magnitudes of
- * all changes of light, max over the channels. In mode NARROW it stops as soon
- * as sums could overflow. */
+ * the change of a running sum along a row: the sum of the magnitudes of all
+ * changes of light, max over the channels. In mode NARROW stops as soon as sums
+ * could overflow. */
 static WHOLLY_INLINE int64_t add_edges_to_sums(
     const struct glint_edge_sums *s, enum mode mode,
     const struct glint_edge *edge, const struct glint_bundle *bundle,
@@ -486,8 +486,8 @@ void glint_edges_add_to_sums(struct glint_edge_sums *sums,
                              const int32_t *ref, int n_refs)
 {
     const int64_t most = MOST_NARROW * 256;
-    int64_t far = 0; /* upper bound on the distance of a running sum (light
-                        times area) from its start, in the units of the sums */
+    int64_t far = 0; /* upper bound on the change of a running sum (light times
+                        area) along a row, in the units of the sums */
 
     sums->in_narrow = 0;
     if (!sums->linear)

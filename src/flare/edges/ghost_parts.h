@@ -28,7 +28,7 @@ struct glint_ghost_cell {
     struct glint_outside at[4];
 };
 
-/* Returns node (I, J) of the grid; row J must be one of the two stored rows. */
+/* Returns node (I, J) of the grid; J must be one of the two stored rows. */
 static inline const struct glint_vertex *
 get_ghost_node(const struct glint_ghost_edges *g, int i, int j)
 {
