@@ -40,12 +40,11 @@ struct glint_ground {
     uint8_t rgb[GLINT_GROUND_ROWS][GLINT_GROUND_COLUMNS][3];
 };
 
-/* few, many: added light divided by the min visible light, as reached by one
- * pixel in GLINT_SEEN_FEW, or by one in GLINT_SEEN_MANY, with a resolution of
- * an eighth of a stop. Both are 0 if fewer pixels have light. So a flare scaled
- * by 1 / few is just visible in few pixels. white: added light divided by the
- * light that turns all channels white, as reached by one pixel in
- * GLINT_SEEN_DISC on bright ground. */
+/* few, many: (added light / min visible light) that one pixel in
+ * GLINT_SEEN_FEW, or one in GLINT_SEEN_MANY, reaches, to an eighth of a stop; 0
+ * if fewer pixels have light. So a flare scaled by 1 / few is just visible in
+ * few pixels. white: (added light / light that turns all channels white) that
+ * one pixel in GLINT_SEEN_DISC on bright ground reaches. */
 struct glint_seen {
     double few, many, white;
 };

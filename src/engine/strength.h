@@ -114,8 +114,8 @@ void glint_strength_correct_exposure(struct glint_strength *strength,
                                      const struct glint_response_light *drawn,
                                      const struct glint_seen *seen);
 
-/* Corrects the exposure of a still picture. Draws the flare of its N LAMPS with
- * the lens of FRAME, at reduced size and scale 1, measures it, and calls
+/* Draws the flare of the N LAMPS of a still picture with the lens of FRAME, at
+ * reduced size and scale 1, measures it, and calls
  * glint_strength_correct_exposure(). WHITE: linear light of the picture's
  * white. GROUND: the picture under the flare, or NULL. On GLINT_E_MEMORY
  * nothing has changed. */

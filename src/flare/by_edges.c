@@ -128,9 +128,9 @@ static int64_t compute_bundle_flux(const struct glint_bundle *b)
 
 /* Returns the max light that one cell of a ray grid may add to a pixel, 1 =
  * display white, so that sums do not overflow. Sums of _q36 in colours up to 4
- * stay below 2^63 as long as no pixel gets more than 2^24. A cell cannot add
- * more than its flux to a pixel. If the flux of all ray bundles reaches 2^24,
- * each cell is limited to 2^23 / number of cells. */
+ * stay below 2^63 if no pixel gets more than 2^24. A cell cannot add more than
+ * its flux, so only if the flux of all ray bundles reaches 2^24, each cell is
+ * limited to 2^23 / number of cells. */
 static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;

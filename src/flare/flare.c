@@ -259,8 +259,7 @@ static void plan_ghost_and_light_job(void *ctx, int job, int worker)
 /* Removes invisible ghosts among the first N ray bundles by setting n_cells to
  * 0. A sum of light may be visible although no single peak is, so the peaks of
  * a ghost in one wavelength are summed over all lights, and the wavelength is
- * removed for all lights or for none. As sums are integers, their order does
- * not matter. */
+ * removed for all lights or for none. */
 static void remove_invisible_ghosts(struct glint_flare *f, int n)
 {
     const struct glint_flare_frame *r = f->plan.frame;

@@ -64,10 +64,10 @@ static int64_t compute_stop_radius(const struct glint_probe *s)
 }
 
 /* Like compute_output_curvature(), for the outline of a stop whose sides have
- * the curvature ROUND. A round stop cuts a ghost where (1 + r^2) / 2 is 1, like
- * a barrel aperture. At r = 1 this function changes as fast as the stop
- * position s, and its second difference is the square of the first difference
- * of s. */
+ * the curvature ROUND. A round stop cuts a ghost where (1 + r^2) / 2 is 1, with
+ * r in stop radii. There this function changes as fast as the position in the
+ * stop, and its second difference is the squared first difference of that
+ * position. */
 static int64_t compute_round_stop_curvature(const struct glint_probe *s,
                                             int32_t round_q16)
 {

@@ -287,9 +287,7 @@ static int are_spots_equal(const struct glint_spot *a,
 
 /* Returns whether spots A and B of one lamp differ in flux by more than a
  * quarter of the larger flux. Then lamps have merged or separated, or an object
- * covers part of the lamp.
- *
- */
+ * covers part of the lamp. */
 static int has_lamp_shape_changed(const struct glint_spot *a,
                                   const struct glint_spot *b)
 {

@@ -307,10 +307,9 @@ static int64_t sum_weighted_features_q26(const int16_t weight_q10[FEATURES + 1],
 
 /* Returns log2 of the core's light / white, -6 .. 14: a linear term plus a
  * perceptron with one layer of rectified units. The units model interactions of
- * features: a halo has another cause around a core of three pixels than around
- * one of a hundred, and on a uniform background than among windows. A unit is
- * below 2^32 in _q16, its product with a weight below 2^47; there are six
- * units. */
+ * features: the cause of a halo depends on the size of the core and on the
+ * background. A unit is below 2^32 in _q16, its product with a weight below
+ * 2^47; there are six units. */
 static int32_t predict_core_log2_q16(const int32_t feature_q16[FEATURES])
 {
     int64_t sum_q26 = sum_weighted_features_q26(linear_q10, feature_q16);

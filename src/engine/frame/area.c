@@ -113,11 +113,9 @@ int glint_area_plan(struct glint_area *area, const struct glint_lamp *lamp,
 }
 
 /* Returns the distance between neighbouring sample points of AREA, as a
- * tangent. The distance is the size of the area that one point represents. For
- * a long ellipse (a tube lamp) it is at most twice that of a circle of equal
- * area; otherwise each ghost of seven points would be as wide as the tube is
- * long. From one to four points it grows from 0, so that it changes
- * continuously. */
+ * tangent. For a long ellipse (a tube lamp) it is at most twice that in a
+ * circle of equal area; otherwise each ghost of seven points would be as wide
+ * as the tube is long. From one to four points it grows continuously from 0. */
 double glint_area_apart(const struct glint_area *area)
 {
     const double major = 2 * area->lamp.axis[0];

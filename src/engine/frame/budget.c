@@ -264,10 +264,10 @@ bool glint_budget_choose_quality_parameters(struct glint_budget *b,
 }
 
 /* Corrects later predictions by the fraction LEARNING of the last prediction's
- * error, in octaves. MS is the measured time of the frame. Neighbouring quality
- * levels are corrected, too. A large error corrects all levels, as the machine
- * may have become slower. Corrections of other levels decay, so that one slow
- * frame does not exclude a quality forever. */
+ * error, in octaves; MS is the measured time. Neighbouring quality levels are
+ * corrected, too, and all levels if the error is large, as the machine may have
+ * become slower. Corrections of other levels decay, so that one slow frame does
+ * not exclude a quality forever. */
 void glint_budget_learn_from_frame(struct glint_budget *b, double ms)
 {
     const double at = convert_quality_step_to_level(b->step);

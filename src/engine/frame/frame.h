@@ -288,11 +288,11 @@ void glint_frame_set_area_sampling(struct glint_frame *frame, bool is_still,
 void glint_frame_apply_config(struct glint_frame *frame);
 
 /* Draws the flare of LAMPS without a picture: sets RGB, [height][width][3], to
- * the flare's linear light times GAIN. Internally, light is scaled by a power
- * of two, as large as the brightest pixel allows, so that faint light has a
- * fine resolution. The frame is drawn again with another scale if the brightest
- * pixel is two octaves below the limit, or clamped. It is drawn at most four
- * times. Returns GLINT_E_MEMORY on failure. */
+ * the flare's linear light times GAIN. To resolve faint light finely, light is
+ * scaled by the largest power of two that the brightest pixel allows. If that
+ * pixel is clamped, or two octaves below the limit, the frame is drawn again
+ * with another scale, at most four times in total. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status glint_frame_draw_flare_alone(
     struct glint_frame *frame, const struct glint_lamp *lamps, int n_lamps,
     double gain, float *rgb, struct glint_engine_report *report);

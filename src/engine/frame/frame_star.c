@@ -26,10 +26,8 @@ static const double least_px = 1.5;
  * starbursts in real photographs. The smaller limit applies. clipped_times: max
  * power / power estimated from clipped pixels. white_share: max power / power
  * at which the mean of the starburst is white at the rim of the lamp's image.
- * Far from a lamp, the light of its starburst summed over a circle around it,
- * times the square of the radius, is 0.22 times power, wavelength and f-number,
- * whatever the blades. For 10 lamps in two photographs by night, at f/22, the
- * power computed from this is 7 to 166 times the power estimated from clipped
+ * For 10 lamps in two night photographs at f/22, the power computed from the
+ * light of the starburst is 7 to 166 times the power estimated from clipped
  * pixels, and 0.37 to 3.4 times (median 0.5) the power that is white at the rim
  * (tests/figures/stars.md). */
 static const double clipped_times = 32, white_share = 0.5;
@@ -205,14 +203,14 @@ static double estimate_unclipped_power(const struct glint_frame *f,
 
 /* Returns the radius, pixels, of the disc of a lamp. SEEN: its white spot in
  * the picture; FOUND: light found; POWER: estimated true power; OWN_PX: radius
- * that the finder assigns to the lamp. If FOUND is much brighter than the white
- * spot, the soft rim of the spot is glare of a small lamp, and the radius is
- * OWN_PX. If not, the rim is lit haze, and the radius is nearly that of the
- * spot. Between these cases both radii are blended. Even a point light has a
- * white spot. Its radius is least_px plus the radius at which the mean of its
- * starburst over a circle is white. The square of this sum is subtracted from
- * the square of the spot's radius. The result is at least hidden_px, so that
- * lamps of videos are as wide as those of still pictures. */
+ * by the lamp finder. If FOUND is much brighter than the white spot, the rim of
+ * the spot is glare of a small lamp of radius OWN_PX. If not, the rim is lit
+ * haze, and the lamp nearly as large as the spot. Between these cases both
+ * radii are blended. The white spot of a point light has a radius of least_px
+ * plus that at which the mean of the starburst over a circle is white; the
+ * square of this sum is subtracted from that of the spot's radius. The result
+ * is at least hidden_px, so that lamps of videos are as wide as those of still
+ * pictures. */
 static double compute_lamp_disc_radius(const struct glint_frame *f,
                                        const struct seen *seen, double found,
                                        double power, double own_px)

@@ -46,11 +46,10 @@ static bool find_chief_ray(const struct glint_lens *lens, int ghost,
     return true;
 }
 
-/* Returns the distance of the entrance pupil from the front vertex, mm. It is
- * computed from the polynomials of a ghost that is reflected only behind the
- * stop. The rays of such a ghost reach the stop as direct light does, so that
- * on the axis a stop radius corresponds to a radius of the entrance pupil. Such
- * ghosts come last in a model. */
+/* Returns the distance of the entrance pupil from the front vertex, mm, by the
+ * polynomials of a ghost that is reflected only behind the stop: its rays reach
+ * the stop as direct light does, so that on the axis a stop radius corresponds
+ * to a radius of the entrance pupil. Such ghosts come last in a model. */
 static double compute_pupil_z_from_model(const struct glint_setup *setup,
                                          const struct glint_lens *lens)
 {

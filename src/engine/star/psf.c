@@ -262,11 +262,10 @@ static enum glint_status make_near_table(struct glint_psf *p)
 /* min curvature of the arcs for which fans are computed, 1 / stop radius */
 static const double least_round = 0.02;
 
-/* Blades with less curvature and less softness than these are treated as
- * straight and hard, as their fans would be narrower than lines everywhere in a
- * picture. Blades with more curvature than circle_round are treated as a
- * circle. For curvatures just below circle_round, fans are blended into the
- * circle. */
+/* Blades with less curvature and softness than these are treated as straight
+ * and hard, as their fans would be narrower than lines everywhere in a picture.
+ * Blades with more curvature than circle_round are treated as a circle, into
+ * which the fans of lower curvatures are blended. */
 static const double straight_round = 0.01, straight_soft = 0.002;
 static const double circle_round = 0.98;
 

@@ -125,11 +125,10 @@ static void make_line_tables(struct glint_star_tables *t,
 
 /* -------------------------------------------------------------------- halo */
 
-/* Adds to RGB the light of fans at R pixels from a lamp of radius RADIUS. The
- * point is V pixels and the angle OFF from a line. The light is the mean over
- * chords of the lamp's disc. Point lights are blurred slightly, too, as a fan
- * may be thinner than a pixel, and its sides steeper than the table's columns
- * resolve. */
+/* Adds to RGB the light of fans at R pixels from a lamp of radius RADIUS, and
+ * at V pixels and the angle OFF from a line, as the mean over chords of the
+ * lamp's disc. Point lights are blurred slightly, too, as a fan may be thinner
+ * than a pixel, and its sides steeper than the table's columns resolve. */
 static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
                              double v, double radius, double rgb[3])
 {

@@ -48,8 +48,8 @@ static int64_t evaluate_round_stop_q16(const struct glint_stop *stop,
 /* Returns a mask with a bit for each straight side of the stop: 1 if V lies on
  * that side or outside. LEAST is the apothem minus half a unit of _q16,
  * because glint_side_compute_signed_distance_q16() rounds. HALF is the number
- * of pairs of parallel sides, which are tested together. If HALF is 0, sides
- * are tested one by one. */
+ * of pairs of parallel sides, which are tested together; 0: sides are tested
+ * one by one. */
 static inline uint64_t find_outside_sides(const struct glint_stop *stop,
                                           int half,
                                           const struct glint_vertex *v,
