@@ -96,10 +96,10 @@ expose_by_drawing_flare(struct glint_engine *e, int n,
     return status;
 }
 
-/* Returns the light of LAMP that is missing in the picture because it was
- * clipped (glint_lamp_compute_excess_light()), in white times pixels, without
- * occlusion. In a video it is smoothed over a third of a second, as the
- * estimate for a clipped lamp may jump from picture to picture. */
+/* Returns the light of LAMP that clipping removed from the picture, in white
+ * times pixels, as if no object occluded the lamp. In a video it is smoothed
+ * over a third of a second, as the estimate for a clipped lamp may jump from
+ * picture to picture. */
 static double compute_smoothed_excess(const struct glint_engine_exposing *x,
                                       const struct glint_engine_lamp *lamp,
                                       double white, int32_t elapsed_us)

@@ -8,7 +8,8 @@
 #include "engine/frame/frame.h"
 #include "glint/explain.h"
 
-/* Like glint_explain_open(), for the last picture that FRAME drew. UNIT:
+/* Like glint_explain_open(), collects statistics of the last picture that FRAME
+ * drew. UNIT:
  * light in the report / light in the frame. */
 enum glint_status glint_explain_open_for_frame(struct glint_explain *explain,
                                                struct glint_frame *frame,

@@ -50,8 +50,8 @@ struct glint_dim_method {
     int (*unmerged_fraction_q8)(const struct glint_flare_frame *frame,
                                 const struct glint_light *light, int i,
                                 int ghost);
-    /* Pointers to glint_dim_compute_own_rays_fraction_q8() and
-     * glint_dim_compute_wave_ratio_q16(). */
+    /* glint_dim_compute_own_rays_fraction_q8() and
+     * glint_dim_compute_wave_ratio_q16(), see below. */
     int (*own_rays_q8)(const struct glint_flare_frame *frame,
                        const struct glint_light *light, int ghost);
     int64_t (*wave_ratio_q16)(const struct glint_flare_frame *frame,

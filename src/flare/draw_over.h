@@ -15,9 +15,9 @@ struct glint_flare_under {
     struct glint_blend_rows *rows; /* [number of workers of the flare] */
 };
 
-/* Like glint_flare_draw(), but draws the passes of UNDER behind the flare. The
- * passes get the tiles of the flare. At half resolution each pixel of a tile
- * covers 2 x 2 pixels of the picture. */
+/* Draws FLARE onto IMAGE like glint_flare_draw(), with the passes of UNDER
+ * behind it. The passes get the tiles of the flare. At half resolution each
+ * pixel of a tile covers 2 x 2 pixels of the picture. */
 void glint_flare_draw_over_passes(struct glint_flare *flare,
                                   const struct glint_image *image,
                                   const struct glint_flare_under *under);

@@ -251,8 +251,8 @@ static int compute_merge_cost_log2(const struct glint_light *a,
 struct rule {
     uint64_t near2_q60; /* max squared distance of two lights that are merged;
                            0: COST is the condition */
-    int cost; /* max compute_merge_cost_log2() of two lights that are merged;
-                 used if near2_q60 is 0 */
+    int cost; /* max log2 of the squared cost of merging two lights; used if
+                 near2_q60 is 0 */
     int most; /* number of lights at which merging stops */
 };
 

@@ -37,7 +37,8 @@ struct glint_bundle_plan {
     /* rectangle of the pupil's bounding box that the stop transmits */
     struct glint_box_window window;
     /* mean height of the straight lines between grid rays above the function (1
-     * + r^2) / 2, for barrel aperture 0, barrel 1 and a round stop */
+     * + r^2) / 2, r in aperture radii, for barrel apertures 0 and 1 and a round
+     * stop */
     uint16_t sag_q16[3];
     /* flux of the ray bundle if all its rays had the max energy of the probed
      * rays, display white times pixels */

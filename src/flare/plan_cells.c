@@ -63,11 +63,11 @@ static int64_t compute_stop_radius(const struct glint_probe *s)
     return radius > 0 ? radius : 1;
 }
 
-/* Like compute_output_curvature(), for the outline of a stop whose sides have
- * the curvature ROUND. A round stop cuts a ghost where (1 + r^2) / 2 is 1, with
- * r in stop radii. There this function changes as fast as the position in the
- * stop, and its second difference is the squared first difference of that
- * position. */
+/* Returns the curvature, as a distance on the sensor, of the outline of a stop
+ * whose sides have the curvature ROUND. A round stop cuts a ghost where (1 +
+ * r^2) / 2 is 1, with r in stop radii. There this function changes as fast as
+ * the position in the stop, and its second difference is the squared first
+ * difference of that position. */
 static int64_t compute_round_stop_curvature(const struct glint_probe *s,
                                             int32_t round_q16)
 {
@@ -208,9 +208,9 @@ static int64_t sum_mean_second_differences(const struct glint_probe *s, int k)
     return sum;
 }
 
-/* Like sum_mean_second_differences(), for the function (1 + r^2) / 2 of a round
- * stop. In each direction, its second difference is the squared change of the
- * stop position, in stop radii. */
+/* Returns the mean second difference of the function (1 + r^2) / 2 of a round
+ * stop across the pupil box plus that down the box. In each direction it is the
+ * squared change of the stop position, in stop radii. */
 static int64_t sum_round_stop_differences_q16(const struct glint_probe *s)
 {
     const struct glint_real change =

@@ -110,8 +110,8 @@ static void classify_node_by_stop(struct glint_window_nodes *n, int i, int j)
 }
 
 /* Sets a bit in n->beyond of each node for each barrel aperture outside of
- * which the node certainly lies: by more than
- * compute_quarter_second_difference(). */
+ * which the node certainly lies: by more than the outputs deviate from straight
+ * lines between nodes. */
 static void classify_nodes_by_barrels(struct glint_window_nodes *n,
                                       const struct glint_transfer *t)
 {

@@ -25,8 +25,9 @@ struct glint_cover_rows {
 };
 
 /* Hides the fraction COVER of each pixel of a run, then adds LIGHT unless
- * LIGHT is NULL. X, Y, N_X and N_Y have the meaning and limits of
- * glint_resolve_add_to_run(). */
+ * LIGHT is NULL. The run and its limits are those of
+ * glint_resolve_add_to_run(): pixels X .. X + N_X - 1 of rows Y .. Y + N_Y -
+ * 1. */
 void glint_hide_background_of_run(const struct glint_resolve *resolve,
                                   const struct glint_image *image, int x, int y,
                                   int n_x, int n_y,

@@ -56,7 +56,7 @@ void glint_ycc_init(struct glint_ycc *ycc, enum glint_matrix matrix,
                     enum glint_range range);
 
 /* Sets RGB to R', G', B' of the 8-bit codes Y, CB and CR. The result is not
- * clamped; its range is -290 .. 550 codes. */
+ * clamped; its range is -293 .. 551 codes, reached with BT.2020. */
 static inline void convert_ycc_to_rgb(const struct glint_ycc *ycc, int y,
                                       int cb, int cr, int32_t rgb_q7[3])
 {

@@ -12,8 +12,7 @@
 #include "image/codes.h"
 #include "image/curve.h"
 
-/* Range of the codes R', G', B' before clamping: codes Y, Cb and Cr convert to
- * -296 .. 559; see convert_ycc_to_rgb(). */
+/* Range of codes of a table. R', G', B' before clamping are -293 .. 551. */
 enum { GLINT_LIGHT_BELOW = 296, GLINT_LIGHT_CODES = GLINT_LIGHT_BELOW + 560 };
 
 /* A table from codes to linear light, also for codes outside 0 .. 255. Entry I
@@ -42,8 +41,8 @@ void glint_light_sum_init(struct glint_light_sum *sum,
                           const struct glint_image *image,
                           const struct glint_light_curve *curve);
 
-/* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1. The limits are those
- * of glint_codes_read_pixels(). Linear pictures and pictures with separate R,
+/* Reads pixels X .. X + N_X - 1 of rows Y .. Y + N_Y - 1. X must be even; if
+ * N_Y is 2, Y must be even, too. Linear pictures and pictures with separate R,
  * G, B samples are not copied to CODES; glint_light_sum_add_row() reads them
  * directly. */
 void glint_light_sum_read_pixels(struct glint_light_sum *sum,

@@ -107,8 +107,7 @@ void glint_bright_read_pixel_light(const struct glint_bright *b, int x,
 int32_t glint_bright_compute_code_step_q20(const struct glint_bright *b, int c,
                                            int32_t light_q20);
 
-/* Makes Y the row that glint_bright_read_pixel_light() reads, without scanning
- * it. */
+/* Selects row Y, without scanning it, for glint_bright_read_pixel_light(). */
 void glint_bright_select_row(struct glint_bright *b, int y);
 
 #endif

@@ -248,8 +248,9 @@ static WHOLLY_INLINE int can_pixel_be_bright(const struct glint_bright *b,
            b->low_sum_q16;
 }
 
-/* Returns whether a block of YUYV or UYVY can have bright pixels. HALF:
- * extremes of its bytes from find_byte_max_and_inverted_min(). */
+/* Returns whether a block of YUYV or UYVY can have bright pixels. HALF[i], i
+ * below 8, is the max of its bytes whose index modulo 8 is i, HALF[8 + i] the
+ * max of 255 minus these. */
 static int can_packed_block_be_bright(const struct glint_bright *b,
                                       const uint8_t half[16])
 {
@@ -566,8 +567,8 @@ static NEVER_INLINE int find_max_of_next_3_bytes(const uint8_t *p,
     return greatest;
 }
 
-/* Like compute_rgb_brightness_range(), for the complete block that begins at
- * pixel X, in a format with three bytes per pixel. */
+/* Sets the brightness of the complete block that begins at pixel X, in a format
+ * with three bytes per pixel; returns the max. */
 static int compute_rgb24_block_brightness(struct glint_bright *b, int x)
 {
     const ptrdiff_t at = (ptrdiff_t)3 * x - b->layout->sample[0].offset;

@@ -48,11 +48,13 @@ struct glint_profile_channel {
     int32_t black_q20, scale_q16; /* black_q20: light of the background, linear;
                                      scale_q16: 1 / (1 - background), at most 16
                                      */
-    int32_t spread_q16;           /* spread of the background's light, in u */
+    int32_t spread_q16;           /* spread of the background's light, in the
+                                     unit of u: white minus background */
     int32_t step_q16; /* difference of u to the next higher code at the
                          background if codes have fewer than 8 bits, else 0 */
-    /* [k]: number of pixels whose u is 2^-k or more, where pixels below 2^(1 -
-     * k) count as fractions; [0]: number of clipped pixels */
+    /* [k]: number of pixels whose u, the light above the background, is 2^-k or
+     * more, where pixels below 2^(1 - k) count as fractions; [0]: number of
+     * clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
     /* [k]: number of pixels whose u is 2^-k or more and below 2^(1 - k); [0]:
      * number of pixels whose u is 1 or more */

@@ -89,10 +89,10 @@ static WHOLLY_INLINE void compute_chroma_terms(const struct glint_ycc *ycc,
         chroma_q16[i] = cb * m_q16[i][1] + cr * m_q16[i][2] + (1 << 8);
 }
 
-/* Sets RGB to the linear light of a pixel of luma Y; compute_chroma_terms()
- * returns CHROMA. The result equals curve_decode_to_light() of
- * convert_ycc_to_rgb(). The first column of the matrix has the same value in
- * all rows. */
+/* Sets RGB to the linear light of a pixel of luma Y; CHROMA has the terms of
+ * compute_chroma_terms(). The result equals that of convert_ycc_to_rgb() and
+ * curve_decode_to_light(), as the first column of the matrix has the same value
+ * in all rows. */
 static WHOLLY_INLINE void decode_ycc_to_linear(const struct glint_bright *b,
                                                int y,
                                                const int32_t chroma_q16[3],

@@ -32,7 +32,7 @@ typedef void glint_star_part_fn(const struct glint_star *star,
 glint_star_part_fn glint_star_add_smear_row;
 
 struct glint_star_smear {
-    glint_star_part_fn *part; /* glint_star_add_smear_row() */
+    glint_star_part_fn *part; /* draws the smear: glint_star_add_smear_row() */
     /* for each square, light per unit of the table */
     struct glint_real step[GLINT_STAR_SMEAR_RINGS];
     /* Table values, [square][row][column][channel], rows for y >= 0 only. The

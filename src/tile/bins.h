@@ -46,8 +46,8 @@ void glint_bins_convert_counts_to_starts(struct glint_bins *bins);
  * order in which items are appended. */
 void glint_bins_put_item(struct glint_bins *bins, struct glint_box box,
                          int32_t item);
-/* Resets the start indices, which glint_bins_put_item() advanced, to the
- * beginnings of the lists. */
+/* Resets the start indices, which adding items advanced, to the beginnings of
+ * the lists. */
 void glint_bins_reset_starts(struct glint_bins *bins);
 
 /* Returns the pixels of tile TILE. */

@@ -109,8 +109,8 @@ struct glint_blend {
                             const struct glint_pass_rows *rows,
                             enum glint_given given, int n_x,
                             struct glint_blend_rows *scratch);
-    /* Hides the fraction COVER of the picture, then adds the light as
-     * glint_resolve_add_to_run() does. */
+    /* Hides the fraction COVER of the picture, then adds light, in the run of
+     * pixels from (X, Y). */
     void (*stretch)(const struct glint_resolve *resolve,
                     const struct glint_image *image, int x, int y, int n_x,
                     int n_y, const struct glint_cover_rows *cover,

@@ -84,7 +84,7 @@ glint_veil_front_fn glint_veil_add_front_row;
  * light that dirt covers. A program links the drawing code only if it refers to
  * glint_veil_add_front_row. */
 struct glint_veil_front {
-    glint_veil_front_fn *row; /* glint_veil_add_front_row() */
+    glint_veil_front_fn *row; /* draws: glint_veil_add_front_row() */
     int n_x, n_y;             /* GLINT_VEIL_FRONT_NODES() of width and height */
     /* Cover / max cover, [n_y][n_x], at the top left corner of every fourth
      * pixel in every fourth row. Must stay valid while the veil is drawn. */

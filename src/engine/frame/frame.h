@@ -264,7 +264,8 @@ enum glint_status glint_frame_draw(struct glint_frame *frame,
                                    const struct glint_image *image,
                                    struct glint_engine_report *report);
 
-/* Returns the last plan of FRAME as input of glint_cost_of(). */
+/* Returns the last plan of FRAME as input of the cost model
+ * (glint_cost_of()). */
 struct glint_cost_plan
 glint_frame_make_cost_plan(const struct glint_frame *frame);
 

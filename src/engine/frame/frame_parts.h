@@ -86,8 +86,8 @@ int glint_frame_count_ghosts(struct glint_frame *frame, int n);
 bool glint_frame_fit_capacity(struct glint_frame *frame,
                               const struct glint_flare_stats *stats);
 
-/* Returns the number of bytes that the frame used, as glint_flare_bytes()
- * counts them. */
+/* Returns the number of bytes that the frame used, by glint_flare_bytes(), the
+ * size of a flare's memory. */
 size_t glint_frame_count_used_bytes(const struct glint_frame *frame,
                                     const struct glint_flare_stats *stats);
 

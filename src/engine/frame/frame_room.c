@@ -80,10 +80,10 @@ make_config_with_needed_capacity(const struct glint_frame *f,
     return needed;
 }
 
-/* Returns the bytes that the configuration of
- * make_config_with_needed_capacity() needs with one worker and UNEVEN times the
- * edges, so that the result does not depend on the number of workers. FIXED
- * receives how many of these bytes do not depend on the fineness of grids. */
+/* Returns the bytes that the capacities for S need with one worker and UNEVEN
+ * times the edges, so that the result does not depend on the number of workers.
+ * FIXED receives how many of these bytes do not depend on the fineness of
+ * grids. */
 static double estimate_flare_bytes(const struct glint_frame *f,
                                    const struct glint_flare_stats *s,
                                    double *fixed)

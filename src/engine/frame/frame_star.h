@@ -17,9 +17,10 @@ struct glint_frame_star {
     /* factor on the brightness of starbursts, in addition to the frame's scale;
      * 0: no starburst */
     double share;
-    /* is_bare applies to lamps that are not in frame->known. Those that are
-     * have seen_px instead: above 0, the lamp's power is an estimate that may
-     * be raised for the starburst; below 0, the lamp's core is drawn. */
+    /* is_bare applies to lamps that are not in frame->known. Lamps in
+     * frame->known have seen_px instead: above 0, the lamp's power is an
+     * estimate that may be raised for the starburst; below 0, the lamp's core
+     * is drawn. */
     bool is_bare;  /* true: the picture does not show the lamps, so the bright
                       cores of their starbursts are drawn, too */
     bool is_alone; /* true: the starburst is drawn without ghosts */

@@ -9,8 +9,8 @@
 #include "engine/frame/frame_parts.h"
 
 /* The kernel of veiling glare, a sum of Gaussians. Half of the glare is uniform
- * over the picture, like light that barrel and camera body scatter. Sigmas are
- * fractions of the picture's diagonal; a sigma of 0 means uniform. */
+ * over the picture, like light that lens barrel and camera body scatter. Sigmas
+ * are fractions of the picture's diagonal; a sigma of 0 means uniform. */
 static const struct {
     double sigma, share;
 } glare[] = {{0.08, 0.25}, {0.25, 0.25}, {0, 0.5}};

@@ -37,8 +37,8 @@ void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
 double glint_arcs_compute_pattern(const struct glint_arcs *arcs, double qx,
                                   double qy);
 
-/* Like glint_arcs_compute_pattern(), for q far from the centre. Omits the
- * interference fringes between different arcs. */
+/* Returns the same as glint_arcs_compute_pattern(), without the interference
+ * fringes between different arcs, for frequencies far from the centre. */
 double glint_arcs_compute_far_pattern(const struct glint_arcs *arcs, double qx,
                                       double qy);
 

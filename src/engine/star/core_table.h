@@ -10,8 +10,8 @@
 #include "star/starburst.h"
 
 /* Sets the core table of TABLES. All other members of TABLES must be set.
- * SMEAR: diffraction by dirt in the stop, or NULL; AIRY_PX as in
- * glint_smear_compute_light(). Returns GLINT_E_MEMORY on failure. */
+ * SMEAR: diffraction by dirt in the stop, or NULL; AIRY_PX: 550 nm times the
+ * f-number, pixels. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_star_make_core_table(struct glint_star_tables *tables,
                                              const struct glint_psf *psf,
                                              const struct glint_smear *smear,

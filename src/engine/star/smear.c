@@ -12,8 +12,8 @@ enum { N = GLINT_SMEAR_SIDE, HALF = N / 2 };
 static const double cell = (double)GLINT_SMEAR_SPAN / N;
 
 /* step_q: distance between neighbouring elements of the transform, cycles per
- * stop radius. edge_q: frequency from which D is extrapolated, cycles per stop
- * radius. */
+ * stop radius. edge_q: frequency from which the change D of the pattern is
+ * extrapolated, cycles per stop radius. */
 static const double step_q = 1.0 / GLINT_SMEAR_SPAN, edge_q = 112;
 
 /* Sums over the cells that sample a stop. */

@@ -53,13 +53,14 @@ static inline size_t glint_smear_count_bytes(const struct glint_smear *smear)
                       : 0;
 }
 
-/* Returns the mean of D over a square of half width HALF around (QX, QY), in
- * cycles per stop radius, x to the right, y up. */
+/* Returns the mean of D, the change of the pattern by dirt, over a square of
+ * half width HALF around (QX, QY), in cycles per stop radius, x to the right, y
+ * up. */
 double glint_smear_compute_mean(const struct glint_smear *smear, double qx,
                                 double qy, double half);
 
-/* Returns the integral of D over the frequencies up to Q cycles per stop
- * radius. */
+/* Returns the integral of D, the change of the pattern by dirt, over the
+ * frequencies up to Q cycles per stop radius. */
 double glint_smear_integrate_within(const struct glint_smear *smear, double q);
 
 /* Fourier-transforms N x N complex numbers in place, without normalisation. N

@@ -37,8 +37,7 @@ struct run {
                    linear pictures, 8 for all others */
     int x0, x1; /* the tile's columns */
     int64_t light;
-    int64_t rise_q32; /* increase of the covered area per pixel of x;
-                         compute_area_rise() returns it */
+    int64_t rise_q32; /* increase of the covered area per pixel of x */
 };
 
 static inline void add_light_change(const struct run *r, enum mode mode, int x,
@@ -207,8 +206,8 @@ static inline void add_complete_rows(struct run r, enum mode mode, int n,
     }
 }
 
-/* Like add_complete_rows(), for an edge that crosses only one or two pixels of
- * the tile in each row. */
+/* Adds N complete rows of an edge that crosses only one or two pixels of the
+ * tile in each row. */
 static inline void add_complete_rows_in_two_pixels(struct run r, enum mode mode,
                                                    int n, int64_t x_q40,
                                                    int64_t step_q40, int stride)
@@ -319,7 +318,8 @@ static inline void add_snapped_row(const struct run *r, enum mode mode,
         add_light_change(r, mode, 0, area);
 }
 
-/* Like add_snapped_row(), for N complete rows; the edge moves by STEP per row.
+/* Adds N complete rows of a pixel-snapped edge, which moves by STEP per row.
+ *
  */
 static inline void add_complete_snapped_rows(struct run r, enum mode mode,
                                              int n, int64_t x_q40,

@@ -25,7 +25,7 @@ enum {
 }; /* max number of nested outlines that draw a soft edge */
 
 struct glint_shade_method {
-    /* Converts a ray bundle to edges; called by glint_ghost_emit_edges(). */
+    /* Converts a ray bundle to edges. */
     void (*emit)(struct glint_ghost_edges *g);
     /* Applies dust and masks to a convex cell, whose area has the sign TURN.
      * CUTS: number of stop sides and barrel apertures that cross the cell.

@@ -27,8 +27,9 @@ int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
 }
 
 /* Sets VALUE[i] to the distance of corner AT[i], i below N, from side SIDE of
- * the stop, stop radii, positive inside. If sides are round, DISC[i] must be
- * glint_disc_evaluate_function_q16() of AT[i]. */
+ * the stop, stop radii, positive inside. For round sides, DISC[i] must be (1 -
+ * r^2) / 2 with r the distance of AT[i] from the stop's centre
+ * (glint_disc_evaluate_function_q16()). */
 static void compute_side_distances(const struct glint_stop *stop, int side,
                                    const struct glint_vertex *const *at, int n,
                                    const int64_t *disc, int64_t *value)

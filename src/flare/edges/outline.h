@@ -33,12 +33,12 @@ int64_t glint_disc_evaluate_function_q16(const struct glint_vertex *v);
 
 /* Returns the distance, in stop radii, of a point from the arc between two
  * corners of the stop: positive inside, negative outside. STRAIGHT is the
- * distance of the point from the straight line between the corners. DISC is
- * glint_disc_evaluate_function_q16() of the point. Let 1 / k be the radius of
- * the arc's circle, d the distance of the circle's centre behind the stop's
- * centre, n the normal of the side and v the point. As both corners have r = 1,
- * k^-2 - |v + d n|^2 is 2 d STRAIGHT + 1 - r^2. The result is that times k / 2,
- * which equals the distance where it is small. */
+ * distance of the point from the straight line between the corners. DISC is (1
+ * - r^2) / 2, where r is the distance of the point from the stop's centre. Let
+ * 1 / k be the radius of the arc's circle, d the distance of the circle's
+ * centre behind the stop's centre, n the normal of the side and v the point. As
+ * both corners have r = 1, k^-2 - |v + d n|^2 is 2 d STRAIGHT + 1 - r^2. The
+ * result is that times k / 2, which equals the distance where it is small. */
 int64_t glint_arc_compute_signed_distance_q16(const struct glint_stop *stop,
                                               int64_t straight_q16,
                                               int64_t disc_q16);

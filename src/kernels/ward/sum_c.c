@@ -62,8 +62,9 @@ static struct sample compute_lobe_sample(const struct glint_ward_lobe *lobe,
     return s;
 }
 
-/* Returns 2 - (n.o) / ((h.o) (h.n)), the weight of a sample in the bounded
- * norm (ward.h). */
+/* Returns 2 - (n.o) / ((h.o) (h.n)), the weight of a sample in the bounded norm
+ * (ward.h), for the half vector h, the normal n and the direction o to the
+ * eye. */
 static int32_t compute_bounded_weight_q12(int32_t ho_q14, int32_t hn_q14,
                                           int32_t no_q14)
 {
