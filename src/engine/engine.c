@@ -50,8 +50,8 @@ static bool are_reserved_members_zero(const struct glint_engine_config *c)
            UNSET(drawing.dials);
 }
 
-/* Returns a message with the name of a setting of C that is out of range.
- * Returns NULL if there is none. */
+/* Returns a message that names a setting of C that is out of range, or NULL if
+ * there is none. */
 static const char *check_engine_config(const struct glint_engine_config *c)
 {
     const struct glint_engine_light *l = &c->light;

@@ -16,8 +16,8 @@ static int64_t compute_root_mean_square(uint64_t sum, int n)
 }
 
 /* Returns the curvature of the map from the pupil to the outputs A and B, as a
- * distance on the sensor: the mean second difference of the outputs / their
- * mean first difference * the mean first difference of the sensor position. The
+ * distance on the sensor: (mean second difference of the outputs / their mean
+ * first difference) times the mean first difference of the sensor position. The
  * unit is that of the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_output_curvature(const struct glint_probe *s, int a,
                                         int b)

@@ -4,7 +4,8 @@
 #include "base/q.h"
 #include "base/real.h"
 
-/* Converts X to an integer in the unit of output KIND of T. */
+/* Converts X to an integer in the unit of output KIND (a position or a barrel
+ * value) of the polynomials T. */
 static int64_t convert_to_output_units(const struct glint_transfer *t, int kind,
                                        int64_t x_q46)
 {

@@ -48,7 +48,8 @@ struct glint_row_light {
     /* [width + 1]: x if the sum of column x is stored; otherwise the first
      * column of the run of equal pixels that contains x */
     uint16_t *from;
-    int end; /* column after the last stretch; -1: the row has no stretch yet */
+    int end; /* column after the last range of summed pixels (stretch); -1: none
+                yet */
 };
 
 void glint_row_light_allocate(struct glint_row_light *row,

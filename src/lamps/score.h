@@ -65,22 +65,22 @@ enum glint_evidence {
     EVIDENCE_SIZE,   /* log2 of region area / picture area, 0 or less */
     EVIDENCE_COLOUR, /* saturation of the colour, 256 for a single channel;
                         reduced for large regions */
-    EVIDENCE_DIM,   /* 5 stops minus log2 of (white of the level / median of the
-                       picture), at least 0; 0 if that white is not below
-                       clipping */
-    EVIDENCE_CLOSE, /* lower quartile of the contrast with the innermost
-                       ellipse, stops; high for lamps, which have steep edges */
-    EVIDENCE_WHITE, /* log2 of the region's mean luminance / its level's white,
-                       stops */
-    EVIDENCE_CROWD, /* log2 of the number of regions of the same level; low for
-                       lamps, which are few */
-    EVIDENCE_HIGH,  /* height of the centroid above the picture's lower edge;
-                       256 at the top */
+    EVIDENCE_DIM,    /* high for pictures that are grey overall: 5 stops minus
+                        log2 of (white level / median of the picture), at least
+                        0; 0 if white is where codes clip */
+    EVIDENCE_CLOSE,  /* lower quartile of the contrast with the innermost
+                        ellipse, stops; high for lamps, which have steep edges */
+    EVIDENCE_WHITE,  /* log2 of (mean luminance of the region / white of its
+                        brightness level), stops */
+    EVIDENCE_CROWD,  /* log2 of the number of regions of the same level; low for
+                        lamps, which are few */
+    EVIDENCE_HIGH,   /* height of the centroid above the picture's lower edge;
+                        256 at the top */
     /* EVIDENCE_HALO of a large region (the sun or a lampshade); 0 for a small
      * region. */
     EVIDENCE_WIDE_HALO,
-    EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as its level's white;
-                          0 for a small or darker region */
+    EVIDENCE_WIDE_HOT, /* 256 for a large region as bright as the white of its
+                          brightness level; 0 for a small or darker region */
     /* log2 of (white / brightness), stops, for the brightness that one pixel in
      * 2, 4 or 32 of the picture reaches. If nearly all of the picture is dark,
      * bright objects are light sources. */

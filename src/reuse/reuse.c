@@ -12,8 +12,8 @@ struct reuse {
      * and none is stored. */
     int n_lights;
     struct glint_flare_frame frame;
-    uint64_t digest; /* digest of the waves, wave sets and tints that FRAME
-                        points to */
+    uint64_t digest; /* digest of the wavelengths, their sets and the factors
+                        per ghost (tints) to which FRAME points */
     struct glint_light *light;
     /* Colours of the bundles before they are multiplied by gain_q14,
      * [max_bundles]. Set in the first frame that has gains; NULL unless

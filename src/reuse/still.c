@@ -13,8 +13,8 @@ enum {
                        largest channel */
 };
 
-/* Returns the index of the planned light nearest to LIGHT, or -1 if no planned
- * light is within NEAR_Q30. */
+/* Returns the index of the planned light nearest to LIGHT, or -1 if none is
+ * within the chord NEAR_Q30 (distance of directions on the unit sphere). */
 static int find_nearest_planned_light(const struct glint_still *s,
                                       const struct glint_light *light,
                                       int32_t near_q30)

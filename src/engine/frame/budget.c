@@ -56,8 +56,8 @@ void glint_budget_begin_frame(struct glint_budget *b,
  * PSNR against a frame without cuts, dB; an estimate, as glint sweep has not
  * measured dust and veil. */
 static const struct cut {
-    double dim;    /* min dim_codes */
-    int dust_log2; /* max dust_log2 */
+    double dim;    /* min value of the quality parameter dim_codes */
+    int dust_log2; /* max value of the quality parameter dust_log2 */
     bool no_veil;
     double loss;
 } cuts[] = {{0, GLINT_SHADE_MOST_LOG2, false, 90},

@@ -19,7 +19,7 @@
  * corner, pixels; starbursts of lamps farther away are not drawn */
 static const double most_px = 1 << 16;
 
-/* Radius of the image of a point light in a sharp picture, pixels. */
+/* radius of the image of a point light in a sharp picture, pixels */
 static const double least_px = 1.5;
 
 /* Limits of the estimated power of a lamp that is clipped in the picture, from

@@ -13,8 +13,7 @@ enum {
     COLUMNS = 129, /* number of columns of the table; their angles are from a
                       line to half-way to the next line */
     PER_OCTAVE = 4,
-    EVERY = 2 /* distance between the wavelengths that are used: every second
-                 one */
+    EVERY = 2 /* every second wavelength is used */
 };
 
 /* distances from the lamp at which the table begins, in orders of diffraction,

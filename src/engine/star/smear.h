@@ -39,8 +39,8 @@ struct glint_smear {
                     higher frequencies is extrapolated */
 };
 
-/* Computes the smear of the dirt in the stop of SETUP. Returns GLINT_E_MEMORY
- * on failure. */
+/* Computes the smear, the diffraction by dirt in the stop of SETUP. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_smear_init(struct glint_smear *smear,
                                    const struct glint_setup *setup);
 void glint_smear_finish(struct glint_smear *smear);

@@ -9,9 +9,9 @@
 #include "engine/star/smear.h"
 #include "star/smeared.h"
 
-/* Sets RGB to the light per pixel^2 that dirt adds to the starburst. It is the
- * mean of SMEAR over a square of half width HALF around (X, Y), pixels from the
- * lamp, y down. It may be negative. PSF gives the spectrum, AIRY_PX 550 nm
+/* Sets RGB to the light per pixel^2 that dirt adds to the starburst. This is
+ * the mean of SMEAR over a square of half width HALF around (X, Y), pixels from
+ * the lamp, y down; it may be negative. PSF gives the spectrum, AIRY_PX 550 nm
  * times the f-number in pixels. */
 void glint_smear_compute_light(const struct glint_smear *smear,
                                const struct glint_psf *psf, double airy_px,

@@ -53,7 +53,7 @@ void glint_patch_write_slots(struct glint_edge *edge,
 void glint_patch_read_slots(struct glint_patch *p,
                             const struct glint_edge *edge);
 
-/* Draws a patch: the value of member draw of struct glint_shade_method. */
+/* Draws a patch (member draw of struct glint_shade_method). */
 glint_patch_fn glint_patch_draw;
 
 /* Turns the N array elements EDGE into continuations of a patch, which draw

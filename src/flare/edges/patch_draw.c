@@ -59,7 +59,7 @@ struct draw {
     struct glint_box box; /* pixels of the patch's box within the tile */
     /* The current row. part: the sides of the patch that cut its pixels. area:
      * for each pixel, the transmission minus that which edges draw (1 or 0),
-     * times the covered area; then a 0. */
+     * times the covered area; a 0 follows. */
     int n_parts;
     struct part part[GLINT_OUTLINE_CORNERS];
     int32_t area[MOST_TILE + 2 * RUN];
