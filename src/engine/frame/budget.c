@@ -57,7 +57,7 @@ void glint_budget_begin_frame(struct glint_budget *b,
  * measured dust and veil. */
 static const struct cut {
     double dim;    /* min value of the quality parameter dim_codes */
-    int dust_log2; /* max value of the quality parameter dust_log2 */
+    int dust_log2; /* value of the quality parameter dust_log2 */
     bool no_veil;
     double loss;
 } cuts[] = {{0, GLINT_SHADE_MOST_LOG2, false, 90},

@@ -22,8 +22,9 @@
 struct glint_arcs {
     int n; /* sides */
     double rotation_deg;
-    double round; /* curvature, above 0, 1 / stop radius */
-    double turn; /* half the angle of an arc as seen from its centre, radians */
+    double round;  /* curvature, above 0, 1 / stop radius */
+    double turn;   /* half the angle that an arc subtends at its centre,
+                      radians */
     double behind; /* distance from the stop's centre to an arc's centre, stop
                       radii */
     double area, perimeter;

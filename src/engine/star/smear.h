@@ -30,7 +30,7 @@ enum {
 };
 
 struct glint_smear {
-    double clear; /* C */
+    double clear; /* C, fraction of the light at the outline that dirt passes */
     /* [SIDE + 1][SIDE + 1]: running integral of D over both frequencies, which
      * are in cycles per radius and begin at -SIDE / (2 SPAN); row 0 has the
      * lowest y. NULL: dirt blocks all light. */
