@@ -59,6 +59,12 @@ enum { PARTS = 100, LEAST_PART = 4 };
  * many points as the level before, and faint ghosts are drawn from a higher
  * level. */
 enum { LEVELS = 8 };
+/* CELL_CODES: RMS difference, 8-bit codes, of neighbouring cells from which the
+ * grid of a ghost is refined; CELL_PIXELS: mean size, pixels, of cells that are
+ * not refined any more. With these the worst lens of the library,
+ * telecentric-laikin-100 at f/2.8, has 57 dB instead of 43. */
+#define CELL_CODES  0.5
+#define CELL_PIXELS 8.0
 struct point {
     struct glint_lamp lamp;
     double at[2];
@@ -1073,6 +1079,23 @@ static void coarsen_faint_field(struct glint_frame *f, int i, double light,
             &t->cfg, r, exp2(5.0 / 24 * fmax(log2(brightness), -12)));
 }
 
+/* Refines the grid of field I until its cells, which have uniform irradiance,
+ * are invisible: until neighbours differ by CELL_CODES or are CELL_PIXELS wide.
+ * SCALE is a factor on the light. A code is taken as 255 sqrt(light / white).
+ */
+static void refine_bright_field(struct glint_frame *f, int i, double scale)
+{
+    struct traced *const t = get_traced_state(f);
+    struct ray_field *const r = &t->field[i];
+    const double pixel = f->view.sensor_width_mm / f->view.width;
+    double all, most, n;
+
+    sum_point_light(f, i, t->level[i], &all, &most);
+    n = 255 / CELL_CODES * r->measures.root_slope * pixel * sqrt(scale * most);
+    n = fmin(n, sqrt(compute_field_pixels(f, r)) / CELL_PIXELS);
+    glint_ray_field_refine_grid(&t->cfg, r, n * t->cfg.max_cells / 64);
+}
+
 /* Plans the frame: measures the fields of LAMPS, skips faint ghosts, and
  * chooses wavelengths, levels and grids. SCALE is a factor on the light. */
 static enum glint_status plan_ray_frame(struct glint_frame *f,
@@ -1108,8 +1131,10 @@ static enum glint_status plan_ray_frame(struct glint_frame *f,
         light = scale * r->flux / compute_field_pixels(f, r);
         sum_point_light(f, i, 0, &all, &most);
         t->set_of[i] = choose_wavelength_set(f, r, light * most, step);
-        if (t->in_codes)
+        if (t->in_codes) {
             coarsen_faint_field(f, i, light, step);
+            refine_bright_field(f, i, scale);
+        }
         choose_field_samples(t, i);
     }
     status = list_visible_bundles(f);

@@ -245,6 +245,19 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
     }
 }
 
+/* Returns the area, mm^2, of the cell with the corners A, B, C, D on the
+ * sensor; A and D are opposite. */
+static double compute_cell_area(const struct glint_ray *a,
+                                const struct glint_ray *b,
+                                const struct glint_ray *c,
+                                const struct glint_ray *d)
+{
+    return 0.5 * fabs((d->sensor_x_mm - a->sensor_x_mm) *
+                          (c->sensor_y_mm - b->sensor_y_mm) -
+                      (d->sensor_y_mm - a->sensor_y_mm) *
+                          (c->sensor_x_mm - b->sensor_x_mm));
+}
+
 /* Adds the flux of cell (I, J) to FLUX. Raises two members of MEASURES: the max
  * flux per cell, and the max flux per mm^2 on the sensor. */
 static void add_cell_flux(const struct coarse_grid *l, int i, int j,
@@ -269,10 +282,7 @@ static void add_cell_flux(const struct coarse_grid *l, int i, int j,
         measures->density = measures->cell_flux = HUGE_VAL;
         return;
     }
-    area = 0.5 * fabs((d->sensor_x_mm - a->sensor_x_mm) *
-                          (c->sensor_y_mm - b->sensor_y_mm) -
-                      (d->sensor_y_mm - a->sensor_y_mm) *
-                          (c->sensor_x_mm - b->sensor_x_mm));
+    area = compute_cell_area(a, b, c, d);
     measures->density =
         fmax(measures->density, energy * l->cell_mm2 / fmax(area, 1e-12));
 }
@@ -334,6 +344,47 @@ static void compute_barrel_sags(struct ray_measures *measures, double stop_mm,
     }
 }
 
+/* Returns the area on the sensor, mm^2, of cell (I, J), or 0 if a ray of it is
+ * blocked. Sets ROOT to the root of the cell's flux per mm^2. */
+static double compute_open_cell(const struct coarse_grid *l, int i, int j,
+                                double *root)
+{
+    const struct glint_ray *a = &l->ray[j][i], *b = a + 1;
+    const struct glint_ray *c = &l->ray[j + 1][i], *d = c + 1;
+    double area;
+
+    if (!(l->inside[j][i] && l->inside[j][i + 1] && l->inside[j + 1][i] &&
+          l->inside[j + 1][i + 1]))
+        return 0;
+    area = compute_cell_area(a, b, c, d);
+    *root = sqrt(0.25 * (a->energy + b->energy + c->energy + d->energy) *
+                 l->cell_mm2 / fmax(area, 1e-12));
+    return area;
+}
+
+/* Sets the root_slope of MEASURES. Cells on which light piles up are small, so
+ * they hardly count. */
+static void compute_root_slope(struct ray_measures *measures,
+                               const struct coarse_grid *l)
+{
+    double squares = 0, areas = 0;
+
+    for (int way = 0; way < 2; way++)
+        for (int j = 0; j + 1 + way < l->rows; j++)
+            for (int i = 0; i + !way < LOOKS; i++) {
+                double here, next;
+                const double area =
+                    fmin(compute_open_cell(l, i, j, &here),
+                         compute_open_cell(l, i + !way, j + way, &next));
+
+                if (area > 0) {
+                    squares += area * (next - here) * (next - here);
+                    areas += area;
+                }
+            }
+    measures->root_slope = areas > 0 ? LOOKS * sqrt(squares / areas) : 0;
+}
+
 /* Measures FIELD: its flux, brightness, interpolation errors (sags), and how
  * far its colours separate on the sensor. */
 static void measure_brightness(const struct ray_field_config *cfg,
@@ -373,6 +424,7 @@ static void measure_brightness(const struct ray_field_config *cfg,
             }
     field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
     compute_barrel_sags(measures, cfg->setup->optics.stop_radius_mm, &look[1]);
+    compute_root_slope(measures, &look[1]);
     field->energy_unit = 1.5 * most;
     /* In this case all rays of the coarse grid miss the opening of the stop. */
     if (field->flux == 0) {
@@ -465,18 +517,34 @@ void glint_ray_field_choose_grid(const struct ray_field_config *cfg,
     enlarge_pupil_by_pixel(cfg, &field->pupil);
 }
 
+static void set_cell_count(struct ray_field *field, int n)
+{
+    const double ratio = (double)field->n_cells / n;
+
+    for (int k = 0; k < 3; k++)
+        field->sag[k] = fmin(field->sag[k] * ratio * ratio, MOST_SAG);
+    field->n_cells = n;
+}
+
 void glint_ray_field_coarsen_grid(const struct ray_field_config *cfg,
                                   struct ray_field *field, double by)
 {
     const int n = glint_grid_round_up_to_four(
         (int)ceil(fmax(field->least_cells, by * field->n_cells)));
-    const double ratio = (double)field->n_cells / n;
 
-    if (cfg->uniform || n >= field->n_cells)
-        return;
-    for (int k = 0; k < 3; k++)
-        field->sag[k] = fmin(field->sag[k] * ratio * ratio, MOST_SAG);
-    field->n_cells = n;
+    if (!cfg->uniform && n < field->n_cells)
+        set_cell_count(field, n);
+}
+
+void glint_ray_field_refine_grid(const struct ray_field_config *cfg,
+                                 struct ray_field *field, double n)
+{
+    const int most = glint_grid_get_max_cells(cfg->max_cells, field->folds);
+    const int cells = glint_grid_round_up_to_four(
+        (int)ceil(fmin(n, most < GLINT_MAX_CELLS ? most : GLINT_MAX_CELLS)));
+
+    if (!cfg->uniform && cells > field->n_cells)
+        set_cell_count(field, cells);
 }
 
 /* ------------------------------------------------------------------ samples */

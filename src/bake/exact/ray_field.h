@@ -68,6 +68,10 @@ struct ray_measures {
     /* cell_flux: max flux of a cell of a coarse grid, mm^2; density: max flux
      * per mm^2 of the sensor. Both are at irradiance 1; HUGE_VAL: unknown. */
     double cell_flux, density;
+    /* RMS difference of sqrt(flux per mm^2) between neighbouring cells of a
+     * grid of one cell, at irradiance 1: per pupil width, weighted by area on
+     * the sensor */
+    double root_slope;
     /* interpolation errors, as member sag of struct ray_field, for a grid of
      * one cell and a circular stop */
     double sag[3];
@@ -132,6 +136,11 @@ void glint_ray_field_choose_grid(const struct ray_field_config *cfg,
  * ghosts. */
 void glint_ray_field_coarsen_grid(const struct ray_field_config *cfg,
                                   struct ray_field *field, double by);
+
+/* Raises the number of cells per side to N, if it is smaller, within the limit
+ * of max_cells. Used for bright ghosts, whose cells would be visible. */
+void glint_ray_field_refine_grid(const struct ray_field_config *cfg,
+                                 struct ray_field *field, double n);
 
 /* Chooses the directions and wavelengths for which rays are traced. RANGE: all
  * directions that are needed, within the patch of FIELD; NM[N]: all wavelengths
