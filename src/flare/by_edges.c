@@ -112,7 +112,8 @@ static int count_tile_row_edges(const struct glint_flare *f, int row)
 /* ----------------------------------------------------------------- bundles */
 
 /* Returns the flux that ray bundle B would have if all its rays had energy 1.
- * The unit is display white times pixels; the result is clamped to 2^26. */
+ * The unit is display white times pixels; the result is rounded up, and at most
+ * 2^26. */
 static int64_t compute_bundle_flux(const struct glint_bundle *b)
 {
     const int64_t cells = (int64_t)b->n_cells * b->n_cells; /* at most 2^20 */
@@ -129,8 +130,8 @@ static int64_t compute_bundle_flux(const struct glint_bundle *b)
 /* Returns the max light that one cell of a ray grid may add to a pixel, 1 =
  * display white, so that sums do not overflow. Sums of _q36 in colours up to 4
  * stay below 2^63 if no pixel gets more than 2^24. A cell cannot add more than
- * its flux, so only if the flux of all ray bundles reaches 2^24, each cell is
- * limited to 2^23 / number of cells. */
+ * its flux. So the limit is GLINT_LIMIT_Q8, or, if the flux of all ray bundles
+ * reaches 2^24, at most 2^23 / number of cells. */
 static int32_t compute_cell_light_limit_q8(const struct glint_flare *f)
 {
     const int64_t most = INT64_C(1) << 24;
@@ -158,9 +159,9 @@ static int add_bin_entries(const struct glint_flare *f, int refs, int first,
 }
 
 /* Converts ray bundle BUNDLE to edges and stores them after the earlier edges
- * of worker WORKER. Stores no edge if they do not all fit into the worker's
- * range. In this case, unless BINS is NULL, sets slot[BUNDLE].refs to the
- * number of entries in BINS that the edges would need. */
+ * of worker WORKER. If they do not all fit into the worker's range, counts none
+ * as stored, sets slot[BUNDLE].first to -1 and, unless BINS is NULL,
+ * slot[BUNDLE].refs to the number of entries in BINS that they would need. */
 static void emit_bundle_edges(struct glint_flare *f, int bundle, int worker,
                               const struct glint_bins *bins)
 {

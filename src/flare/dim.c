@@ -44,9 +44,9 @@ static int is_ghost_brightness_known(const struct glint_flare_frame *frame,
 }
 
 /* If the brightness is not known in the interval of nodes before or after the
- * current one, the ghost counts as bright there. The result then falls
- * continuously from 1 at the node between both intervals, and reaches the
- * interpolated value at most half an interval away from that node. */
+ * current one, the ghost counts as bright there. The result is then at least a
+ * linear function that falls from 1 at the node between both intervals to -1 at
+ * the current interval's other node. */
 int32_t
 glint_dim_compute_brightness_log2_q8(const struct glint_flare_frame *frame,
                                      const struct glint_light *light, int ghost)

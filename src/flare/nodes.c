@@ -119,7 +119,7 @@ static void fill_brightness_nodes(struct glint_flare *flare, int n_lights)
     }
 }
 
-/* ----------------------------------------------------------------- sharing */
+/* ------------------------------------------------------- merging of lights */
 
 enum {
     /* Max distance of merged lights for a ghost as bright as the frame's
@@ -183,7 +183,9 @@ static void find_nearest_preceding_lights(struct glint_flare *f, int n)
 /* Returns the fraction of LIGHT, light number I, that is not merged into
  * another light for GHOST, 0 .. GLINT_DIM_WHOLE_Q8. The error of a merged ghost
  * is its light times the distance by which it moves. Up to half the allowed
- * error, all light is merged. From the allowed error on, no light is merged. */
+ * error, all light is merged. From the allowed error on, no light is merged,
+ * nor of light 0, of lights from GLINT_DIM_LIGHTS on, and of lights outside the
+ * model. */
 static int compute_unmerged_fraction_q8(const struct glint_flare_frame *frame,
                                         const struct glint_light *light, int i,
                                         int ghost)

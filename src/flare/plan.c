@@ -70,8 +70,9 @@ static struct reach compute_bundle_box(const struct glint_plan *p,
             256};
 }
 
-/* Returns whether the box E, rotated by TURN, overlaps the picture. Member
- * across of E is 0 for all ghosts that are rotated. */
+/* Returns whether the box E, rotated by TURN, overlaps the picture. A ghost is
+ * rotated by the light's azimuth, and then across of E is 0; or by 0 or 180
+ * degrees. So the magnitudes of sine, cosine, middle and across suffice. */
 static int is_box_in_picture(const struct glint_plan *p,
                              struct glint_azimuth turn, const struct reach *e)
 {
@@ -208,8 +209,8 @@ static struct glint_real compute_bundle_flux(const struct glint_plan *p,
 /* Returns an upper bound on the light that the ray bundle adds to a pixel, 1 =
  * display white: twice the flux of a cell of the probe / min area of such a
  * cell on the sensor. The factor 2 allows for brighter light between probed
- * rays. Returns 0 for folded ghosts: the areas of their cells do not bound
- * their brightness. */
+ * rays. Returns 0 if that area is not known or nearly 0, and for folded ghosts,
+ * whose areas do not bound their brightness. */
 static struct glint_real
 compute_max_light(const struct glint_plan *p,
                   const struct glint_bundle_plan *planned,
@@ -249,8 +250,10 @@ static int64_t compute_peak_in_visible_units_q20(const struct glint_plan *p,
 }
 
 /* Sets inside_q8 of PLANNED to the fraction of probed rays that are not
- * blocked, and contrast_q4 to log2 of (BRIGHTEST / mean irradiance). */
-static void set_inside_and_contrast(const struct glint_probe *s,
+ * blocked, and contrast_q4 to log2 of (BRIGHTEST / mean irradiance), or 255 if
+ * either is 0. */
+static void
+set_unblocked_fraction_and_contrast(const struct glint_probe *s,
                                     struct glint_real brightest,
                                     struct glint_bundle_plan *planned)
 {
@@ -514,7 +517,7 @@ static enum glint_outcome plan_bundle(const struct glint_plan *plan,
     planned->irradiance =
         real_over(planned->flux,
                   compute_bounding_box_area(plan, planned, transfer, &s->seen));
-    set_inside_and_contrast(s, brightest, planned);
+    set_unblocked_fraction_and_contrast(s, brightest, planned);
     bundle->n_cells =
         glint_plan_choose_cells(plan, s, transfer, planned->irradiance);
     glint_plan_set_sags(planned, s, transfer, bundle->n_cells, plan->round_q16);

@@ -16,9 +16,10 @@ static int64_t compute_root_mean_square(uint64_t sum, int n)
 }
 
 /* Returns the curvature of the map from the pupil to the outputs A and B, as a
- * distance on the sensor: (mean second difference of the outputs / their mean
- * first difference) times the mean first difference of the sensor position. The
- * unit is that of the sensor outputs times 2^GLINT_PROBE_FINE_LOG2. */
+ * distance on the sensor: (second difference of the outputs / their first
+ * difference) times the first difference of the sensor position, each the root
+ * mean square; 0 if the outputs do not change. The unit is that of the sensor
+ * outputs times 2^GLINT_PROBE_FINE_LOG2. */
 static int64_t compute_output_curvature(const struct glint_probe *s, int a,
                                         int b)
 {
@@ -102,14 +103,16 @@ static int reduce_cells_for_codes(const struct glint_probe *s,
  * apertures cut the ray bundle. The second barrel value of a vertex is then the
  * tightest of all but the first; it has kinks, so that tips of outlines would
  * depend on the grid. */
-static int choose_outline_tolerance_ratio(const struct glint_plan *p,
-                                          const struct glint_transfer *t)
+static int
+choose_outline_to_light_tolerance_ratio(const struct glint_plan *p,
+                                        const struct glint_transfer *t)
 {
     return p->round_q16 || t->outputs >> GLINT_OUT_BARREL_2 & 1 ? 5 : 10;
 }
 
-/* Returns the number of cells per side that a stop with dust or masks needs, so
- * that the image of these is exact to a pixel within each cell. */
+/* Returns the number of cells per side for a stop with dust or masks: one per
+ * 2^SHADE_CELL_LOG2 pixels of the ghost, so that their image is exact to a
+ * pixel within each cell; at most MOST_SHADE_CELLS. */
 static int compute_cells_for_shade(const struct glint_plan *p,
                                    const struct glint_probe *s,
                                    const struct glint_transfer *t)
@@ -153,7 +156,7 @@ static int compute_cells_per_side(const struct glint_plan *p,
 
         outline = cut > outline ? cut : outline;
     }
-    outline = q_divide(outline, choose_outline_tolerance_ratio(p, t));
+    outline = q_divide(outline, choose_outline_to_light_tolerance_ratio(p, t));
     bend = bend > outline ? bend : outline;
     bend_q8 =
         real_integer(real_times(real_of(bend, t->exponent[GLINT_OUT_SENSOR_X] +

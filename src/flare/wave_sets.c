@@ -48,7 +48,7 @@ int glint_wave_sets_find_set_of_wave(const struct glint_wave_sets *sets,
     return set;
 }
 
-/* -------------------------------------------------------------- the choice */
+/* --------------------------------------------------------- choice of a set */
 
 /* Sets AT to the positions, pixels, at which sample rays of PLANNED hit the
  * picture. The rays are spread evenly over half of the ray bundle's window. */
@@ -135,8 +135,8 @@ static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
 }
 
 /* Returns the index of the smallest wavelength set that draws a ghost without
- * visible steps of brightness. PLANNED and BUNDLE are the ghost's ray bundles
- * of the first set. */
+ * visible steps of brightness, or of the last set if none does. PLANNED and
+ * BUNDLE are the ghost's ray bundles of the first set. */
 static int choose_smallest_wave_set(const struct glint_plan *plan,
                                     const struct glint_bundle_plan *planned,
                                     const struct glint_bundle *bundle,

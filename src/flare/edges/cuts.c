@@ -120,7 +120,7 @@ int glint_cuts_count_outside_bits(struct glint_outside o)
     return n;
 }
 
-/* ------------------------------------------------------------------- parts */
+/* -------------------------------------------------- visible parts of edges */
 
 /* Returns the value at V of the function of cut CUT. The function is positive
  * inside and 0 on the cut. */
@@ -202,7 +202,7 @@ void glint_cuts_find_visible_part(const struct glint_stop *stop,
     }
 }
 
-/* ----------------------------------------------------------------- corners */
+/* ------------------------------------------------------- crossings of cuts */
 
 /* A plane that approximates the values at the four corners of a cell: middle +
  * u slope_u + v slope_v. u and v run from -1/2 to 1/2 across the cell. */

@@ -56,7 +56,8 @@ void glint_cuts_find_visible_part(const struct glint_stop *stop,
 
 /* Sets AT, pixels, to the point where the cuts A and B cross within the cell
  * whose corners are CORNER, in cyclic order. Cuts are numbered as in struct
- * glint_edge_part. Returns 0 if they do not cross in the cell. */
+ * glint_edge_part. Returns 0 if they do not cross in the cell or within a
+ * quarter of a cell around it. */
 int glint_cuts_find_crossing(const struct glint_stop *stop,
                              const struct glint_vertex *const corner[4], int a,
                              int b, int32_t at_q8[2]);

@@ -158,7 +158,8 @@ int glint_sums_is_row_dark(const struct glint_edge_sums *sums, int row);
  * set its carry to the light carried out of the tile.
  * glint_sums_read_linear_row() writes one value per pixel, clamped to int32.
  * glint_sums_read_code_row() rounds the number of values up to a multiple of
- * GLINT_LANES, and returns 0 if the row has no light. */
+ * GLINT_LANES, and returns 0 if the row has no differences and the light
+ * carried in rounds to 0. */
 void glint_sums_read_linear_row(const struct glint_edge_sums *sums, int channel,
                                 int row, int32_t *light_q20);
 int glint_sums_read_code_row(const struct glint_edge_sums *sums, int channel,

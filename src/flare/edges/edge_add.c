@@ -175,10 +175,9 @@ static inline void add_edge_piece(const struct run *r, enum mode mode,
     }
 }
 
-/* Moves R down by N array elements. N is the stride of rows times the number of
- * rows. */
-static inline void advance_run_by_rows(struct run *r, enum mode mode,
-                                       ptrdiff_t n)
+/* Moves the pointer of R by N array elements: by columns, or by rows times
+ * their stride. */
+static inline void advance_run(struct run *r, enum mode mode, ptrdiff_t n)
 {
     if (mode == NARROW)
         r->row.narrow += n;
@@ -201,7 +200,7 @@ static inline void add_complete_rows(struct run r, enum mode mode, int n,
 {
     for (; n > 0; n--) {
         add_edge_piece(&r, mode, x_q40, x_q40 + step_q40, ONE_Q16);
-        advance_run_by_rows(&r, mode, stride);
+        advance_run(&r, mode, stride);
         x_q40 += step_q40;
     }
 }
@@ -218,7 +217,7 @@ static inline void add_complete_rows_in_two_pixels(struct run r, enum mode mode,
 
         add_piece_in_two_pixels(&r, mode, a_q16 < b_q16 ? a_q16 : b_q16,
                                 a_q16 < b_q16 ? b_q16 : a_q16, ONE_Q16);
-        advance_run_by_rows(&r, mode, stride);
+        advance_run(&r, mode, stride);
     }
 }
 
@@ -277,7 +276,7 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
         const int64_t next_q40 = p.x_q40 + e->slope_q40 * height_q8;
 
         add_edge_piece(&p.run, mode, p.x_q40, next_q40, height_q8 * 256);
-        advance_run_by_rows(&p.run, mode, s->stride);
+        advance_run(&p.run, mode, s->stride);
         p.x_q40 = next_q40;
         p.y_q8 += height_q8;
     }
@@ -294,7 +293,7 @@ static inline void add_smooth_edge(const struct glint_edge_sums *s,
         else
             add_complete_rows_in_two_pixels(p.run, mode, n, p.x_q40, step_q40,
                                             s->stride);
-        advance_run_by_rows(&p.run, mode, (ptrdiff_t)n * s->stride);
+        advance_run(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * step_q40;
         p.y_q8 += n * 256;
     }
@@ -318,9 +317,7 @@ static inline void add_snapped_row(const struct run *r, enum mode mode,
         add_light_change(r, mode, 0, area);
 }
 
-/* Adds N complete rows of a pixel-snapped edge, which moves by STEP per row.
- *
- */
+/* Adds N complete rows of a pixel-snapped edge, which moves by STEP per row. */
 static inline void add_complete_snapped_rows(struct run r, enum mode mode,
                                              int n, int64_t x_q40,
                                              int64_t step_q40, int stride)
@@ -332,17 +329,17 @@ static inline void add_complete_snapped_rows(struct run r, enum mode mode,
     if (r.x0 == 0 && (x_q40 < 0 || x_q40 + (n - 1) * step_q40 < 0)) {
         for (; n > 0; n--, x_q40 += step_q40) {
             add_snapped_row(&r, mode, x_q40, full);
-            advance_run_by_rows(&r, mode, stride);
+            advance_run(&r, mode, stride);
         }
         return;
     }
     /* Rows in which the edge is outside the tile are skipped. Then rows are
      * added until the edge leaves the tile, as it does not return. */
     for (; n > 0 && (uint64_t)x_q40 >= end_q40; n--, x_q40 += step_q40)
-        advance_run_by_rows(&r, mode, stride);
+        advance_run(&r, mode, stride);
     for (; n > 0 && (uint64_t)x_q40 < end_q40; n--, x_q40 += step_q40) {
         add_light_change(&r, mode, (int)(x_q40 >> 40), full);
-        advance_run_by_rows(&r, mode, stride);
+        advance_run(&r, mode, stride);
     }
 }
 
@@ -354,9 +351,8 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
 {
     int n;
 
-    advance_run_by_rows(&p.run, mode,
-                        p.run.x0); /* From here on columns are counted
-                                from the tile's left side. */
+    advance_run(&p.run, mode, p.run.x0); /* From here on columns are counted
+                                      from the tile's left side. */
     p.x_q40 -= p.run.x0 * ONE_Q40;
     p.run.x1 -= p.run.x0;
     if (p.y_q8 & 255) {
@@ -366,7 +362,7 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
         add_snapped_row(
             &p.run, mode, p.x_q40 + step_q40 / 2,
             convert_area_to_sum_units(&p.run, mode, height_q8 * 256));
-        advance_run_by_rows(&p.run, mode, s->stride);
+        advance_run(&p.run, mode, s->stride);
         p.x_q40 += step_q40;
         p.y_q8 += height_q8;
     }
@@ -376,7 +372,7 @@ static inline void add_snapped_edge(const struct glint_edge_sums *s,
     if (n > 0) {
         add_complete_snapped_rows(p.run, mode, n, p.x_q40, e->slope_q40 * 256,
                                   s->stride);
-        advance_run_by_rows(&p.run, mode, (ptrdiff_t)n * s->stride);
+        advance_run(&p.run, mode, (ptrdiff_t)n * s->stride);
         p.x_q40 += n * (e->slope_q40 * 256);
         p.y_q8 += n * 256;
     }

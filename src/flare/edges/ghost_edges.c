@@ -260,7 +260,7 @@ void glint_ghost_add_clipped_primitive(struct glint_ghost_edges *g,
 }
 
 /* Adds the edges of a cell that is not a convex quad, as two triangles. If one
- * corner is invalid, adds the triangle of the other three corners. */
+ * corner is invalid, adds the triangle of the others; if more are, nothing. */
 static NEVER_INLINE void add_cell_as_triangles(struct glint_ghost_edges *g,
                                                const struct glint_ghost_cell *c)
 {

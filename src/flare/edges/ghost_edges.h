@@ -17,11 +17,11 @@
  * agree to the bit and outlines close.
  *
  * Cells that are folded, have an invalid corner, are thinner than a sixteenth
- * of a pixel, or are crossed by more than two sides are drawn separately as
- * closed outlines: outline.h. A round stop cuts like a barrel, corrected by its
- * sag (see struct glint_bundle_plan). If vertices are given instead of
- * polynomials, the sag is unknown, and cells that a round stop crosses are
- * drawn separately. */
+ * of a pixel, or are crossed by more than two sides or barrel apertures are
+ * drawn separately as closed outlines: outline.h. A round stop cuts like a
+ * barrel, corrected by its sag (see struct glint_bundle_plan). If vertices are
+ * given instead of polynomials, the sag is unknown, and cells that a round stop
+ * crosses are drawn separately. */
 #ifndef GLINT_FLARE_GHOST_EDGES_H
 #define GLINT_FLARE_GHOST_EDGES_H
 

@@ -25,8 +25,9 @@ static int compute_floor_log2(struct glint_real x)
     return bit_length((uint64_t)n | 1) - 1;
 }
 
-/* Returns log2 of the number of rings. The number is limited so that rings are
- * at least a pixel apart and each ring adds at least half a code of light. */
+/* Returns log2 of the number of rings. If the ghost's light is known, the
+ * number is limited so that rings are at least a pixel apart and each ring adds
+ * at least half a code of light. */
 static int choose_rings_log2(const struct glint_ghost_edges *g)
 {
     int log2 = MOST_LOG2;

@@ -175,8 +175,8 @@ static int set_pixel_to_stop_map(struct glint_patch *p,
             sum_q16 * 64 + q_shift(across * (p->box.x0 * 256 + 128 - x_q8) +
                                        down * (p->box.y0 * 256 + 128 - y_q8),
                                    8);
-        /* The map may wrap modulo 2^32, as it is used only for pixels within
-         * the cell. */
+        /* The position may wrap modulo 2^32 here; the changes added to it wrap
+         * it back at pixels within the cell. */
         p->at_q24[k] = (int32_t)(uint32_t)(uint64_t)from_q24;
         p->across_q24[k] = (int32_t)across;
         p->down_q24[k] = (int32_t)down;

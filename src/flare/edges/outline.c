@@ -55,7 +55,7 @@ static enum side classify_corner_values(const int64_t *value, int n)
     return inside == n ? INSIDE : inside ? CUT : OUTSIDE;
 }
 
-static enum side combine_positions_to_boundaries(enum side a, enum side b)
+static enum side get_outermost_side(enum side a, enum side b)
 {
     return a < b ? a : b;
 }
@@ -69,8 +69,7 @@ static enum side classify_by_barrels(const struct glint_corners *c)
 
         for (int i = 0; i < c->n; i++)
             value[i] = glint_barrel_evaluate_function_q16(barrel, c->at[i]);
-        all = combine_positions_to_boundaries(
-            all, classify_corner_values(value, c->n));
+        all = get_outermost_side(all, classify_corner_values(value, c->n));
     }
     return all;
 }
@@ -91,8 +90,7 @@ static enum side classify_by_disc(const struct glint_corners *c,
         return side;
     for (int i = 0; i < c->n; i++)
         value[i] += 1 << 14;
-    return combine_positions_to_boundaries(CUT,
-                                           classify_corner_values(value, c->n));
+    return get_outermost_side(CUT, classify_corner_values(value, c->n));
 }
 
 static enum side classify_by_stop(const struct glint_corners *c,
@@ -107,8 +105,7 @@ static enum side classify_by_stop(const struct glint_corners *c,
         disc[i] = glint_disc_evaluate_function_q16(c->at[i]);
     for (int side = 0; side < stop->n_blades && all != OUTSIDE; side++) {
         compute_side_distances(stop, side, c->at, c->n, disc, value);
-        all = combine_positions_to_boundaries(
-            all, classify_corner_values(value, c->n));
+        all = get_outermost_side(all, classify_corner_values(value, c->n));
     }
     return all;
 }

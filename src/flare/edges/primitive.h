@@ -89,9 +89,9 @@ glint_vertex_compute_distance_q8(const struct glint_vertex *a,
     return (x < 0 ? -x : x) + (y < 0 ? -y : y);
 }
 
-/* Returns 1 if C is certainly not thin: twice its area is at least 32 times the
- * sum of its diagonals, and that sum exceeds its width and height. Quick test
- * for glint_corners_are_thin(). */
+/* Returns 1 if C is a quad that is certainly not thin: twice its area is at
+ * least an eighth of the sum of its diagonals, |x| + |y| in pixels, and that
+ * sum exceeds its width and height. Quick test for glint_corners_are_thin(). */
 static inline int
 glint_corners_are_certainly_thick(const struct glint_corners *c)
 {
