@@ -91,7 +91,7 @@ static const char *check_engine_config(const struct glint_engine_config *c)
     return NULL;
 }
 
-/* ------------------------------------------------------------------- making */
+/* ----------------------------------------------------------------- creation */
 
 /* Returns whether IRIS has round blades, a soft edge, dust or a mask. */
 static bool has_nondefault_iris(const struct glint_iris *iris)

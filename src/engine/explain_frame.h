@@ -9,8 +9,7 @@
 #include "glint/explain.h"
 
 /* Like glint_explain_open(), collects statistics of the last picture that FRAME
- * drew. UNIT:
- * light in the report / light in the frame. */
+ * drew. UNIT: light in the report / light in the frame. */
 enum glint_status glint_explain_open_for_frame(struct glint_explain *explain,
                                                struct glint_frame *frame,
                                                double unit);

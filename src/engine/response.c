@@ -23,7 +23,7 @@ enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
  * between saturation and the quantisation step. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
 
-/* ----------------------------------------------------------------- looking */
+/* -------------------------------------------------------- brightest pixels */
 
 /* Puts VALUE into TOP, which has N values in falling order, and drops the
  * smallest. Returns the new smallest value. */
@@ -156,10 +156,10 @@ draw_and_measure_lamps(struct proxy *p, const struct glint_lamp *lamps, int n,
     return status;
 }
 
-/* Draws N LAMPS and measures their LIGHT. Repeats this with other scales until
- * the brightest pixels lie in the range of AIM_LOG2 and AIM_SPAN. *PEAK_LOG2 is
- * log2 of the light of the brightest pixels at scale 1: on entry an estimate,
- * on return the measured value. */
+/* Draws N LAMPS and measures their LIGHT. Repeats this with other scales, at
+ * most 12 times in total, until the brightest pixels lie in the range of
+ * AIM_LOG2 and AIM_SPAN. *PEAK_LOG2 is log2 of the light of the brightest
+ * pixels at scale 1: on entry an estimate, on return the measured value. */
 static enum glint_status
 draw_at_measurable_scale(struct proxy *p, const struct glint_lamp *lamps, int n,
                          double *peak_log2, struct glint_response_light *light)
@@ -218,7 +218,8 @@ static void convert_light_to_log2(struct glint_response_light *light)
 }
 
 /* Measures (peak of the flare if LAMP is a disc) / (peak if LAMP is a point),
- * for discs with radii up to an eighth of the picture's diagonal. */
+ * at most 1, for discs with RMS radii up to an eighth of the picture's
+ * diagonal. */
 static enum glint_status measure_extent_softening(struct proxy *p,
                                                   struct glint_response *r,
                                                   struct glint_lamp lamp)
@@ -334,7 +335,7 @@ double glint_response_compute_softening(const struct glint_response *r,
                                 fmin(part, 1));
 }
 
-/* ---------------------------------------------------------- what was drawn */
+/* ------------------------------------------------------------ drawn flares */
 
 /* Sets the peak of LIGHT to the light that the brightest 1/10000 of the pixels
  * of the last drawing reach. */

@@ -44,7 +44,7 @@ struct glint_ground {
  * GLINT_SEEN_FEW, or one in GLINT_SEEN_MANY, reaches, to an eighth of a stop; 0
  * if fewer pixels have light. So a flare scaled by 1 / few is just visible in
  * few pixels. white: (added light / light that turns all channels white) that
- * one pixel in GLINT_SEEN_DISC on bright ground reaches. */
+ * one pixel in GLINT_SEEN_DISC reaches; 0 below GLINT_SEEN_BRIGHT. */
 struct glint_seen {
     double few, many, white;
 };

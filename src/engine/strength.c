@@ -34,8 +34,8 @@ static const double seen_peak = 0.6, seen_mean = 0.04, veil_peak = 0.1;
  * there / min visible light */
 static const double veil_light = 0.5;
 
-/* target for ghosts on bright ground: light of the brightest ghosts / light
- * that turns the ground white */
+/* target for ghosts on bright parts of the picture: light of the brightest
+ * ghosts / light that turns these parts white */
 static const double white_part = 0.4;
 
 /* Limits of the change of the exposure over time: stops per second when it
@@ -246,11 +246,11 @@ void glint_strength_expose_frame(struct glint_strength *strength,
     scale_flare_light(s);
 }
 
-/* Returns the correction of the exposure of the flare DRAWN, stops. An
- * invisible flare is raised until it is visible. A flare that veils the picture
- * or turns bright ground white is lowered until it no longer does. The
- * correction is limited by the flare's peak and mean. BASE: log2 of the flare's
- * factor at strength 0.5. */
+/* Returns the correction of the exposure of the flare DRAWN, stops. BASE: log2
+ * of the flare's factor at strength 0.5. A flare that veils the picture, or
+ * turns bright parts of it white, is lowered until it no longer does, but not
+ * below a peak of veil_peak. Otherwise an invisible flare is raised until it is
+ * visible, or reaches a peak of seen_peak or a mean of seen_mean. */
 static double
 compute_visibility_lift_log2(double base,
                              const struct glint_response_light *drawn,

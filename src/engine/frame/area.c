@@ -69,8 +69,8 @@ static double set_sunflower_point(const struct glint_area *a, int i,
 
 /* Computes two corrections of a sunflower pattern of N points: the offset of
  * its centre, and the factor that spreads its points. Patterns of few points
- * are off-centre and too narrow. One point needs no correction. From two to
- * four points the correction grows to its full size. */
+ * are off-centre and too narrow. One point needs no correction. From one to
+ * four points the factor grows to its full size. */
 static void measure_sample_point_pattern(struct glint_area *a, int n)
 {
     const double part = fmin((a->points - 1) / 3, 1);

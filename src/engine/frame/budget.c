@@ -221,9 +221,10 @@ static int choose_quality_step_and_cut(struct glint_budget *b,
 }
 
 /* Returns the quality step of this frame, either STEP or STEP + 1. The higher
- * step is tried, at most TRIALS times in total, if STEP leaves much of the
- * budget unused and STEP + 1 is predicted to exceed it by little. The
- * prediction for STEP + 1 may be too high. */
+ * step is tried, at most TRIALS times in total, if it is one quality level or
+ * more above STEP, STEP leaves much of the budget unused, and STEP + 1 is
+ * predicted to exceed it by little. The prediction for STEP + 1 may be too
+ * high. */
 static int try_next_quality_step(struct glint_budget *b,
                                  const struct glint_cost_plan *plan, int step)
 {

@@ -59,7 +59,7 @@ glint_budget_get_quality_parameters(const struct glint_budget *budget,
                                     const struct glint_dials *asked);
 
 /* Corrects later predictions by MS, the measured time of the last frame in
- * milliseconds. */
+ * milliseconds. Ignores the first frame, which allocates memory. */
 void glint_budget_learn_from_frame(struct glint_budget *budget, double ms);
 
 double glint_budget_get_quality(const struct glint_budget *budget);

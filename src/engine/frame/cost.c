@@ -207,10 +207,9 @@ static double compute_mean_subdivisions_per_cell(const struct glint_shade *s,
                                                  int most, double cut)
 {
     enum {
-        CUT_LOG2 = 3,
-        ALONE = 4
-    }; /* factor for cells that the outline cuts, as their sub-cells share no
-          edges */
+        CUT_LOG2 = 3, /* max log2_parts of a cell that the outline cuts */
+        ALONE = 4 /* factor for such cells, as their sub-cells share no edges */
+    };
     const int side = (1 << (s->log2 - level)) + 1;
     double sum = 0;
     int n = 0;

@@ -197,7 +197,7 @@ static enum glint_status convert_lamps_to_lights(struct glint_frame *f,
 }
 
 /* Returns the settings with which the flare is planned and traced for IMAGE.
- * IMAGE is NULL for a linear picture. */
+ * IMAGE may be NULL; the picture then counts as linear. */
 static struct glint_flare_frame
 make_flare_frame(struct glint_frame *f, const struct glint_image *image)
 {

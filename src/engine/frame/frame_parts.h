@@ -105,8 +105,7 @@ enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
                                             struct glint_frame_scale *scale);
 
 /* Returns the linear light of CODES codes near black in IMAGE; 0 if IMAGE is
- * NULL or linear.
- */
+ * NULL, or linear and not planned as 8-bit codes. */
 double glint_frame_convert_codes_to_light(const struct glint_frame *frame,
                                           const struct glint_image *image,
                                           double codes);

@@ -342,7 +342,6 @@ size_t glint_frame_count_needed_bytes(const struct glint_frame *f,
                                : glint_flare_bytes(&needed);
 }
 
-/* Returns the cost of probing N_RAYS rays, millions of instructions. */
 static double estimate_probe_minsn(double n_rays)
 {
     return 1e-3 * glint_cost_weight[GLINT_COST_LOOKED_AT].counted * n_rays;

@@ -14,8 +14,7 @@ enum { SIDE = GLINT_FRONT_SIDE, LEAST_CHORDS = 24, MOST_CHORDS = 96 };
 /* ---------------------------------------------------------------- the front */
 
 /* Returns the fraction of the front element that the mask covers at (X, Y), in
- * front radii. It is the value of the mask's nearest pixel, or 0 without a
- * mask. */
+ * front radii. It is 1 minus the mask's nearest pixel, or 0 without a mask. */
 static double read_mask_covered_fraction(const struct glint_front *f, double x,
                                          double y)
 {

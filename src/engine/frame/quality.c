@@ -11,17 +11,18 @@
 enum { MAX_LIGHTS = 128 };
 
 /* Quality levels, the coarsest first: points on the Pareto front of time and
- * error that glint sweep measures over five lenses at 1280x720. Coarser models
- * are not on the Pareto front: they save no time and cost 6 dB. Finer models
- * cost only memory and time to bake, so all levels above the default have them.
- * Dispersion has a separate Pareto front (make colour-table): levels for small
- * boards draw three wavelengths. Levels below the default draw dim ghosts with
- * the rays of one wavelength, and merge near lights, the more the dimmer the
- * ghost; this halves the time of a frame with many lights. Levels for small
- * boards reuse traced rays while lamps of a video move by less than a quarter
- * of a pixel, with 55 dB or more (make reuse-table). Levels from the default up
- * leave out ghosts below an eighth of a code, of which even hundreds together
- * are invisible. */
+ * error that glint sweep measures over five lenses at 1280x720. Members are
+ * parameters of struct glint_quality; grid is the fineness. tolerance: coarser
+ * models save no time and cost 6 dB; finer ones cost only memory and time to
+ * bake, so all levels above the default have them. dispersion has a separate
+ * Pareto front (make colour-table); the four coarsest levels draw three
+ * wavelengths (0). dim: levels below the default draw dim ghosts with the rays
+ * of one wavelength, and merge near lights, which may be farther apart the
+ * dimmer the ghost; this halves the time of a frame with many lights. still:
+ * the four coarsest levels reuse traced rays while lamps of a video move by
+ * less than a quarter of a pixel, with 55 dB or more (make reuse-table). cull:
+ * levels from the default up leave out ghosts below an eighth of a code, of
+ * which even hundreds together are invisible. */
 /* clang-format off */
 static const struct level {
     double quality, grid, quantum, snap, cull, dim, tolerance, dispersion, points;

@@ -10,7 +10,7 @@
 
 enum { NODES = (1 << GLINT_DIRT_LOG2) + 1 };
 
-/* ----------------------------------------------------------------- doubles */
+/* ------------------------------------------------------------ transmission */
 
 /* Returns the fraction of light that the mask transmits at (X, Y), stop radii,
  * interpolated between four pixels. */
@@ -59,9 +59,9 @@ static double compute_stop_transmission(const struct glint_dirt *d, double x,
 
 /* ------------------------------------------------------------------- table */
 
-/* Returns the mean transmission of dust and mask around node (I, J) of the
- * finest level. The mean is over a square as wide as the distance between
- * nodes. */
+/* Returns the mean transmission of soft edge, dust and mask around node (I, J)
+ * of the finest level. The mean is over a square as wide as the distance
+ * between nodes. */
 static double compute_mean_transmission_around_node(const struct glint_dirt *d,
                                                     int i, int j)
 {

@@ -23,8 +23,8 @@ struct glint_dirt {
                                   mask and dust */
     uint64_t mark; /* digest of the transmission table; a changed digest means
                       changed dirt */
-    /* mean transmission over the stop; 1 if the stop transmits nothing, as it
-     * is a divisor */
+    /* mean transmission over the stop; 1 if that is at most 1e-4, as it is a
+     * divisor */
     double mean;
     /* Returns the fraction of light that is transmitted at (X, Y), stop radii,
      * inside the outline. */

@@ -65,7 +65,6 @@ static void add_scratch(struct glint_dust *dust, struct draw *d)
     s->opacity = generate_random_between(d, 0.2, 0.6);
 }
 
-/* Sets centre and half side of the bounding square of speck S. */
 static void set_speck_bounding_square(struct glint_speck *s)
 {
     double half = 0;

@@ -110,7 +110,6 @@ enum glint_status glint_setup_set_unit_flux(struct glint_setup *s,
     return GLINT_OK;
 }
 
-/* Evaluates the polynomial with the N coefficients COEF at W. */
 static double evaluate_polynomial(const struct glint_real *coef, int n,
                                   double w)
 {
@@ -156,8 +155,8 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
         return status;
     if (h->n_ghosts > GLINT_MAX_GHOSTS) {
         snprintf(error->text, sizeof error->text,
-                 "model %s has %lu ghosts, more than glint can draw", h->name,
-                 (unsigned long)h->n_ghosts);
+                 "model %s has %lu ghosts, but glint can draw %d at most",
+                 h->name, (unsigned long)h->n_ghosts, GLINT_MAX_GHOSTS);
         return GLINT_E_LENS;
     }
     setup->lens = NULL;

@@ -424,7 +424,7 @@ double glint_psf_compute_light_beyond(const struct glint_psf *p, double r,
            (GLINT_PI * GLINT_PI * r);
 }
 
-/* -------------------------------------------------------------------- both */
+/* ------------------------------------------------------------ near and far */
 
 /* Returns the angle between the direction of (X, Y) and the nearest line,
  * radians. */

@@ -106,9 +106,9 @@ double glint_psf_compute_soft_edge_factor(double soft, double q);
  */
 double glint_psf_compute_line_angle(const struct glint_psf *psf, int i);
 
-/* Sets RGB to the profile of a line, V pixels from the line's centre. The
- * profile is light times r^4 / u^2, where r is the distance from the lamp and u
- * its component along the line. */
+/* Sets RGB to the profile of a line, V pixels from the line's centre; 0 if the
+ * stop is a circle or diffracts fans. The profile is light times r^4 / u^2,
+ * where r is the distance from the lamp and u its component along the line. */
 void glint_psf_interpolate_profile(const struct glint_psf *psf, double v,
                                    double rgb[3]);
 

@@ -25,7 +25,7 @@ struct totals {
                            number of these cells */
 };
 
-/* ------------------------------------------------------------------ fields */
+/* -------------------------------------------------------------- amplitudes */
 
 /* Returns the fraction of a cell that lies within the stop's outline. DEPTH is
  * the distance of its middle from the outline, stop radii, positive inside. */

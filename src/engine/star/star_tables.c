@@ -227,7 +227,7 @@ static void make_wide_lamp_halos(struct glint_star_tables *t,
     t->wide = (const glint_star_halo_row *)wide;
 }
 
-/* --------------------------------------------------------------------- all */
+/* -------------------------------------------------------------- all tables */
 
 static void set_profile_sizes(struct glint_star_tables *t,
                               const struct glint_psf *psf,
