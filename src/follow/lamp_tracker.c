@@ -247,7 +247,8 @@ static int is_flux_mostly_unmatched(const struct glint_lamp_tracker *t,
 }
 
 /* Returns whether the picture is the first after a cut: most flux of the
- * previous picture has vanished, and most flux of this one is new. */
+ * previous picture has vanished, and most flux of this one is new. If one of
+ * them has no flux, MANY_LIGHTS lamps in the other suffice. */
 static int is_scene_cut(const struct glint_lamp_tracker *t,
                         const struct glint_spot *spots, int n)
 {
@@ -292,7 +293,7 @@ static void match_spots_to_tracks(struct glint_lamp_tracker *t,
     t->was_cut = t->step.is_fresh;
 }
 
-/* --------------------------------------------------------------------- new */
+/* -------------------------------------------------------------- new tracks */
 
 /* Returns whether record P is replaced rather than record Q when a new lamp
  * needs a record. Records of lost lamps are replaced first, then records of
@@ -371,7 +372,7 @@ static void begin_tracks_of_unmatched_spots(struct glint_lamp_tracker *t,
     }
 }
 
-/* -------------------------------------------------------------------- shown */
+/* ------------------------------------------------------------- shown tracks */
 
 /* Returns the power by which track R is ranked. The power of a track that is
  * already shown counts a quarter more, so that two tracks of similar power do

@@ -163,8 +163,9 @@ static int32_t step_filter_q15(struct glint_follow *f, int64_t target,
     return change_q15;
 }
 
-/* Moves the filter's value from AHEAD, the prediction, towards TARGET, the
- * measured number, as if the error were noise of magnitude SPREAD or more. */
+/* Moves the filter's value from AHEAD, the prediction, by the fraction
+ * smooth_q15 towards TARGET, the measured number, as the error is noise. Sets
+ * drift to 0, and raises spread to at least SPREAD. */
 static void step_filter_as_noise(struct glint_follow *f, int64_t ahead,
                                  int64_t target, int64_t spread,
                                  const struct glint_pace *pace)
@@ -209,7 +210,7 @@ static int64_t clamp_i64(int64_t x, int64_t low, int64_t high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* ------------------------------------------------------------- what is seen */
+/* -------------------------------------------------------------------- spots */
 
 int64_t glint_record_clamp_flux_q16(const struct glint_spot *spot)
 {
@@ -320,7 +321,7 @@ static void slow_unseen_lamp(struct glint_record *r,
 /* Updates the average velocity of the lamp along AXIS with the motion from
  * position BEFORE. Motion that is noise has half the weight of motion that is a
  * change. The first change of a new lamp sets the velocity. Velocities are
- * clamped to 16 picture widths per second. */
+ * clamped to 16 picture widths per second. Does nothing if no time passed. */
 static void update_velocity(struct glint_record *r,
                             const struct glint_record_step *step, int axis,
                             int64_t before_q16, int32_t change_q15)

@@ -102,7 +102,8 @@ void glint_record_update_with_spot(struct glint_record *r,
                                    const struct glint_spot *spot);
 
 /* Updates a record for a picture in which the lamp has no spot: moves the lamp
- * by its velocity, and frees the record after memory_ms. */
+ * by its velocity. Frees the record if the lamp is far off-screen, or is faded
+ * out and leaving the picture or lost for memory_ms. */
 void glint_record_update_without_spot(struct glint_record *r,
                                       const struct glint_record_step *step);
 

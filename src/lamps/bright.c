@@ -23,9 +23,9 @@ void glint_bright_allocate(struct glint_bright *b, struct glint_arena *arena,
         glint_arena_allocate(arena, count_blocks(width), sizeof *b->marked);
 }
 
-/* Clears the brightness of the last block after pixel WIDTH - 1, as blocks are
- * read in whole words. */
-void glint_bright_clear_padding(struct glint_bright *b, int width)
+/* Sets the width of rows, marks the curve as not made, and clears the
+ * brightness after pixel WIDTH - 1, as blocks are read in whole words. */
+void glint_bright_init(struct glint_bright *b, int width)
 {
     const int padded = (int)count_blocks(width) * BRIGHT_BLOCK;
 

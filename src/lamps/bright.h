@@ -82,7 +82,7 @@ struct glint_bright {
  * measures, only adds up their size. */
 void glint_bright_allocate(struct glint_bright *b, struct glint_arena *arena,
                            int width);
-void glint_bright_clear_padding(struct glint_bright *b, int width);
+void glint_bright_init(struct glint_bright *b, int width);
 
 /* Prepares for reading IMAGE, which must stay valid until the next call. */
 void glint_bright_begin_picture(struct glint_bright *b,
@@ -101,9 +101,9 @@ int glint_bright_scan_row(struct glint_bright *b, int y);
 void glint_bright_read_pixel_light(const struct glint_bright *b, int x,
                                    int32_t rgb_q20[3]);
 
-/* Returns the linear light of the next higher code of channel C minus LIGHT,
- * which is the resolution of the pixel format there; or 0 for formats with 8
- * bits or more. */
+/* Returns the linear light of the next higher code of channel C minus that of
+ * the code at LIGHT, which is the resolution of the pixel format there; 0 for
+ * formats with 8 bits. */
 int32_t glint_bright_compute_code_step_q20(const struct glint_bright *b, int c,
                                            int32_t light_q20);
 

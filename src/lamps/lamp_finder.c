@@ -69,7 +69,7 @@ static void sort_candidates_by_flux(struct glint_lamp_finder *f)
     glint_heap_sort(&heap, f->n);
 }
 
-/* Adds CANDIDATE. If there are LIGHT_CANDIDATES candidates already, removes the
+/* Adds CANDIDATE. If there are more than LIGHT_CANDIDATES then, removes the
  * faintest. */
 static void add_candidate(struct glint_lamp_finder *f,
                           const struct glint_candidate *candidate)
@@ -201,9 +201,9 @@ find_nearest_kept_lamp(const struct glint_lamp_finder *f,
     return best;
 }
 
-/* Reduces the candidates to the first MAX. Each excess candidate is merged into
- * the nearest of these within JOIN_REACH merge distances. If there is none, the
- * excess candidate is dropped. */
+/* Reduces the candidates to the first MAX. Each excess lamp is merged into the
+ * nearest of these within JOIN_REACH merge distances. If there is none, it is
+ * dropped, as are excess faint candidates. */
 static void reduce_lamps_to_max(struct glint_lamp_finder *f, int max)
 {
     const int n_lights = count_certain_lamps(f);
@@ -268,8 +268,9 @@ static void add_threshold_level(struct glint_lamp_finder *f, int32_t light_q20,
 }
 
 /* Adds two brightness levels for a picture whose white is below clipping:
- * pixels above the lower, and above the upper threshold. Adds none if more than
- * DARK_SHARE of the picture reaches the lower threshold. */
+ * pixels above the lower, and above the upper threshold. Adds none if regions
+ * are not scored (judge is 0), or more than DARK_SHARE of the picture reaches
+ * the lower threshold. */
 static void add_dark_picture_levels(struct glint_lamp_finder *f,
                                     struct thresholds t, int32_t cost_q8)
 {
@@ -363,8 +364,8 @@ static int is_region_bright_enough(const struct glint_lamp_finder *f,
            sum->n_seeds >= sum->area >> SEED_LOG2;
 }
 
-/* Returns whether region SUM is large enough to be a lamp of an earlier frame
- * that has faded. */
+/* Returns whether keep_faint is set and region SUM is large enough to be a lamp
+ * of an earlier frame that has faded. */
 static int can_region_be_faded_lamp(const struct glint_lamp_finder *f,
                                     const struct glint_region *sum)
 {
@@ -448,7 +449,6 @@ static void mark_needed_pixels(struct glint_run **outer,
         (*outer)->want1 = run->x1;
 }
 
-/* Returns whether the region is at most max_area, the max size of a lamp. */
 static int is_region_small_enough(const struct glint_lamp_finder *f,
                                   const struct glint_region *sum)
 {
@@ -617,7 +617,7 @@ glint_lamp_finder_init(struct glint_lamp_finder **finder,
     if (!f)
         return GLINT_E_MEMORY;
     f->cfg = *cfg;
-    glint_bright_clear_padding(&f->bright, cfg->width);
+    glint_bright_init(&f->bright, cfg->width);
     f->n = f->dropped = 0;
     f->white->light_q20 = f->least_white_q20 = 0;
     f->alone_q8 = SCORE_ALONE;

@@ -35,7 +35,7 @@ enum glint_status glint_profile_init(struct glint_profile **profile, void *mem,
     p = allocate_profile(&arena);
     if (!p)
         return GLINT_E_MEMORY;
-    glint_bright_clear_padding(&p->rings.bright, 1);
+    glint_bright_init(&p->rings.bright, 1);
     *profile = p;
     return GLINT_OK;
 }

@@ -52,9 +52,9 @@ struct glint_profile_channel {
                                      unit of u: white minus background */
     int32_t step_q16; /* difference of u to the next higher code at the
                          background if codes have fewer than 8 bits, else 0 */
-    /* [k]: number of pixels whose u, the light above the background, is 2^-k or
-     * more, where pixels below 2^(1 - k) count as fractions; [0]: number of
-     * clipped pixels */
+    /* With u, the light above the background: [k]: number of pixels of u from
+     * 2^(1 - k) on, plus 2^k u - 1 for each pixel of u from 2^-k to 2^(1 - k);
+     * [0]: number of clipped pixels */
     int64_t area_q8[GLINT_PROFILE_LEVELS + 1];
     /* [k]: number of pixels whose u is 2^-k or more and below 2^(1 - k); [0]:
      * number of pixels whose u is 1 or more */

@@ -29,9 +29,7 @@ struct glint_white {
     int32_t light_q20;     /* linear light of white */
 };
 
-/* Measures the brightness of the picture of HEIGHT rows that BRIGHT reads.
- *
- */
+/* Measures the brightness of the picture of HEIGHT rows that BRIGHT reads. */
 void glint_white_measure_picture(struct glint_white *white,
                                  struct glint_bright *bright, int height);
 

@@ -43,7 +43,7 @@ static struct glint_bright *create_bright_scanner(int width, void **mem)
     memset(*mem, 0x5a, arena.used);
     arena = glint_arena_init_in_memory(*mem, arena.used);
     glint_bright_allocate(b, &arena, width);
-    glint_bright_clear_padding(b, width);
+    glint_bright_init(b, width);
     return b;
 }
 

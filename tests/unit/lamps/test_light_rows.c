@@ -65,7 +65,7 @@ static void make_random_image(struct fixture *f, enum glint_pixel_format format)
             arena = glint_arena_init_in_memory(f->mem, arena.used);
         }
     }
-    glint_bright_clear_padding(&f->bright, WIDTH);
+    glint_bright_init(&f->bright, WIDTH);
     glint_bright_begin_picture(&f->bright, &f->image);
 }
 
