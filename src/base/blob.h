@@ -42,7 +42,7 @@ struct glint_blob_kind {
 enum glint_blob_fault {
     GLINT_BLOB_OK,
     GLINT_BLOB_UNALIGNED,    /* the block's address is not a multiple of 4 */
-    GLINT_BLOB_FOREIGN,      /* wrong magic number */
+    GLINT_BLOB_FOREIGN,      /* wrong magic number, or fewer than 8 bytes */
     GLINT_BLOB_NEWER,        /* newer version than this program reads */
     GLINT_BLOB_NO_VERSION,   /* version 0, which never existed */
     GLINT_BLOB_OLDER,        /* older version than this program reads */
@@ -99,8 +99,8 @@ enum glint_blob_fault {
 struct glint_blob {
     const struct glint_blob_header *header;
     size_t bytes, header_bytes;
-    /* bytes of all sections that glint_blob_find_section() returned, once for
-     * each call */
+    /* total bytes that the calls of glint_blob_find_section() requested; a
+     * section requested twice counts twice */
     uint64_t referred;
 };
 

@@ -17,8 +17,9 @@
  * not guarantee. */
 STATIC_ASSERT((-3 >> 1) == -2);
 
-/* Hides the value of pointer P from the compiler, which then reloads what P
- * points to instead of loading it early and spilling it to the stack. */
+/* Hides the value of P from the compiler. If P is a pointer, the compiler then
+ * reloads what P points to instead of loading it early and spilling it to the
+ * stack. */
 #define FORGET(p) __asm__("" : "+r"(p))
 
 /* Prefetches the memory at P into the cache. */

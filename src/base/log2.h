@@ -26,7 +26,8 @@ static inline int32_t q_log2_q16(uint64_t x)
            q_mul(q_mul(f_q16, 65536 - f_q16, 16), bend_q16, 16);
 }
 
-/* Returns 2^X for X below 46; the relative error is below 2^-15. */
+/* Returns 2^X for X below 46. The relative error is below 2^-15 for X of 0 or
+ * more; below 0 the result is truncated to _q16. */
 static inline int64_t q_exp2_q16(int32_t x_q16)
 {
     const int whole = x_q16 >> 16;

@@ -4,10 +4,9 @@
  *
  * Variables have stdint types, and the suffix of a name states the number of
  * fraction bits: x_q30 has 30. q_mul(a_qA, b_qB, s) has A + B - s fraction
- * bits; tools/lint/q checks the suffixes. All functions round to nearest, ties
- * up. With -DGLINT_Q_CHECK, an operation whose exact result does not fit
- * aborts.
- */
+ * bits; tools/lint/q checks the suffixes. Functions round to nearest, ties up,
+ * unless their comment states otherwise. With -DGLINT_Q_CHECK, an operation
+ * whose exact result does not fit aborts. */
 #ifndef GLINT_BASE_Q_H
 #define GLINT_BASE_Q_H
 

@@ -52,7 +52,7 @@ static void expand_row_to_ycc(const struct stretch *s, int row,
     }
 }
 
-static inline uint8_t round_chroma_mean(int32_t sum_q7, int log2)
+static inline uint8_t round_mean_code(int32_t sum_q7, int log2)
 {
     return (uint8_t)q_smaller(
         q_larger((sum_q7 + (1 << (6 + log2))) >> (7 + log2), 0), 255);
@@ -83,7 +83,7 @@ static void write_mean_chroma_of_pairs(struct stretch *s, int row)
     uint8_t *restrict pairs = get_shared_chroma_row(s, row);
 
     for (int i = 0; i < ((s->n_x + 1) & ~1); i++)
-        pairs[i] = round_chroma_mean(s->sum_q7[i], log2);
+        pairs[i] = round_mean_code(s->sum_q7[i], log2);
 }
 
 static void write_ycc_row(const struct stretch *s, int row,
@@ -94,7 +94,7 @@ static void write_ycc_row(const struct stretch *s, int row,
         uint8_t *restrict code = s->codes->sample[c][row];
 
         for (int i = 0; i < s->n_x; i++)
-            code[i] = round_chroma_mean(from_q7[i], 0);
+            code[i] = round_mean_code(from_q7[i], 0);
     }
 }
 
@@ -121,7 +121,6 @@ static void hide_background_of_ycc_pixels(struct stretch *s,
     }
 }
 
-/* Returns whether all pixels of the run are fully hidden. */
 static int are_all_pixels_hidden(const struct stretch *s)
 {
     unsigned shown = 0;
@@ -132,7 +131,6 @@ static int are_all_pixels_hidden(const struct stretch *s)
     return !shown;
 }
 
-/* Sets the codes of all pixels of the run to black. */
 static void set_run_black(const struct stretch *s, int is_rgb)
 {
     const uint8_t luma = (uint8_t)(is_rgb ? 0 : s->black);

@@ -50,8 +50,8 @@ void glint_light_sum_read_pixels(struct glint_light_sum *sum,
                                  int n_x, int n_y);
 
 /* Adds the light of pixels FROM .. TO - 1, in row ROW (0 or 1) of the rows that
- * were read last, to RGB_Q20. FROM and TO count from the left end of these
- * rows. Negative light counts as 0. */
+ * were read last, to RGB_Q20. FROM and TO are columns of the image. Negative
+ * light counts as 0. */
 void glint_light_sum_add_row(const struct glint_light_sum *sum,
                              const struct glint_codes *codes, int row, int from,
                              int to, int64_t rgb_q20[3]);

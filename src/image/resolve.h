@@ -80,7 +80,7 @@ void glint_resolve_add_to_codes(const struct glint_resolve *resolve,
 
 /* Adds LIGHT, N values per channel, to a row of a LINEAR_Q20 picture (4-byte
  * aligned) from (X, Y) to the right. Sums are clamped to int32; returns the
- * number of samples that were clamped. */
+ * number of samples at these limits. */
 int glint_resolve_add_to_linear(const struct glint_image *image, int x, int y,
                                 int n, const int32_t *const light_q20[3]);
 

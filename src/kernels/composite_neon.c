@@ -165,7 +165,8 @@ static inline V v_look_up_entries(const uint8x16x2_t *table, PLACES at)
 #endif
 }
 
-/* Returns X times 2^ZEROS. The power is read from a table at the offsets AT. */
+/* Returns X times 2^ZEROS. NEON shifts each lane by its own count, so the table
+ * of powers is not used. */
 static inline V v_shift_by_zeros(const TONE *t, V x, V zeros, PLACES at)
 {
     (void)t;

@@ -32,9 +32,9 @@ glint_add_luma_fn(uint8_t *luma, const uint8_t *cb, const uint8_t *cr,
                   const uint16_t *const light[3], int16_t *const change[3],
                   int n, const struct glint_mix *mix, const int16_t *round);
 
-/* When a row of 4:2:2 or 4:2:0 changes the chroma that pairs of pixels share:
- * it changes by the mean changes of R', B' and Y' over all pixels that share
- * it. */
+/* States when a row of 4:2:2 or 4:2:0 changes the chroma that pairs of pixels
+ * share. Chroma changes by the mean changes of R', B' and Y' over all pixels
+ * that share it. */
 enum glint_pair_step {
     GLINT_PAIRS_ALONE, /* 4:2:2: the row's pairs have their own chroma */
     GLINT_PAIRS_FIRST, /* 4:2:0, first row: stores the mean changes of pairs */

@@ -14,7 +14,8 @@ enum {
 };
 
 /* Returns the index of the planned light nearest to LIGHT, or -1 if none is
- * within the chord NEAR_Q30 (distance of directions on the unit sphere). */
+ * within the chord NEAR_Q30 (distance of directions on the unit sphere). Also,
+ * apart_q30 of both may differ by NEAR_Q30 at most. */
 static int find_nearest_planned_light(const struct glint_still *s,
                                       const struct glint_light *light,
                                       int32_t near_q30)
@@ -48,8 +49,8 @@ static int64_t compute_channel_over_power_q20(const struct glint_light *b,
 }
 
 /* Sets the gains of planned light I to sum_q20, the power of the lights
- * assigned to it, / its planned power. Returns 0 if a gain would exceed 1.5, or
- * change the colour by more than 1/64. */
+ * assigned to it, / its planned power. Gains are clamped to 1.5. Returns 0 if a
+ * channel then differs by more than 1/64 of the largest channel. */
 static int compute_light_gain(struct glint_still *s, int i)
 {
     const int64_t *sum_q20 = s->sum_q20[i];

@@ -25,10 +25,10 @@ struct glint_star_lamp {
                            distance from the lamp, exceeds this, pixels^2 */
     int is_bare;        /* 1: the picture does not show the lamp, so its core is
                            drawn, too */
-    /* Power per channel in three forms. line: light where the line profile is
-     * 1; each mantissa has 15 bits and counts times 2^line_exponent. core:
-     * power of the lamp, a mantissa of 15 bits times 2^core_exponent. halo:
-     * log2 of the power. */
+    /* Power per channel in three forms. Light per unit of the line profiles, 1
+     * pixel from the lamp, is line[c] 2^line_exponent. The power of the lamp is
+     * core[c] 2^core_exponent. Both mantissas have 15 bits. halo: log2 of the
+     * power. */
     int32_t line[3], line_exponent, core[3], core_exponent, halo_log2_q16[3];
     /* Scale of the profiles across lines, which the lamp's radius widens:
      * profile steps per pixel, and pixels per profile step. */

@@ -232,8 +232,9 @@ static void choose_halo_tables(struct glint_star_lamp *lamp,
     }
 }
 
-/* Computes LAMP, the drawing parameters of light L. Returns 0 if no part of its
- * starburst is brighter than FAINTEST. */
+/* Computes LAMP, the drawing parameters of light L. Returns 0 if L has no light
+ * or a coordinate of 2^17 pixels or more, or if no part of its starburst is
+ * brighter than FAINTEST. */
 static int set_star_lamp(struct glint_star_lamp *lamp,
                          const struct glint_star_tables *t,
                          const struct glint_star_light *l,

@@ -79,8 +79,8 @@ static void add_lamps_to_row(const struct glint_star_row *r,
 
 /* Writes the accumulated light of channel C of ROW to LIGHT, clamped to 16
  * bits, and resets it to 0 in ROW. Returns nonzero if any light was nonzero. */
-static int move_accumulated_light_to_codes(const struct glint_star_stretch *row,
-                                           int c, uint16_t *light_q16)
+static int move_accumulated_light_to_q16(const struct glint_star_stretch *row,
+                                         int c, uint16_t *light_q16)
 {
     int64_t *const light_q20 = row->light_q20[c];
     int any = 0;
@@ -95,9 +95,8 @@ static int move_accumulated_light_to_codes(const struct glint_star_stretch *row,
     return any;
 }
 
-static int
-move_accumulated_light_to_linear(const struct glint_star_stretch *row, int c,
-                                 int32_t *to_q20)
+static int move_accumulated_light_to_q20(const struct glint_star_stretch *row,
+                                         int c, int32_t *to_q20)
 {
     int64_t *const light_q20 = row->light_q20[c];
 
@@ -126,11 +125,11 @@ static enum glint_given write_pixel_rows(void *state,
 
         add_lamps_to_row(r, &row);
         for (int c = 0; c < 3; c++)
-            any |= r->star->is_linear
-                       ? move_accumulated_light_to_linear(&row, c,
-                                                          rows->light_q20[c])
-                       : move_accumulated_light_to_codes(
-                             &row, c, rows->light->rgb_q16[c][k]);
+            any |=
+                r->star->is_linear
+                    ? move_accumulated_light_to_q20(&row, c, rows->light_q20[c])
+                    : move_accumulated_light_to_q16(&row, c,
+                                                    rows->light->rgb_q16[c][k]);
     }
     return any ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;
 }

@@ -40,7 +40,6 @@ int glint_bins_count_overlapped_tiles(const struct glint_bins *bins,
  * counts of the tiles that BOX overlaps. */
 void glint_bins_clear_counts(struct glint_bins *bins);
 void glint_bins_count_box(struct glint_bins *bins, struct glint_box box);
-/* Converts the counts to start indices of the lists. */
 void glint_bins_convert_counts_to_starts(struct glint_bins *bins);
 /* Appends ITEM to the lists of the tiles that BOX overlaps. Lists have the
  * order in which items are appended. */

@@ -10,7 +10,7 @@ static int64_t attenuate_light(int64_t light, int cover_q8)
     return q_shift(light * (GLINT_COVER_ALL - cover_q8), 8);
 }
 
-/* ---------------------------------------------------------------- together */
+/* ---------------------------------------------------------------- blending */
 
 static void blend_code_light(const struct glint_pass_rows *rows, int row,
                              int n_x, const struct glint_blend_rows *s,

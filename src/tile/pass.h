@@ -54,8 +54,8 @@ struct glint_pass {
     /* Begins tile TILE. Returns 0 if the pass draws nothing in the tile; ROWS
      * is then not called. */
     int (*tile)(void *state, struct glint_box tile);
-    /* Draws rows of the current tile. Called from the top row to the bottom row
-     * of the tile, once for each row, even if the light is discarded. */
+    /* Draws rows of the current tile. Called from the top to the bottom of the
+     * tile, until all its rows are drawn, even if the light is discarded. */
     enum glint_given (*rows)(void *state, const struct glint_pass_rows *rows);
 };
 
