@@ -225,8 +225,8 @@ static void set_initial_clusters(const struct clusters *p)
     }
 }
 
-/* Scales each kernel to the sum 1. Then out factors are near the albedo and in
- * factors near 1. */
+/* Scales each kernel to the sum 1 and the in factors to the mean 1. Then out
+ * factors are near the albedo. */
 static void normalise_kernels(const struct clusters *p)
 {
     const int texels = p->fit->side * p->fit->side;

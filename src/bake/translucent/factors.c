@@ -75,7 +75,7 @@ static bool set_initial_kernels(struct factors *p)
             if (some || (in.u_to - in.u_from) * (in.v_to - in.v_from) == k2)
                 p->complete[a.rows++] = x;
         }
-    if (!glint_terms_compute(&a, p->fit->kernels, &terms))
+    if (!glint_compute_leading_terms(&a, p->fit->kernels, &terms))
         return false;
     for (int j = 0; j < terms.n; j++)
         memcpy(get_kernel_entries(p, j), terms.right + (size_t)j * (size_t)k2,

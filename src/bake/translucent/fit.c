@@ -55,8 +55,7 @@ double glint_scatter_entry(const struct glint_scatter_fit *fit, int x, int c,
 }
 
 /* Returns the light of channel C that leaves texel X if LIGHT enters and kernel
- * H spreads it. Entries of H are offsets from a texel to the source of its
- * light. */
+ * H spreads it. Entries of H are offsets from the source of the light. */
 static double gather_light_by_kernel(const struct glint_scatter_fit *fit, int x,
                                      const double *h, const double *light,
                                      int c)
@@ -306,7 +305,6 @@ static double compute_psnr_db(double square, double peak)
                                   : NO_ERROR_DB;
 }
 
-/* Measures the errors of the fit's entries and row sums. */
 static void measure_entry_errors(const struct glint_scatter_rows *rows,
                                  struct glint_scatter_fit *fit)
 {

@@ -54,8 +54,9 @@ static void swap_rows(double *a, double *b, int n)
     }
 }
 
-/* One Jacobi rotation: makes columns I and K of A orthogonal and applies the
- * same rotation to TURN. Returns false if they were orthogonal already. */
+/* One Jacobi rotation: puts the longer of columns I and K of A first, makes
+ * them orthogonal, and does the same to TURN, which may be NULL. Returns false
+ * if they were orthogonal already. */
 static bool orthogonalise_column_pair(double *a, int rows, int i, int k,
                                       double *turn, int m)
 {
@@ -125,8 +126,7 @@ void glint_solve_symmetric_system(double *a, int n, double *b)
     }
 }
 
-/* Orthonormalises the N rows V[n][m]. Rows that depend on earlier rows become
- * 0. */
+/* Rows of V[n][m] that depend on earlier rows become 0. */
 static void orthonormalise_rows(double *v, int n, int m)
 {
     for (int i = 0; i < n; i++) {
@@ -234,8 +234,8 @@ static void set_leading_terms(const double *y, const double *v,
     }
 }
 
-bool glint_terms_compute(const struct glint_tall *a, int n,
-                         struct glint_terms *terms)
+bool glint_compute_leading_terms(const struct glint_tall *a, int n,
+                                 struct glint_terms *terms)
 {
     const int m = a->columns, wanted = n < m ? n : m;
     const int wide = wanted + SPARE < m ? wanted + SPARE : m;

@@ -35,8 +35,8 @@ struct glint_terms {
 /* Computes the leading terms of A: at most N and at most as many as A has
  * columns. The caller frees TERMS by glint_terms_free(). Returns false if
  * there is no memory. Needs 8 columns^2 + 8 rows (N + 8) bytes. */
-bool glint_terms_compute(const struct glint_tall *a, int n,
-                         struct glint_terms *terms);
+bool glint_compute_leading_terms(const struct glint_tall *a, int n,
+                                 struct glint_terms *terms);
 void glint_terms_free(struct glint_terms *terms);
 
 /* Rotates the N columns A[n][rows] until they are orthogonal and sorts them by

@@ -95,10 +95,11 @@ static double get_texel_factor(const struct writer *w, int p, int c, int x)
     return fit->out[CHANNELS * (size_t)x + (size_t)c];
 }
 
-/* Converts VALUE[N] to unsigned codes of BITS bits, such that MOST becomes the
- * max code, and appends them. Returns false if there is no memory. */
-static bool append_unsigned_codes(struct writer *w, const double *value, int n,
-                                  double most, int bits)
+/* Converts VALUE[N] to codes such that MOST becomes 2^BITS - 1, and appends
+ * them, negative ones in two's complement. Returns false if there is no
+ * memory. */
+static bool append_codes(struct writer *w, const double *value, int n,
+                         double most, int bits)
 {
     const double full = most > 0 ? (double)((1L << bits) - 1) / most : 0;
     uint8_t *code = malloc((size_t)n);
@@ -111,8 +112,7 @@ static bool append_unsigned_codes(struct writer *w, const double *value, int n,
     return code != NULL;
 }
 
-/* Appends the factors of channel C as codes. With clusters each texel has only
- * the factor of its cluster. */
+/* With clusters each texel has only the factor of its cluster. */
 static bool append_factor_codes(struct writer *w, int c, double *value)
 {
     const bool is_factored = w->fit->model == GLINT_SCATTER_FACTORED;
@@ -125,8 +125,7 @@ static bool append_factor_codes(struct writer *w, int c, double *value)
             most[p] = fmax(most[p], fabs(value[x]));
         }
         w->largest[c * w->fit->kernels + p] = most[p];
-        if (is_factored &&
-            !append_unsigned_codes(w, value, w->texels, most[p], bits))
+        if (is_factored && !append_codes(w, value, w->texels, most[p], bits))
             return false;
     }
     if (is_factored)
@@ -136,7 +135,7 @@ static bool append_factor_codes(struct writer *w, int c, double *value)
 
         value[x] = most[p] > 0 ? get_texel_factor(w, p, c, x) / most[p] : 0;
     }
-    return append_unsigned_codes(w, value, w->texels, 1, bits);
+    return append_codes(w, value, w->texels, 1, bits);
 }
 
 static bool append_in_factor_codes(struct writer *w, int c, double *value)
@@ -149,8 +148,7 @@ static bool append_in_factor_codes(struct writer *w, int c, double *value)
     }
     w->in[c] = most * ldexp(1, GLINT_TRANSLUCENT_CODE_BITS) /
                ((1 << GLINT_TRANSLUCENT_CODE_BITS) - 1);
-    return append_unsigned_codes(w, value, w->texels, most,
-                                 GLINT_TRANSLUCENT_CODE_BITS);
+    return append_codes(w, value, w->texels, most, GLINT_TRANSLUCENT_CODE_BITS);
 }
 
 static bool write_all_codes(struct writer *w)

@@ -447,7 +447,6 @@ static int clamp_index(int x, int most)
     return x < 0 ? 0 : x > most ? most : x;
 }
 
-/* Sets diffusion and absorption of each texel for channel C. */
 static void set_channel_diffusion(struct compute *p, int c)
 {
     const int n = p->wide * p->wide;

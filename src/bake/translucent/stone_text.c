@@ -71,9 +71,9 @@ static bool read_kernel_line(struct reader *r)
 
     return read_integer(r, "kernel", 1, GLINT_SCATTER_MAX_KERNEL, kernel) &&
            (*kernel % 2 == 1 ||
-            glint_text_set_error(&r->text, place,
-                                 "kernel must be an odd number, not %d",
-                                 *kernel));
+            glint_text_set_error(
+                &r->text, place,
+                "kernel must be an odd number, 1 to 63, not %d", *kernel));
 }
 
 /* Sets INDEX to the index of the medium named WORD. */

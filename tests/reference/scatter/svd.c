@@ -68,7 +68,7 @@ rebuild_channel_by_svd(const struct channel *p, int n,
     double *row = malloc((size_t)m.columns * sizeof *row);
     struct glint_terms terms;
 
-    if (!row || !glint_terms_compute(&m, n, &terms)) {
+    if (!row || !glint_compute_leading_terms(&m, n, &terms)) {
         free(row);
         return GLINT_E_MEMORY;
     }
@@ -117,7 +117,7 @@ static bool measure_log_fit_error(const struct channel *p, int n,
     struct glint_terms terms;
 
     *square = 0;
-    if (!row || !glint_terms_compute(&m, n, &terms)) {
+    if (!row || !glint_compute_leading_terms(&m, n, &terms)) {
         free(row);
         return false;
     }

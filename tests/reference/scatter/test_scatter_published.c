@@ -157,7 +157,7 @@ TEST(c4_tucker)
     struct glint_terms terms;
 
     assert_non_null(left);
-    assert_true(glint_terms_compute(&m, 5, &terms));
+    assert_true(glint_compute_leading_terms(&m, 5, &terms));
     for (int x = 0; x < TEXELS; x++)
         memcpy(left + x * K2, glint_scatter_get_row(&stone[1], x, 1),
                K2 * sizeof *left);
@@ -303,7 +303,7 @@ TEST(c11_albedo)
     assert_near(glint_scatter_candidate_sums(&o, 16384, 841, false) /
                     glint_scatter_candidate_sums(&o, 16384, 841, true),
                 800, 1);
-    assert_true(glint_terms_compute(&m, K2, &terms));
+    assert_true(glint_compute_leading_terms(&m, K2, &terms));
     for (int x = 0; x < TEXELS; x += 7) {
         double kept = 0, all = 0;
 

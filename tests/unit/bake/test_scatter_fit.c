@@ -294,7 +294,7 @@ TEST(decomposition_matches_lapack)
     memcpy(copy, a, sizeof a);
     assert_int_equal(
         dgesdd(101, 'S', TALL, WIDE, copy, WIDE, s, u, WIDE, vt, WIDE), 0);
-    assert_true(glint_terms_compute(&m, TERMS, &terms));
+    assert_true(glint_compute_leading_terms(&m, TERMS, &terms));
     for (int j = 0; j < TERMS; j++) {
         /* The sign of a pair of vectors is arbitrary. */
         const double sign = u[j] * terms.left[j * TALL] < 0 ? -1 : 1;
@@ -322,7 +322,7 @@ TEST(decomposition_is_orthogonal_and_optimal)
 
     a[0] = a[WIDE + 1] = a[2 * WIDE + 2] = 3;
     a[3 * WIDE + 3] = -0.5;
-    assert_true(glint_terms_compute(&m, 6, &terms));
+    assert_true(glint_compute_leading_terms(&m, 6, &terms));
     for (int j = 0; j < 6; j++)
         assert_near(terms.value[j], j < 3 ? 3 : j == 3 ? 0.5 : 0, 1e-12);
     for (int i = 0; i < 6; i++)

@@ -96,7 +96,7 @@ static const struct {
     {"size 96\n", "x:1:6: size must be 32, 64, 128 or 256, not 96"},
     {"size 16\n", "x:1:6: "},
     {"size 512\n", "x:1:6: "},
-    {"kernel 14\n", "x:1:8: kernel must be an odd number, not 14"},
+    {"kernel 14\n", "x:1:8: kernel must be an odd number, 1 to 63, not 14"},
     {"kernel 65\n", "x:1:8: "},
     {"kernel 0\n", "x:1:8: "},
     {"texel 0\n", "x:1:7: "},
