@@ -21,7 +21,7 @@ static bool read_source_name(struct glint_text *text, char *source)
 
     if (!word.length)
         return glint_text_set_error(text, word.place,
-                                    "the name of the picture is missing");
+                                    "the file name is missing: source PICTURE");
     memcpy(source, word.start, (size_t)word.length);
     source[word.length] = '\0';
     return true;

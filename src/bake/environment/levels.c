@@ -62,7 +62,7 @@ static void compute_block_cone(const struct glint_sphere *s, int i, int j,
 
 /* Adds the Gaussian-weighted light of block (I, J), SIDE texels wide, to SUM[0
  * .. 2] (RGB) and its weight to SUM[3]. TOWARD: direction for which the blur is
- * computed. */
+ * computed. NEAREST: min cosine between it and a texel that counts. */
 static void add_block_light(const struct glint_sphere *s, int i, int j,
                             int side, const double toward[3], double sigma,
                             double nearest, double sum[4])

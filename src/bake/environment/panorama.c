@@ -79,8 +79,8 @@ static double compute_pixel_direction(const struct panorama *p, double x,
     return size;
 }
 
-/* Sets LIGHT to the colour of pixel I; negative and NaN samples become 0,
- * infinite ones the max finite sample. */
+/* Sets LIGHT to the scaled colour of pixel I; negative and NaN samples become
+ * 0, infinite ones the max finite sample. */
 static void read_pixel_light(const struct panorama *p, size_t i,
                              double light[3])
 {

@@ -4,9 +4,10 @@
  *
  * A luminance threshold is halved repeatedly. It ends near the mean luminance
  * of the texels below it, at a given multiple of this mean. At each threshold,
- * connected texels above it form a spot. A spot is a light if it is small
- * enough. The lowest threshold at which it is small determines its extent.
- * Lights that merge at a lower threshold stay separate.
+ * connected texels above it form a spot. A spot is a light if it is bright and
+ * small enough. The lowest threshold at which it is small determines its
+ * extent. Spots that merge at a lower threshold become one light, or stay
+ * separate if their union is too large.
  */
 #include "bake/environment/sphere.h"
 
@@ -52,7 +53,6 @@ static double get_texel_luminance(const struct split *s, int i)
     return glint_luminance(s->sphere->texel[i].light);
 }
 
-/* Sets NEAR to the indices of the eight neighbours of texel I. */
 static void find_texel_neighbours(const struct split *s, int i, int near[8])
 {
     const int side = s->sphere->side, x = i % side, y = i / side;
@@ -110,7 +110,7 @@ static double measure_queued_spot(const struct split *s, int n, double *square)
 }
 
 /* Records the N texels in the queue as a spot if they are bright and small
- * enough for a light. */
+ * enough for a light, and removes the spots that they contain. */
 static void add_spot_if_light(struct split *s, int n)
 {
     double square;
@@ -129,7 +129,6 @@ static void add_spot_if_light(struct split *s, int n)
     s->spot[s->n_spots++].light = light;
 }
 
-/* Returns the mean luminance of all texels below THRESHOLD. */
 static double compute_mean_luminance_below(const struct split *s, int n,
                                            double threshold)
 {
@@ -163,8 +162,8 @@ static void find_bright_spots(struct split *s, int n, double above)
 }
 
 /* Sets MEAN to the mean light of the ring around spot K, without texels of
- * other lights. Sets it to 0 if other lights fill the ring. ROUND: an unused
- * flood-fill number, which marks visited texels. */
+ * spots that are not extracted yet. Sets it to 0 if these fill the ring. ROUND:
+ * an unused flood-fill number, which marks visited texels. */
 static void compute_mean_around_spot(struct split *s, int k, int n, int round,
                                      double mean[3])
 {

@@ -148,9 +148,9 @@ static void average_mipmap_level(struct writer *w, int k)
             }
 }
 
-/* Sets level K to the map blurred by a Gaussian of width sigma. From level 4
- * on, the map is first reduced to texels of about sigma / 8, which is
- * faster. */
+/* Sets level K to the map blurred by a Gaussian; its sigma is 2^(K - 1) texels
+ * of level 0. From level 4 on, the map is first reduced to texels of sigma / 8,
+ * but not below 32 x 32, which is faster. */
 static bool blur_gaussian_level(struct writer *w, int k)
 {
     const double texel =

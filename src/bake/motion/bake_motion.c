@@ -458,7 +458,6 @@ static void store_landmark_intensities(struct glint_motion_baker *b,
         }
 }
 
-/* Stores a frame whose pose was computed. */
 static void store_located_frame(struct glint_motion_baker *b,
                                 const struct glint_motion_sight *s,
                                 const bool *is_new,

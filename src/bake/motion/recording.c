@@ -283,8 +283,8 @@ static bool read_vector_member(const struct recording *r, const json_t *object,
     for (size_t k = 0; k < 3; k++) {
         v[k] = json_number_value(json_array_get(value, k));
         if (value && !json_is_number(json_array_get(value, k)))
-            return set_error_in_piece(r, 1, 1, "'%s' needs three numbers",
-                                      name);
+            return set_error_in_piece(
+                r, 1, 1, "'%s' needs three numbers [x, y, z]", name);
     }
     return true;
 }
@@ -453,8 +453,9 @@ static bool read_member_value(struct recording *r, int key)
     return r->status == GLINT_OK;
 }
 
-/* Consumes blanks, then a comma or CLOSE, the end of the list. Sets DONE to
- * whether it was CLOSE. */
+/* Consumes blanks and a comma before the next item. Sets DONE to whether CLOSE,
+ * which ends the list, follows; it is not consumed, and a comma before it is
+ * allowed. */
 static bool consume_list_separator(struct recording *r, char close, bool *done)
 {
     if (!consume_blanks(r))

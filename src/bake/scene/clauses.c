@@ -72,7 +72,7 @@ static void compare_candidate_word(struct near *near, const char *candidate)
 }
 
 /* Writes "; did you mean 'BEST'?" to TEXT, or "" if no candidate is similar
- * enough: it may differ in at most 1/3 of its letters. */
+ * enough: it may differ in one letter, or in 1/3 of its letters. */
 static const char *write_spelling_hint(const struct near *near,
                                        char text[NEAR_BYTES])
 {

@@ -40,7 +40,8 @@ bool glint_describe_parse_motion(struct glint_describer *d);
 bool glint_describe_check_sensors(struct glint_describer *d);
 
 /* describe_things.c: appends an object of KIND. Returns NULL if there are too
- * many objects or the name is already used; the error then refers to PLACE. */
+ * many objects, or the name is reserved or already used; the error then refers
+ * to PLACE. */
 struct glint_described_object *
 glint_describe_append_object(struct glint_describer *d,
                              enum glint_described_kind kind, const char *name,

@@ -16,7 +16,8 @@
 /* min angular radius of an environment's light, degrees */
 #define LEAST_DEG 0.01
 
-/* Sets NAME to the base name of FILE without its extension. */
+/* Sets NAME to the base name of FILE without its extension, truncated if it is
+ * too long; other characters than printable ASCII become _. */
 static void set_environment_name(const char *file,
                                  char name[GLINT_DESCRIPTION_NAME_BYTES])
 {
@@ -76,8 +77,8 @@ bool glint_describe_parse_environment(struct glint_describer *d)
     enum glint_status status;
 
     if (!word.length)
-        return glint_text_set_error(&d->text, word.place,
-                                    "the environment's file name is missing");
+        return glint_text_set_error(
+            &d->text, word.place, "the file name is missing: environment FILE");
     if (!glint_clauses_read(&d->text, "environment", clause))
         return false;
     glint_describe_copy_file_name(&word, name);

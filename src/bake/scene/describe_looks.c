@@ -107,7 +107,6 @@ static bool read_ward_material(struct glint_describer *d,
 /* -------------------------------------------------------------------
  * translucent medium */
 
-/* Reads the file WORD of a translucent medium. */
 static bool read_translucent_file(struct glint_describer *d,
                                   const struct glint_word *word,
                                   struct glint_described_material *m)
@@ -172,8 +171,7 @@ static bool read_translucent_material(struct glint_describer *d,
     file = glint_text_next_word(&d->text);
     if (!file.length)
         return glint_text_set_error(
-            &d->text, file.place,
-            "the translucent material's file name is missing");
+            &d->text, file.place, "the file name is missing: translucent FILE");
     if (!glint_clauses_read(&d->text, "material", clause) ||
         (fresnel.length && !read_fresnel_switch(d, &fresnel, m)) ||
         !read_translucent_file(d, &file, m))
@@ -364,7 +362,6 @@ static bool read_sun_light(struct glint_describer *d,
                                 "the direction to the sun must not be 0 0 0");
 }
 
-/* Attaches LIGHT to the motion named WORD. */
 static bool attach_light_to_motion(struct glint_describer *d,
                                    const struct glint_described_light *light,
                                    const struct glint_word *word,
@@ -439,7 +436,6 @@ bool glint_describe_parse_light(struct glint_describer *d)
     return good;
 }
 
-/* Returns the number of texels in all textures of the scene. */
 static int64_t count_scene_texels(const struct glint_description *s)
 {
     int64_t n = 0;
@@ -471,8 +467,9 @@ bool glint_describe_parse_texture(struct glint_describer *d)
                 "a texture of this name is already defined");
     word = glint_text_next_word(&d->text);
     if (!word.length)
-        return glint_text_set_error(&d->text, word.place,
-                                    "the texture's file name is missing");
+        return glint_text_set_error(
+            &d->text, word.place,
+            "the file name is missing: texture NAME FILE");
     if (!glint_line_check_end(&d->text, "texture"))
         return false;
     glint_describe_copy_file_name(&word, name);

@@ -173,7 +173,8 @@ static bool read_motion_file(struct glint_describer *d,
     if (m->size > REACH || !append_motion_objects(d, &motion, file->place))
         return m->size <= REACH ||
                glint_text_set_error(&d->text, file->place,
-                                    "the body is too large");
+                                    "the body's radius is %g; the limit is %g",
+                                    m->size, REACH);
     return true;
 }
 
@@ -215,8 +216,8 @@ bool glint_describe_parse_motion(struct glint_describer *d)
         return false;
     file = glint_text_next_word(&d->text);
     if (!file.length)
-        return glint_text_set_error(&d->text, file.place,
-                                    "the motion's file name is missing");
+        return glint_text_set_error(
+            &d->text, file.place, "the file name is missing: motion NAME FILE");
     if (!glint_clauses_read(&d->text, "motion", clause) ||
         !check_detect_clauses(d, &clause[6], &clause[7], &clause[8]))
         return false;

@@ -52,7 +52,7 @@ glint_describe_append_object(struct glint_describer *d,
 }
 
 /* Parses the name of an object and appends the object. Returns NULL if the name
- * is invalid. */
+ * is invalid or already used, or there are too many objects. */
 static struct glint_described_object *
 begin_named_object(struct glint_describer *d, enum glint_described_kind kind,
                    const char *what)
@@ -228,14 +228,13 @@ static bool find_mesh_materials(struct glint_describer *d,
         if (of[i] < 0)
             return glint_text_set_error(
                 &d->text, place,
-                "%s uses '%s', which is not a material above this line; add "
-                "'material' to the mesh to replace it",
+                "%s uses '%s', which is not a material above this line; "
+                "define it there, or add 'material NAME' to the mesh",
                 file, mesh->name[i]);
     }
     return true;
 }
 
-/* Appends the triangles of MESH, scaled by SCALE, to the scene as object O. */
 static bool append_mesh_triangles(struct glint_describer *d,
                                   struct glint_described_object *o,
                                   const struct glint_mesh *mesh, const int *of,
@@ -340,7 +339,7 @@ bool glint_describe_parse_mesh(struct glint_describer *d)
     file = glint_text_next_word(&d->text);
     if (!file.length)
         return glint_text_set_error(&d->text, file.place,
-                                    "the mesh's file name is missing");
+                                    "the file name is missing: mesh NAME FILE");
     if (!glint_clauses_read(&d->text, "mesh", clause) ||
         (clause[2].place.line &&
          !glint_describe_find_material(d, &material, &o->material)))

@@ -108,7 +108,7 @@ bool glint_describe_parse_flare(struct glint_describer *d)
                                : GLINT_DESCRIBED_FLARE_LIGHTS;
     return n == s->n_highlights ||
            glint_text_set_error(&d->text, clause[0].place,
-                                "'highlights' must be a whole number");
+                                "'highlights' must be a whole number, 0 to 8");
 }
 
 /* Parses the first words of the line "camera", which define the field of view.
@@ -190,7 +190,6 @@ bool glint_describe_parse_camera(struct glint_describer *d)
                "camera needs 'at X Y Z toward X Y Z', or 'orbit'");
 }
 
-/* Sets position and viewing direction of a camera that orbits a point. */
 static void set_orbit_camera(struct glint_describer *d)
 {
     struct glint_described_camera *c = &d->scene->camera;

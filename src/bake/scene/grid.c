@@ -85,7 +85,6 @@ static void compute_face_normal(const struct glint_described_triangle *t,
         n[i] = across[i] / length;
 }
 
-/* Returns whether the triangle with corners C has a non-zero area. */
 static bool has_triangle_area(const struct corner c[3])
 {
     int64_t a[3], b[3];
@@ -255,7 +254,6 @@ static uint64_t divide_box_into_cells(struct glint_scene_mesh *mesh,
     return n;
 }
 
-/* Returns the total number of list entries in all cells of MESH. */
 static uint64_t count_cell_list_entries(const struct mesher *m,
                                         const struct glint_scene_mesh *mesh)
 {

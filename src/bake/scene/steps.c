@@ -22,8 +22,8 @@ static double compute_vector_length(const double x[3])
     return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
-/* Returns the max distance of the points of object O from the object's
- * origin. */
+/* Returns an upper bound of the distance of the points of object O from the
+ * object's origin. */
 static double compute_object_reach(const struct glint_description *scene,
                                    const struct glint_described_object *o)
 {

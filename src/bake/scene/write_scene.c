@@ -245,7 +245,8 @@ static bool write_meshes(struct writer *w)
     return good;
 }
 
-/* Converts object FROM to O. MESH: index of its mesh, if it has triangles. */
+/* Converts object FROM to O. MESH: index of its mesh, if it has triangles.
+ * Returns false if it is a sphere smaller than a step. */
 static bool convert_object(const struct writer *w,
                            const struct glint_described_object *from,
                            uint32_t mesh, struct glint_scene_object *o)

@@ -597,7 +597,8 @@ TEST(parses_environment_text)
     check_text_is_rejected(
         "size 128\n", "n.environment:2:1: the line 'source FILE' is missing");
     check_text_is_rejected(
-        "source\n", "n.environment:1:7: the name of the picture is missing");
+        "source\n",
+        "n.environment:1:7: the file name is missing: source PICTURE");
     check_text_is_rejected("source x\nsize 100\n",
                            "2:6: size accepts 16, 32, 64, 128, 256, 512 or "
                            "1024, not '100'");

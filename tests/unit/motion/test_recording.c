@@ -124,7 +124,7 @@ TEST(rejects_invalid_recordings)
     bake_must_fail(RUN("{\"frame_num\": -1, \"foods\": " FOODS("2") "}"),
                    "'frame_num' is not a whole number");
     bake_must_fail(RUN("{\"rv\": [1, 2], \"foods\": " FOODS("2") "}"),
-                   "'rv' needs three numbers");
+                   "'rv' needs three numbers [x, y, z]");
     bake_must_fail(RUN("{\"foods\": " FOODS("2")),
                    "']' does not match the opening '{'");
     bake_must_fail("{" BODY_0 ", \"frames\": [" FRAME
