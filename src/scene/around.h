@@ -4,7 +4,7 @@
  * refracts.
  *
  * The picture is stored as the mean light of cells of 2^n x 2^n pixels, at most
- * 320 cells on the longer side. Lookups interpolate linearly between the
+ * 321 cells on the longer side. Lookups interpolate linearly between the
  * middles of cells. */
 #ifndef GLINT_SCENE_AROUND_H
 #define GLINT_SCENE_AROUND_H

@@ -23,8 +23,8 @@ struct passing {
     int64_t spread_q40; /* angular variance of the rays of a pixel, radians^2 */
 };
 
-/* Starts a secondary ray at SURFACE. It starts on the side from which the
- * previous ray came, or on the opposite side if BEYOND is set. */
+/* Starts a secondary ray at SURFACE. On a mesh, it starts on the side from
+ * which the previous ray came, or on the opposite side if BEYOND is set. */
 static void start_secondary_ray(const struct glint_scene *s,
                                 const struct glint_met_surface *surface,
                                 int beyond, struct passing *p)
@@ -104,8 +104,8 @@ static int find_next_surface(const struct glint_scene *s,
            glint_scene_find_surface_at_hit(s, &p->ray, &met, next);
 }
 
-/* Refracts the ray P at SURFACE. At total reflection returns 1 and does not
- * change P. */
+/* Refracts the ray P at SURFACE and returns 0; or, at total reflection,
+ * reflects P and returns 1. */
 static int refract_ray(const struct glint_met_surface *surface,
                        uint32_t index_q16, struct passing *p)
 {
@@ -150,8 +150,8 @@ static void move_ray_through_sphere(const struct glint_scene *s,
     start_secondary_ray(s, &end, 1, p);
 }
 
-/* Continues the ray P behind SURFACE: refracts it, and multiplies its weight by
- * the transmitted fraction. */
+/* Continues the ray P behind SURFACE, or in front of it after total reflection,
+ * and multiplies its weight by the transmitted fraction. */
 static void continue_ray_behind_surface(const struct glint_scene *s,
                                         const struct glint_met_surface *surface,
                                         struct passing *p)
@@ -175,7 +175,8 @@ static void continue_ray_behind_surface(const struct glint_scene *s,
 }
 
 /* Returns the angular variance of a pixel's rays, radians^2, after reflection
- * at SURFACE. Curved surfaces increase it. */
+ * at SURFACE. Curved surfaces increase it. 0 if the background is not an
+ * environment, as only this is blurred. */
 static int64_t
 compute_mirror_spread_q40(const struct glint_scene *s,
                           const struct glint_scene_ray *ray,

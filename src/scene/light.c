@@ -151,8 +151,8 @@ void glint_scene_find_perpendicular_vectors(const int32_t d_q30[3],
     glint_normalise_vector(cross, v_q30);
 }
 
-/* Turns RAY to sample point I of N on a disc at distance T. The disc has radius
- * RADIUS and lies in the plane of the unit vectors U and V. */
+/* Turns RAY to sample point I of N (4 or 16) on a disc at distance T. The disc
+ * has radius RADIUS and lies in the plane of the unit vectors U and V. */
 static void aim_at_disc_point(struct glint_scene_ray *ray,
                               const int32_t u_q30[3], const int32_t v_q30[3],
                               int32_t t, int32_t radius, int i, int n)

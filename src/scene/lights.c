@@ -8,8 +8,9 @@
 
 enum { POINTS = 16 };
 
-/* Returns how many of the 16 sample points on the disc of LIT the camera sees.
- * RAY points to the disc's middle, at distance T. */
+/* Returns how many of the 16 sample points on the disc of LIT the camera sees;
+ * 0 or 16 for a light of radius 0. RAY points to the disc's middle, at distance
+ * T. */
 static int count_visible_light_points(const struct glint_scene *s,
                                       const struct glint_lit *lit,
                                       const struct glint_scene_ray *ray,

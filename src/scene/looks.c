@@ -47,8 +47,8 @@ enum glint_status glint_scene_get_look(const struct glint_scene *scene,
     return GLINT_OK;
 }
 
-/* Returns whether all members of LOOK are in range. If IS_METAL is set, also
- * checks LOOK's metal parameters and copies them to WARD. */
+/* Returns whether all members of LOOK are in range, and copies its metal
+ * parameters to WARD. Unless IS_METAL is set, these must be 0. */
 static int is_valid_look(const struct glint_scene_look *look, int is_metal,
                          struct glint_scene_ward *ward)
 {
@@ -91,7 +91,7 @@ enum glint_status glint_scene_set_look(struct glint_scene *scene, int material,
 }
 
 /* Returns whether object P may get material MATERIAL: a translucent medium
- * needs a map that was baked for the object. */
+ * needs a map that was baked for the object, unless P is a shadow catcher. */
 static int has_translucency_map(const struct glint_scene_model *m,
                                 const struct glint_placed *p, uint32_t material)
 {

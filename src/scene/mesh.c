@@ -43,7 +43,8 @@ static inline int64_t evaluate_edge_function(const struct line *l, int64_t x,
 struct small {
     uint32_t id;
     int32_t across[3], down[3]; /* change of the edge functions per pixel */
-    /* values of the edge functions at the middle of the box's first pixel */
+    /* edge functions at the middle of the box's first pixel, plus their max
+     * change from there to a sample */
     int32_t at[3];
     struct glint_depth depth;
     int32_t off[3][GLINT_SCENE_SAMPLES], deeper[GLINT_SCENE_SAMPLES];
@@ -125,8 +126,8 @@ static int is_triangle_hidden(const struct glint_scene_worker *w, uint32_t id,
 }
 
 /* Sets the triangle's depth as a function of position, interpolated between its
- * corners with the edge functions as barycentric weights. Returns 0 if slopes
- * need more than 32 bits. */
+ * corners with the edge functions as barycentric weights. Returns 0 if a depth
+ * is out of range, a slope needs more than 32 bits, or the area is 0. */
 static int set_triangle_depth_function(const struct glint_scene *s,
                                        uint32_t object,
                                        const struct glint_scene_triangle *t,
@@ -191,9 +192,9 @@ static inline void prepare_small_triangle(const struct glint_scene *s, int n,
                       DEPTH_BITS);
 }
 
-/* Draws the N samples of a pixel. AT and Z are the edge functions and the depth
- * at the pixel's middle. The loop is written so that compilers vectorise it
- * before they unroll it. */
+/* Draws the N samples of a pixel. AT and Z are the edge functions (plus the max
+ * that was subtracted from small->off) and the depth at the pixel's middle. The
+ * loop is written so that compilers vectorise it before they unroll it. */
 static inline void draw_pixel_of_small_triangle(const struct small *small,
                                                 int n, const int32_t at[3],
                                                 int32_t z,
@@ -297,7 +298,8 @@ struct inside {
     uint32_t but;
 };
 
-/* Transforms RAY to the space of OBJECT; the new ray starts at distance T. */
+/* Transforms RAY to the space of OBJECT; the new ray starts at distance T.
+ * Returns 0 if this start is out of range. */
 static int transform_ray_to_mesh(const struct glint_scene *s, uint32_t object,
                                  const struct glint_scene_ray *ray, int32_t t,
                                  struct inside *in)
@@ -694,8 +696,6 @@ compute_triangle_box(const struct glint_scene *s, uint32_t object,
 
 /* -------------------------------------------------------------------- lists */
 
-/* Returns the number of entries of an object's triangles in all tiles'
- * lists. */
 static int64_t count_tile_list_entries_of_object(struct glint_scene *s,
                                                  uint32_t object)
 {
@@ -710,7 +710,6 @@ static int64_t count_tile_list_entries_of_object(struct glint_scene *s,
     return n;
 }
 
-/* Returns whether triangle T may face the camera. */
 static int is_triangle_facing_camera(const struct glint_scene *s,
                                      uint32_t object,
                                      const struct glint_scene_triangle *t)
@@ -823,7 +822,7 @@ static int assign_edge_samples_to_side(struct line *l)
 }
 
 /* Sets the three edge functions of a triangle, which are not negative inside.
- * Returns 0 if the triangle is edge-on or not visible. */
+ * Returns 0 if the triangle has no area in the picture. */
 static int
 compute_edge_functions_of_triangle(const struct glint_scene *s, uint32_t object,
                                    const struct glint_scene_triangle *t,

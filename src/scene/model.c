@@ -655,7 +655,7 @@ static const char *check_all_tables(struct check *c)
     for (uint32_t k = 0; !wrong && k < h->n_meshes; k++) {
         wrong = check_mesh(c, &m->mesh[k]);
         if (!wrong && c->blob.referred > c->blob.bytes)
-            wrong = "tables share bytes";
+            wrong = "damaged scene: tables overlap";
     }
     for (uint32_t k = 0; !wrong && k < h->n_objects; k++) {
         wrong = check_object(c, &m->object[k]);
@@ -665,7 +665,7 @@ static const char *check_all_tables(struct check *c)
     if (!wrong && m->motion)
         wrong = check_motion(h, m->motion);
     if (!wrong && triangles > GLINT_SCENE_MAX_TRIANGLES)
-        wrong = "the objects have too many triangles";
+        wrong = "damaged scene: the objects have too many triangles";
     return wrong ? wrong : check_translucent_tables(c);
 }
 

@@ -66,7 +66,8 @@ struct glint_scene_wards {
      * bytes. */
     struct glint_ward_state *(*carve)(const struct glint_scene *scene,
                                       struct glint_arena *arena);
-    /* Opens the environment's file and computes the lobes of all metals. */
+    /* Opens the files of all environments, shows the first, and computes the
+     * lobes of all metals. */
     enum glint_status (*open)(struct glint_scene *scene);
     /* Recomputes the reflection lobe of metal I after a change of its
      * parameters. */
@@ -84,8 +85,8 @@ struct glint_scene_wards {
     int32_t (*spread)(const struct glint_scene *scene,
                       const struct glint_scene_ray *ray,
                       const struct glint_met_surface *surface);
-    /* Sets the tangent frame of BRUSHED, the brushed metal at SURFACE, but not
-     * spread_q30. */
+    /* Sets the tangent frame of BRUSHED, the brushed metal at SURFACE, and its
+     * spread_q30 to -1. */
     void (*lie)(const struct glint_scene *scene,
                 const struct glint_met_surface *surface,
                 struct glint_brushed *brushed);
@@ -123,15 +124,15 @@ struct glint_scene_stones {
     /* Opens the files of all translucent media. Of SCENE only the model is set
      * yet. */
     enum glint_status (*open)(struct glint_scene *scene);
-    /* Adapts the module's state to changed environment light. */
+    /* Recomputes the upper bound of the environment's irradiance. */
     void (*relight)(struct glint_scene *scene);
     /* Recomputes the light maps for the current frame; returns the number of
      * texels computed. */
     int (*update)(struct glint_scene *scene);
     /* Adds the light that leaves the translucent medium at SURFACE along RAY,
      * times WEIGHT_Q15. Returns the coat's reflectance for RAY / its
-     * reflectance at normal incidence, q15, below 2^30; 0 if the material is
-     * not a translucent medium. */
+     * reflectance at normal incidence, q15, below 2^30; 1 without a coat; 0 if
+     * the material is not a translucent medium. */
     int32_t (*add)(const struct glint_scene *scene,
                    const struct glint_scene_ray *ray,
                    const struct glint_met_surface *surface, int32_t weight_q15,
@@ -147,9 +148,9 @@ struct glint_scene_highlights {
                                            struct glint_arena *arena);
     /* Clears the sums of light of the previous picture. */
     void (*begin)(struct glint_highlight_state *bright);
-    /* Adds the fraction SHARE_Q4 of light RGB_Q15 to the sums of a pixel.
-     * Object OBJECT reflects this light. (X, Y) is the pixel's middle, pixels
-     * q8 from the top left corner. */
+    /* Adds light RGB_Q15 of object OBJECT, over an area of SHARE_Q4 pixels
+     * around (X, Y), to the sums of the square there. (X, Y) is in pixels q8
+     * from the top left corner. */
     void (*note)(struct glint_highlight_state *bright, uint32_t object,
                  int32_t x_q8, int32_t y_q8, const int32_t rgb_q15[3],
                  int share_q4);

@@ -195,7 +195,8 @@ void glint_scene_add_phong_light(const struct glint_scene *scene,
 }
 
 /* Returns the fraction of the light of all sources that is shadowed at SURFACE,
- * q8. SURFACE is on a shadow catcher, a plane that only receives shadows. */
+ * times the strength CATCHER_Q15, q8. SURFACE is on a shadow catcher, a plane
+ * that only receives shadows. */
 static int compute_catcher_shadow_q8(const struct glint_scene *s,
                                      const struct glint_met_surface *surface,
                                      int32_t catcher_q15)

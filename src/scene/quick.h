@@ -58,8 +58,9 @@ void glint_quick_prepare_balls(struct glint_scene *scene);
 /* Sets RAY to the ray through position (X, Y), with an error of 2^-24 per
  * component. Sets SURFACE to the ray's intersection with object or triangle ID.
  * A ray that just misses a triangle is moved to the triangle's edge. Returns 0
- * if the fast path does not apply: near the rim of a ball, and for triangles
- * that are near the camera or have a texture. */
+ * if the fast path does not apply: near the rim of a ball, for balls too near
+ * or far, and for triangles that are near the camera, textured or
+ * translucent. */
 int glint_quick_find_surface(struct glint_scene_worker *w, uint32_t id,
                              int32_t x_q8, int32_t y_q8,
                              struct glint_scene_ray *ray,

@@ -8,8 +8,8 @@
 
 /* --------------------------------------------------------------- triangles */
 
-/* Sets the picture positions of the corners of triangle T; returns 0 if a
- * corner cannot be projected. */
+/* Sets the edge functions of triangle T in the picture; returns 0 if a corner
+ * cannot be projected or the triangle has no area there. */
 static int project_triangle_corners(const struct glint_scene *s,
                                     uint32_t object,
                                     const struct glint_scene_triangle *of,
@@ -53,7 +53,7 @@ static int project_triangle_corners(const struct glint_scene *s,
 }
 
 /* Sets the vertices and normals of triangle T; normals are flipped to the
- * camera's side. */
+ * camera's side. Returns 0 if the triangle has no area. */
 static int
 set_triangle_vertices_and_normals(const struct glint_scene *s, uint32_t object,
                                   const struct glint_scene_triangle *of,

@@ -95,9 +95,9 @@ int glint_ray_intersect_triangle(const struct glint_sheared *ray,
                                  const int32_t *const vertex[3],
                                  struct glint_spot_on *spot);
 
-/* Like glint_ray_intersect_triangle(), but never misses: if RAY passes beside
- * the triangle, SPOT is the nearest point of the triangle. Used for rays that
- * pass at most slightly beside it. Returns 0 if the triangle has no area. */
+/* Like glint_ray_intersect_triangle(), but if RAY passes beside the triangle,
+ * SPOT is a point on the edge that it passes. Used for rays that pass at most
+ * slightly beside it. Returns 0 if the triangle has no area. */
 int glint_ray_clamp_to_triangle(const struct glint_sheared *ray,
                                 const int32_t *const vertex[3],
                                 struct glint_spot_on *spot);

@@ -250,7 +250,8 @@ static int find_translucency_map(const struct glint_scene_model *model,
     return -1;
 }
 
-/* Moves all objects to the positions that the model states. */
+/* Moves all objects to the positions that the model states; returns 0 if one is
+ * out of range. */
 static int set_initial_poses(struct glint_scene *s)
 {
     const struct glint_scene_model *model = &s->model;

@@ -190,7 +190,7 @@ static inline void group_samples_by_shading(const struct glint_scene *s,
 }
 
 /* Records the light of SHADE above white as a highlight of object ID. SHARE_Q4:
- * fraction of a pixel. OFF_Q8: offset of the pixel's middle from the top left
+ * its area, pixels. OFF_Q8: offset of the area's middle from the top left
  * corner of pixel (X, Y). */
 static inline void record_highlight(const struct glint_scene *s, uint32_t id,
                                     const struct glint_met_shade *shade, int x,
@@ -362,7 +362,6 @@ static void write_pixel_run(const struct glint_scene_worker *w,
     }
 }
 
-/* Adds full coverage of pixels X0 .. X1 - 1 of row Y to the stored coverage. */
 static void add_full_cover_of_pixels(const struct glint_scene *s, int y, int x0,
                                      int x1)
 {
@@ -477,7 +476,6 @@ static enum glint_given draw_pixel_rows(void *state,
     return any ? GLINT_GIVES_COVER : GLINT_GIVES_NOTHING;
 }
 
-/* Returns the engine pass that draws the scene. */
 static struct glint_pass get_scene_pass(const struct glint_scene *scene)
 {
     return (struct glint_pass){scene, clear_triangle_cache_for_row,

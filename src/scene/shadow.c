@@ -260,8 +260,9 @@ static int can_objects_in_cell_shadow_box(const struct glint_shadow *shadow,
     return 0;
 }
 
-/* Returns whether no other ball and no mesh can shadow ball I. Points on the
- * ball are accurate to 2^-20 of its radius (quick.c). */
+/* Returns whether no other ball and no mesh can shadow ball I; 0 if the ball
+ * extends out of the grid. Points on the ball are accurate to 2^-20 of its
+ * radius (quick.c). */
 static int is_ball_unshadowed(const struct glint_scene *s,
                               const struct glint_shadow *shadow, uint32_t i)
 {
@@ -434,8 +435,9 @@ struct glint_box glint_shadow_find_plane_box(const struct glint_scene *s,
                                          4);
 }
 
-/* Special cell indices. NONE: the point's cell lists no object. BEYOND: the
- * point is outside the range of heights for which the grid is valid. */
+/* Special cell indices. NONE: the point lies outside the grid or in a cell that
+ * lists no object. BEYOND: it lies below the heights for which the grid is
+ * valid. */
 enum { NONE = -1, BEYOND = -2 };
 
 /* -------------------------------------------------------------------- rays */
@@ -510,7 +512,8 @@ static int ray_hits_ball(const struct glint_shadow *shadow,
            chord.t[1] > 0;
 }
 
-/* A point in grid coordinates, and the cell that it lies in. */
+/* A point: its coordinates u, v and h, steps; the index of its cell, NONE or
+ * BEYOND; and u and v in 1/256 of a cell, set unless cell is NONE or BEYOND. */
 struct below {
     int32_t at[3];
     int cell;
@@ -518,7 +521,8 @@ struct below {
 };
 
 /* Returns whether the ray from BELOW to a point of the sun's disc hits an
- * object in the list of BELOW's cell. Skips the object of SURFACE itself. */
+ * object in the list of BELOW's cell. Skips the ball or triangle of SURFACE
+ * itself. */
 static int is_ray_blocked_in_cell(const struct glint_scene *s,
                                   const struct glint_shadow *shadow,
                                   const struct below *below,
@@ -565,7 +569,6 @@ static int is_ray_blocked_in_cell(const struct glint_scene *s,
     return 0;
 }
 
-/* Sets BELOW to the grid coordinates and the cell of point PLACE. */
 static WHOLLY_INLINE void
 project_point_to_grid(const struct glint_shadow *shadow, const int32_t place[3],
                       struct below *below)

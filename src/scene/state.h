@@ -53,13 +53,13 @@ struct glint_placed {
     struct glint_box box; /* pixels that the object may cover */
     /* Mesh: index of its first vertex in the table of all objects' vertices. */
     uint32_t first_vertex;
-    /* Sphere: size of a pixel's diagonal at the sphere's far side, steps, at
-     * least 1. */
+    /* Sphere: max distance, at its far side, of a sample's ray from the ray of
+     * the pixel's middle, steps, rounded up, plus 1. */
     int32_t margin;
     struct glint_depth depth; /* plane: 1 / z as a function of the position in
                                  the picture */
-    int32_t z[2];             /* min and max z in camera coordinates, steps; not
-                                 set for planes */
+    int32_t z[2]; /* min and max z in camera coordinates, steps; -GLINT_FAR and
+                     GLINT_FAR for planes */
     /* Sphere: depths, 2^30 nearest / z. far_depth: depth of the far side.
      * flat_depth: a single depth for all samples, if it suffices to order the
      * sphere against all balls that it may overlap, else 0. */
@@ -97,7 +97,7 @@ struct glint_quick_triangle {
     int64_t at[3];
     int up;
     uint32_t one_over;
-    /* for each corner: min depth of the three corners / depth of this corner */
+    /* for each corner: min z of the three corners / z of this corner */
     int32_t nearer_q30[3];
     /* The first corner's position and normal, and the differences of the second
      * and third corner from them. */
@@ -195,7 +195,7 @@ struct glint_brushed {
     int32_t spread_q30;
 };
 
-/* Light and coverage of a pixel, summed over four samples. */
+/* Light and coverage of a pixel, scaled to the sum of four samples. */
 struct glint_scene_sum {
     int64_t rgb_q17[3];
     /* cover_q10: fraction that objects cover; shadow_q10: darkening by shadow
@@ -347,7 +347,7 @@ int glint_scene_is_ray_blocked(const struct glint_scene *scene,
                                uint32_t object, uint32_t triangle,
                                int32_t limit);
 
-/* Returns whether RAY hits any plane other than OBJECT. */
+/* Returns whether RAY hits any plane that casts shadows, other than OBJECT. */
 int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
                                         const struct glint_scene_ray *ray,
                                         uint32_t object);
@@ -386,8 +386,9 @@ struct glint_met_shade {
     int cover_q8;       /* 0 .. 256 */
 };
 
-/* Adds to RGB_Q15 the light from all light sources that SURFACE reflects along
- * RAY, times WEIGHT_Q15. */
+/* Adds to RGB_Q15 the light that SURFACE sends along RAY, times WEIGHT_Q15:
+ * scattered and ambient light, and reflections of the environment and of all
+ * light sources. */
 void glint_scene_add_phong_light(const struct glint_scene *scene,
                                  const struct glint_scene_ray *ray,
                                  const struct glint_met_surface *surface,
@@ -401,7 +402,7 @@ void glint_scene_shade_surface(const struct glint_scene *scene,
                                struct glint_met_shade *shade);
 
 /* Returns the fraction, 0 .. 32768, of light LIT that reaches SURFACE, by
- * tracing rays to sample points of LIT. */
+ * tracing rays to sample points of LIT; 32768 if the scene has no shadows. */
 int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
                                 const struct glint_met_surface *surface,
                                 const struct glint_lit *lit);
@@ -488,7 +489,6 @@ void glint_scene_look_up_background(const struct glint_scene *scene,
                                     const int32_t toward_q30[3],
                                     int64_t spread_q40, int32_t rgb_q15[3]);
 
-/* Returns the max number of highlights to find. */
 static inline int glint_scene_get_max_highlights(const struct glint_scene *s)
 {
     const struct glint_scene_header *h = s->model.header;

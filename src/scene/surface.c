@@ -24,8 +24,9 @@ static int intersect_plane(const struct glint_placed *p,
     return met->t > 0;
 }
 
-/* Intersects RAY with object I. On entry MET->t is the max distance, steps. If
- * ANY is set, stops at the first intersection found. */
+/* Intersects RAY with object I. On entry MET->t is the max distance, steps.
+ * Returns 1 if RAY hits nearer. If ANY is set, stops at the first intersection
+ * found. */
 static int intersect_object(const struct glint_scene *s, uint32_t i,
                             const struct glint_scene_ray *ray,
                             uint32_t but_triangle, int any,

@@ -15,7 +15,8 @@ const char *glint_scene_check_camera(const struct glint_scene_camera *camera);
  * they are valid. */
 const char *glint_scene_check_metal(const struct glint_scene_ward *ward);
 
-/* Returns whether NAME is printable, terminated by a 0 byte and not empty. */
+/* Returns whether NAME has 1 .. GLINT_SCENE_NAME - 1 printable characters, no
+ * spaces, and a final 0 byte. */
 int glint_scene_is_valid_name(const char *name);
 
 /* Returns whether X is in LO .. HI. */
@@ -34,7 +35,8 @@ int glint_scene_is_valid_intensity(const struct glint_real *x);
 /* Returns whether V[N] is a unit vector to within 2^-20. N must be 1 .. 4. */
 int glint_scene_is_unit_vector(const int32_t *v_q30, int n);
 
-/* Returns the length of V, rounded up. Components must be within +-2^30. */
+/* Returns an upper bound of the length of V, at most 1 above it. Components
+ * must be within +-2^30. */
 int64_t glint_scene_compute_vector_length(const int32_t v[3]);
 
 /* Returns whether OBJECT, at position AT, stays within the range of scene

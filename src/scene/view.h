@@ -42,8 +42,8 @@ struct glint_depth {
 };
 
 /* Sets VIEW for a picture of WIDTH x HEIGHT. FOCAL_Q16 is the focal length in
- * pixels, used only for GLINT_CAMERA_LENS. Returns 1, or 0 if tangents of
- * angles in the picture exceed 64. */
+ * pixels, used only for GLINT_CAMERA_LENS. Returns 1, or 0 if FOCAL_Q16 is out
+ * of range or tangents of angles in the picture exceed 64. */
 int glint_view_init(struct glint_scene_view *view,
                     const struct glint_scene_camera *camera, int width,
                     int height, int64_t focal_q16);
@@ -64,14 +64,16 @@ glint_view_project_vertex(const struct glint_scene_view *view,
                           const int32_t v[3]);
 
 /* Returns the box of pixels around N points V, in camera coordinates. It is the
- * whole picture if a point is behind the camera or too near. */
+ * whole picture if a point is behind the camera or farther than 2^14 pixels
+ * from the picture's middle. */
 struct glint_box
 glint_view_find_box_of_points(const struct glint_scene_view *view,
                               const int32_t (*v)[3], int n);
 
 /* Sets DEPTH to the depth function of the plane with normal NORMAL_Q30 through
- * V, both in camera coordinates. Returns 1, or 0 if the camera is in the plane.
- * NEAREST is the min z of the frame. */
+ * V, both in camera coordinates. Returns 1, or 0 if the camera is in the plane
+ * or so near that the coefficients are out of range. NEAREST is the min z of
+ * the frame. */
 int glint_view_set_plane_depth(const struct glint_scene_view *view,
                                const int32_t v[3], const int32_t normal_q30[3],
                                int32_t nearest, struct glint_depth *depth);

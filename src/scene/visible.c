@@ -273,7 +273,8 @@ static int is_object_in_front_of_plane(const struct glint_scene *s,
 }
 
 /* Reduces the box of a shadow catcher to the pixels that may have shadows, or
- * objects that the catcher may hide. */
+ * objects that the catcher may hide. Keeps the box if another plane is visible
+ * or a light has no shadow grid. */
 static void shrink_box_of_catcher(const struct glint_scene *s,
                                   struct glint_placed *plane)
 {

@@ -31,8 +31,8 @@ struct account {
 
 /* ---------------------------------------------------------------- surfaces */
 
-/* Counts the shadow rays from SURFACE, one per sample point of each light that
- * faces it. */
+/* Counts the shadow rays from SURFACE, one per sample point of each light in
+ * front of it; none if the scene has no shadows. */
 static void count_shadow_rays(const struct glint_scene *s,
                               const struct glint_met_surface *surface,
                               struct glint_scene_part *part)
@@ -172,7 +172,7 @@ static int do_ids_name_same_object(uint32_t a, uint32_t b)
 
 /* Returns whether all samples of the aligned block of 2 x 2 pixels that
  * contains (X, Y) see one object, so that one shaded point serves all four
- * pixels. */
+ * pixels; 0 if half_shading is off. */
 static int can_pixel_quad_share_shading(const struct glint_scene_worker *w,
                                         int x, int y, uint32_t id)
 {
@@ -269,9 +269,9 @@ static int ray_hits_object(const struct glint_scene *s, uint32_t i, int x,
                                    glint_make_triangle_id(i, 0), &met);
 }
 
-/* Finds the object that hides most pixels of object I, by a majority vote over
- * the pixels of I [Boyer91]. Object I must lie in the picture and be hidden at
- * all samples. */
+/* Finds the object that hides most pixels of object I, by a majority vote
+ * [Boyer91]. No sample may see I. Sets the fate COVERED, or SMALL if the ray
+ * through no pixel's middle hits I. */
 static void find_occluder(const struct account *a, uint32_t i)
 {
     const struct glint_scene *s = a->scene;

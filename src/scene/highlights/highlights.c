@@ -27,11 +27,11 @@ enum {
  * samples. Light is below 2^30, so sums of light over 64 pixels are below 2^40,
  * and sums of light times position below 2^62. */
 struct glint_highlight_cell {
-    int64_t flux_q19;  /* sum of luminance above white */
-    int64_t at_q27[2]; /* luminance times position in the square, summed over
-                          pixels */
-    /* Half of (luminance times squared distance from the square's corner),
-     * summed over pixels. */
+    int64_t flux_q19; /* sum of L clamp(L - 1, 0, 1), L: luminance */
+    int64_t
+        at_q27[2]; /* flux times position in the square, summed over pixels */
+    /* Half of (flux times squared distance from the square's corner), summed
+     * over pixels. */
     int64_t square_q35;
     int64_t red_q19, blue_q19;
     /* Light of the brightest pixel, and index of the object in this pixel. */
@@ -147,9 +147,10 @@ static int append_lit_neighbours(struct glint_highlight_state *b, int i,
     return last;
 }
 
-/* Sets AT to the middle of square I, pixels q8 from the picture's corner. */
-static void compute_cell_middle(const struct glint_highlight_state *b, int i,
-                                int32_t at[2])
+/* Sets AT to the centroid of the light in square I, pixels q8 from the
+ * picture's top left corner. */
+static void compute_cell_centroid(const struct glint_highlight_state *b, int i,
+                                  int32_t at[2])
 {
     const struct glint_highlight_cell *c = &b->cell[i];
     const int corner[2] = {i % b->across * SIDE_Q8, i / b->across * SIDE_Q8};
@@ -180,7 +181,7 @@ static void set_highlight_middle(const struct glint_highlight_state *b,
         const uint64_t w = compute_cell_weight(&b->cell[i], g->flux_q19);
         int32_t middle[2];
 
-        compute_cell_middle(b, i, middle);
+        compute_cell_centroid(b, i, middle);
         weight += w;
         for (int k = 0; k < 2; k++)
             at[k] += w * (uint64_t)middle[k];
@@ -233,7 +234,6 @@ static int are_highlights_near_each_other(const struct gathered *a,
     return x * x + y * y < most * most;
 }
 
-/* Merges highlight FROM and its list of squares into TO. */
 static void merge_highlights(struct glint_highlight_state *b,
                              struct gathered *to, const struct gathered *from)
 {
@@ -260,7 +260,7 @@ static int remove_highlight(struct gathered *kept, int n, int i)
     return n - 1;
 }
 
-/* Merges the first pair of highlights, among *N, whose spots are near each
+/* Merges the first pair of highlights, among *N, whose middles are near each
  * other. Then sorts the list by brightness again. Returns 0 if there is no such
  * pair. */
 static int merge_first_pair_of_near_highlights(struct glint_highlight_state *b,
@@ -286,8 +286,9 @@ struct spread {
     int64_t x_q8, y_q8, xy_q8;
 };
 
-/* Returns variance and covariance of highlight G's light: those of the middles
- * of its squares, plus the mean isotropic variance within a square. */
+/* Returns variance and covariance of highlight G's light: those of the
+ * centroids in its squares, plus the mean isotropic variance within a
+ * square. */
 static struct spread
 compute_highlight_variance(const struct glint_highlight_state *b,
                            const struct gathered *g)
@@ -301,7 +302,7 @@ compute_highlight_variance(const struct glint_highlight_state *b,
         int32_t middle[2];
         int64_t off[2], own;
 
-        compute_cell_middle(b, i, middle);
+        compute_cell_centroid(b, i, middle);
         for (int k = 0; k < 2; k++) /* q4, magnitude below 2^17 */
             off[k] = (middle[k] - g->at_q8[k]) / 16;
         own = glint_divide_rounded((uint64_t)c->square_q35,
@@ -358,8 +359,6 @@ static void set_spot_extent(const struct spread *s, struct glint_spot *spot)
         spot->sin_q15 = -spot->sin_q15;
 }
 
-/* Sets the colour of SPOT to the colour of highlight G, scaled to luminance
- * 1. */
 static void set_spot_colour(const struct gathered *g, struct glint_spot *spot)
 {
     const uint64_t flux = (uint64_t)g->flux_q19;

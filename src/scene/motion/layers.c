@@ -85,7 +85,7 @@ static void set_clip_planes(const struct glint_scene_view *v, int k,
 }
 
 /* Clips the line from A to B, in camera coordinates, to the region in front of
- * the camera and near the picture. */
+ * the camera and near the picture; returns 0 if no part of it is there. */
 static int clip_line_to_view(const struct glint_scene_view *v, int32_t near,
                              int32_t a[3], int32_t b[3])
 {
@@ -113,7 +113,7 @@ static int clip_line_to_view(const struct glint_scene_view *v, int32_t near,
     return a[2] > 0 && b[2] > 0;
 }
 
-static struct glint_motion_layer *append_overlay(struct glint_motion_state *m)
+static struct glint_motion_layer *get_free_overlay(struct glint_motion_state *m)
 {
     return m->n_layers < m->max_layers ? &m->layer[m->n_layers] : NULL;
 }
@@ -137,12 +137,12 @@ static void set_line_box(const struct glint_scene *s,
 }
 
 /* Adds a line of type KIND (enum glint_scene_kind), WIDTH steps wide, from
- * point A to point B. */
+ * point A to point B, if it is visible and the list is not full. */
 static void append_line_overlay(struct glint_scene *s, const int32_t a[3],
                                 const int32_t b[3], int32_t width,
                                 enum glint_scene_kind kind)
 {
-    struct glint_motion_layer *l = append_overlay(s->motion);
+    struct glint_motion_layer *l = get_free_overlay(s->motion);
     /* min z of a line, steps, so that depths, 2^30 nearest / z, are below
      * 2^31 */
     const int32_t near = s->nearest / 2 + 1;
@@ -188,8 +188,8 @@ static void append_line_overlay(struct glint_scene *s, const int32_t a[3],
     s->motion->n_layers += !glint_box_is_empty(l->box) && l->length_q8 > 0;
 }
 
-/* Moves point A by STEPS towards B; returns 0 if the distance from A to B is
- * less than STEPS. */
+/* Moves point A by STEPS towards B; returns 0 if the distance from A to B is at
+ * most STEPS. */
 static int move_point_towards(int32_t a[3], const int32_t b[3], int32_t steps)
 {
     int64_t off[3];
@@ -206,8 +206,8 @@ static int move_point_towards(int32_t a[3], const int32_t b[3], int32_t steps)
     return 1;
 }
 
-/* Returns the radius of object FIRST + I, steps, or 0 if there is no such
- * object. */
+/* Returns the radius of object FIRST + I, steps, or 0 if FIRST is
+ * GLINT_SCENE_NONE. */
 static int32_t get_ball_radius(const struct glint_scene *s, uint32_t first,
                                uint32_t i)
 {
@@ -215,7 +215,7 @@ static int32_t get_ball_radius(const struct glint_scene *s, uint32_t first,
 }
 
 /* Adds lines from the surface of food item F to the surface of each sensor that
- * sees it. */
+ * sees it, except the sensor that the camera is attached to. */
 static void append_lines_from_food_to_sensors(struct glint_scene *s, uint32_t f)
 {
     const struct glint_motion_state *m = s->motion;
@@ -254,7 +254,7 @@ static int32_t compute_min_cosine_inside_rim_q30(const struct glint_placed *p)
 static void append_shell_overlay(struct glint_scene *s, uint32_t f)
 {
     struct glint_motion_state *m = s->motion;
-    struct glint_motion_layer *l = append_overlay(m);
+    struct glint_motion_layer *l = get_free_overlay(m);
     struct glint_placed *p = &m->ball[f];
 
     if (!l || m->shell < 1 || m->how->food == GLINT_SCENE_NONE)
@@ -355,7 +355,7 @@ static struct glint_box find_overlay_box(const struct glint_scene *s,
 }
 
 /* Narrows the pixel range X0 .. X1 - 1 to the pixels of row Y that line L may
- * cover. */
+ * cover; keeps it if the line is almost parallel to the row. */
 static void narrow_column_range_to_line(const struct glint_scene *s,
                                         const struct glint_motion_layer *l,
                                         int y, int *x0, int *x1)

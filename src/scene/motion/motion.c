@@ -38,7 +38,7 @@ uint32_t glint_motion_sum(const uint8_t *at, uint32_t block)
 }
 
 /* Sets AT to the address of block BLOCK. Reads the block unless the motion is
- * in memory or the block was read last. */
+ * in memory or the block was read last. Block 0 is always read. */
 static enum glint_status get_file_block(struct glint_motion *m, uint32_t block,
                                         const uint8_t **at)
 {

@@ -13,8 +13,8 @@
 /* ------------------------------------------------------------------ opening */
 
 /* Sets N_FOODS and N_SENSORS to the numbers of food items and sensors that the
- * file's header states. The file is not checked yet, so the numbers are clamped
- * to their max. */
+ * file's header states. The file is not checked yet: a number that is out of
+ * range counts as 0. */
 static void read_object_counts(const struct glint_scene_motion *how,
                                uint32_t *n_foods, uint32_t *n_sensors)
 {
@@ -57,14 +57,14 @@ glint_motion_allocate(const struct glint_scene *scene,
     return m;
 }
 
-/* Returns log2 of the ratio of the motion's unit of length to the scene's
- * step. */
+/* Returns log2 of (step of the motion / step of the scene). */
 static int compute_length_scale_log2(const struct glint_scene *s)
 {
     return s->model.header->unit_log2 - s->motion->motion.header.unit_log2;
 }
 
-/* Sets TO to point FROM of the motion, in steps of the scene. */
+/* Sets TO to point FROM of the motion, in steps of the scene; mirrors z if the
+ * scene was described in right-handed axes. */
 static void convert_to_scene_steps(const struct glint_scene *s,
                                    const int32_t from[3], int32_t to[3])
 {
@@ -79,8 +79,8 @@ static void convert_to_scene_steps(const struct glint_scene *s,
     }
 }
 
-/* Returns whether all points of the motion, plus the radii of the objects
- * there, are in the range of scene coordinates. */
+/* Returns whether all points of the motion are within a quarter of the range of
+ * scene coordinates, which leaves room for the radii of objects. */
 static int is_motion_in_scene_range(const struct glint_scene *s)
 {
     const struct glint_motion_header *h = &s->motion->motion.header;
@@ -97,7 +97,7 @@ static int is_motion_in_scene_range(const struct glint_scene *s)
 }
 
 /* Returns whether objects FIRST .. FIRST + N - 1 exist in the scene and are
- * balls. */
+ * balls, or FIRST is GLINT_SCENE_NONE. */
 static int are_balls_of_scene(const struct glint_scene *s, uint32_t first,
                               uint32_t n)
 {
@@ -225,8 +225,8 @@ uint32_t glint_scene_seen_by(const struct glint_scene *scene, uint32_t food)
 
 /* --------------------------------------------------------------------- seek */
 
-/* Sets TURN_Q30 to the unit quaternion of the body's rotation, converted from
- * the motion's right-handed axes to those of the scene. */
+/* Sets TURN_Q30 to the unit quaternion of the body's rotation, mirrored like
+ * positions (convert_to_scene_steps()). */
 static void set_body_rotation(const struct glint_scene *s, int32_t turn_q30[4])
 {
     const int16_t *q14 = s->motion->frame.pose.turn_q14;
@@ -334,7 +334,6 @@ static void move_objects_of_kind(struct glint_scene *s,
     }
 }
 
-/* Moves all objects to their positions in the current frame. */
 static void move_objects(struct glint_scene *s)
 {
     struct glint_motion_state *m = s->motion;

@@ -17,7 +17,8 @@ enum {
     GLINT_BLOCK_LIT = 2,   /* the light that enters the block's texels is
                               computed */
     GLINT_BLOCK_READY = 4, /* the block's map values are computed */
-    GLINT_BLOCK_WANTED = 8 /* the block is to be computed in this update */
+    GLINT_BLOCK_WANTED =
+        8 /* the block's entering light is to be computed in this update */
 };
 
 /* The light map of a translucent object. */
@@ -53,9 +54,10 @@ struct glint_stone_state {
 };
 
 /* Returns the fraction of light, q15, that the surface transmits if COSINE_Q30
- * is the cosine between ray and normal. */
-static inline int32_t transmittance_q15(const struct glint_stone_skin *skin,
-                                        int32_t cosine_q30)
+ * is the cosine between ray and normal; 1 without Fresnel reflection. */
+static inline int32_t
+compute_transmittance_q15(const struct glint_stone_skin *skin,
+                          int32_t cosine_q30)
 {
     enum { LOW = 23 }; /* log2 of 2^30 / GLINT_TRANSLUCENT_COSINES */
     const int32_t c_q30 = q_smaller(cosine_q30, 1 << 30);
@@ -309,7 +311,7 @@ static int32_t compute_max_environment_light(const struct glint_scene *scene)
 
 /* Returns an upper bound of the light that source LIT casts on a white surface
  * of object P. For a lamp it is the light at the nearest point of P, or at 1/16
- * of P's size if that is farther. */
+ * of P's radius if that is farther. */
 static int32_t compute_max_light_of_source(const struct glint_scene *s,
                                            const struct glint_lit *lit,
                                            const struct glint_placed *p)
@@ -346,7 +348,6 @@ static void set_exponent_of_map_values(const struct glint_scene *scene,
 /* ------------------------------------------------------------------ surfaces
  */
 
-/* Sets SURFACE to the point of a ball at texel (X, Y) of its map. */
 static void set_ball_texel_surface(const struct glint_scene *s,
                                    const struct glint_stone_skin *skin, int x,
                                    int y, struct glint_met_surface *surface)
@@ -366,9 +367,9 @@ static void set_ball_texel_surface(const struct glint_scene *s,
     }
 }
 
-/* Sets the barycentric weights, at texel (X, Y), of the corners of a triangle
- * with texture coordinates UV, clamped to the triangle; returns 0 if it has no
- * area. Coordinates must be within +-2^24. */
+/* Sets the barycentric weights, at texture position (U, V), of the corners of a
+ * triangle with texture coordinates UV, clamped to the triangle; returns 0 if
+ * it has no area. Coordinates must be within +-2^24. */
 static int compute_texel_weights(const int32_t *const uv_q16[3], int32_t u_q16,
                                  int32_t v_q16, int32_t part_q30[3])
 {
@@ -440,7 +441,8 @@ static void add_entering_light(const struct glint_scene *s,
     share_q15 = glint_scene_lit_fraction(s, surface, lit);
     if (share_q15 == 0)
         return;
-    share_q15 = q_mul(share_q15, transmittance_q15(skin, cosine_q30), 15);
+    share_q15 =
+        q_mul(share_q15, compute_transmittance_q15(skin, cosine_q30), 15);
     for (int c = 0; c < CHANNELS; c++) {
         const int64_t light_q15 =
             ((int64_t)level_q15[c] * cosine_q30 >> 30) * share_q15 >> 15;
@@ -659,8 +661,8 @@ static void clear_stale_blocks(const struct glint_scene *s,
     set_exponent_of_map_values(s, skin);
 }
 
-/* Requests the computation of the light that enters at block (X, Y), unless the
- * block lies outside the map. */
+/* Requests the computation of the light that enters at block (X, Y), once. On
+ * balls, blocks outside the map are wrapped; on meshes, they are ignored. */
 static void request_block_light(struct glint_stone_skin *skin, int x, int y)
 {
     int i;
@@ -745,7 +747,6 @@ static void spread_light_in_block_column_job(void *ctx, int job, int worker)
     }
 }
 
-/* Marks the blocks that have been computed in this update. */
 static void mark_updated_blocks_ready(struct glint_stone_skin *skin)
 {
     for (int i = 0; i < skin->n_list; i++) {
@@ -826,8 +827,8 @@ static struct between find_texel_pair(int32_t uv_q16, int side_log2,
                             (int32_t)(at_q16 & 0xffff)};
 }
 
-/* Returns the value of MAP interpolated bilinearly between four texels, in the
- * unit of the map. */
+/* Returns the value of MAP interpolated bilinearly between four texels, in
+ * 1/128 of the map's unit. */
 static int32_t sample_light_map(const int16_t *map, int width,
                                 const struct between *x,
                                 const struct between *y)
@@ -847,7 +848,8 @@ static int32_t sample_light_map(const int16_t *map, int width,
 }
 
 /* Returns the coat's reflectance, 1 - transmission PASSES_Q15, divided by its
- * reflectance at normal incidence, q15. */
+ * reflectance at normal incidence, q15; 1 without coat or Fresnel
+ * reflection. */
 static int32_t compute_coat_reflectance_q15(const struct glint_stone_skin *skin,
                                             int32_t passes_q15)
 {
@@ -881,7 +883,7 @@ static int32_t add_scattered_light(const struct glint_scene *scene,
     x = find_texel_pair(uv_q16[0], log2 + skin->spread.is_ball,
                         skin->spread.is_ball);
     y = find_texel_pair(uv_q16[1], log2, 0);
-    passes_q15 = transmittance_q15(
+    passes_q15 = compute_transmittance_q15(
         skin, -v3_cosine_q30(ray->toward_q30, surface->normal_q30));
     coat = compute_coat_reflectance_q15(skin, passes_q15);
     passes_q15 = q_mul(passes_q15, weight_q15, 15);

@@ -139,8 +139,9 @@ static void look_up_blurred_environment(const struct glint_scene *scene,
  *
  *    level weight exp(-slope) / (4 ax ay (h.o) (h.n)^3)
  *
- * ax and ay are the alphas with these variances. The weight is that of ward.c,
- * clamped to 8. */
+ * ax and ay are the alphas with these variances, level is the light's strength,
+ * weight that of compute_lobe_weight(), and slope the sum of (slope of h /
+ * alpha)^2 along the two tangents. */
 enum { MOST_SLOPE = 16, LOG2_E_Q16 = 94548 };
 
 /* The half vector in the surface's tangent frame; all q30 except slopes. */
@@ -595,8 +596,6 @@ static void add_light_times_weight(int32_t *to_q15, int64_t light_q15,
     *to_q15 = q_clamp_sat(sum_q15, 0, GLINT_SCENE_MOST_LIGHT);
 }
 
-/* Sets TO_Q14 to direction V, _q30, rotated to the environment's
- * coordinates. */
 static void
 rotate_direction_to_environment_q14(const struct glint_ward_state *w,
                                     const int32_t v_q30[3], int32_t to_q14[3])

@@ -245,7 +245,7 @@ TEST(rejects_invalid_meshes)
     make_scene_of_all_types();
     for (int i = 0; i < 63; i++)
         file.mesh[file.header.n_meshes++] = file.mesh[0];
-    expect_scene_error(&file, "tables share bytes");
+    expect_scene_error(&file, "damaged scene: tables overlap");
 }
 
 TEST(rejects_invalid_objects)
