@@ -71,8 +71,9 @@ static int32_t mix_coefficient(int32_t a, int32_t ea, int32_t b, int32_t eb,
 }
 
 /* Returns (B - A) / SIZE, where B, A and SIZE are in units of 2^EB, 2^EA and
- * 2^ES. Sets *FAR and returns 0 if SIZE is not above 0, or the magnitude of the
- * quotient exceeds MOST_MOVE. */
+ * 2^ES. Sets *FAR if SIZE is not above 0, its unit is more than 2^30 times that
+ * of the difference or less than 2^-30, or the magnitude of the quotient
+ * exceeds MOST_MOVE. Returns 0 if *FAR is or was set. */
 static int32_t compute_box_move_q24(int64_t b, int32_t eb, int64_t a,
                                     int32_t ea, int64_t size, int32_t es,
                                     int *far)
@@ -351,8 +352,8 @@ static int compute_move_preserving_stop(const struct glint_blend_stop *of,
     return !far && is_box_move_small(m);
 }
 
-/* Returns the max value of the polynomial of BARREL at the rim of the stop or
- * at the rim of the box; the nearer rim is used. */
+/* Returns the max value of the polynomial of BARREL at the left, right and
+ * upper point of the rim of the stop, each moved into the box. */
 static int32_t find_max_at_rim_q16(const struct glint_blend_output *barrel,
                                    const struct glint_blend_stop *stop)
 {

@@ -60,7 +60,8 @@ struct glint_blend_output {
 
 /* Mixes BOX, the box of this position in units of 2^EXPONENT, into the box of
  * the transfer, which must still be that of the other position. Returns 0 if
- * part is below 0 and the boxes are too far apart to extrapolate. */
+ * part is below 0 and the boxes are too far apart to extrapolate or the result
+ * has no area. */
 int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
                         int32_t exponent);
 
@@ -94,7 +95,8 @@ int glint_blend_add_barrel(struct glint_transfer *t,
 void glint_blend_mix_output(struct glint_zoom_mix *blend,
                             const struct glint_blend_output *o);
 
-/* Widens the barrels that the other position lacks. Call it last. */
+/* Widens the barrels that the other position lacks, unless part is below 0.
+ * Call it last. */
 void glint_blend_widen_barrels(const struct glint_zoom_mix *blend);
 
 /* Multiplies the energy of T by the fraction SHARE_Q30. */

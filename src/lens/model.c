@@ -170,7 +170,6 @@ static int64_t sum_magnitudes(const int32_t *x, uint32_t n)
     return sum;
 }
 
-/* Checks the range of the y components of a system's directions. */
 static const char *check_direction_range(struct check *c,
                                          const struct glint_model_system *s)
 {

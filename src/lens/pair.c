@@ -61,7 +61,7 @@ static int64_t get_min_i64(int64_t a, int64_t b)
 
 /* Finds the overlap of both positions' boxes in the pupil: FIRST .. LAST along
  * u and 0 .. HIGH along v, in half sizes of this position's box. Returns 0 if
- * the boxes do not overlap. */
+ * the boxes do not overlap or are too far apart. */
 static int find_box_overlap(const struct glint_zoom_mix *blend, int64_t *first,
                             int64_t *last, int64_t *high)
 {
@@ -105,7 +105,7 @@ static void set_barrel_values(const struct glint_zoom_mix *blend, int side,
 
 /* Returns the difference between two barrels: the max difference of their
  * values over sample points of their own boxes, or over points of the pupil.
- * The smaller of these two maxima is returned. */
+ * The smaller of these two maxima is returned, at most LIKE_Q16. */
 static int64_t compute_barrel_difference_q16(const struct glint_zoom_mix *blend,
                                              int ours, int theirs)
 {

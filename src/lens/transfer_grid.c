@@ -26,7 +26,7 @@ struct block {
     int32_t sensor_q8[4][RAYS], stop_q16[4][RAYS];
     int32_t barrel_q16[2][RAYS];
     int32_t energy_q16[RAYS];
-    /* Masks of invalid rays, in which all bits are set. [0]: rays, [1]: their
+    /* Masks: all bits set if the ray is invalid, else 0. [0]: rays, [1]: their
      * mirror images. */
     int32_t invalid[2][RAYS];
 };
@@ -209,7 +209,6 @@ static int is_row_without_rays(const struct glint_transfer *t, int n_cells,
     return t->annulus && 2 * j == n_cells;
 }
 
-/* Returns the coordinate v of row J of the grid. */
 static int32_t compute_row_v_q30(const struct glint_transfer *t, int n_cells,
                                  int j)
 {

@@ -120,7 +120,8 @@ static void find_neighbour_models(struct glint_zoom_lens *z, int end[2])
 }
 
 /* Sets the indices of ghost G and its parts in the model on SIDE (0 or 1). That
- * model has PARTS additional parts, from index AT on. */
+ * model has PARTS additional parts, from index AT on; the index of a part that
+ * it lacks is -1. */
 static void set_neighbour_indices(struct glint_zoom_lens *z, int side, int g,
                                   uint32_t at, int parts)
 {
@@ -320,8 +321,8 @@ static int find_model_behind_neighbour(const struct glint_zoom_lens *z, int g,
 }
 
 /* Sets TRANSFER to ghost G, extrapolated from the model on SIDE and a model
- * farther away. G must have light only in the model on SIDE, and no additional
- * parts there. Returns whether extrapolation is possible. */
+ * farther away. G must have light only in the model on SIDE. Returns 0 if G has
+ * additional parts with light there, or no other model is suitable. */
 static int extrapolate_ghost_transfer(struct glint_transfer *transfer,
                                       const struct glint_zoom_lens *z, int g,
                                       int side, int32_t sine_q30,
