@@ -76,7 +76,8 @@ struct glint_lamp_tracker_config {
     /* Min fraction of the flux that changes at a cut; above 32768: cuts are not
      * detected. There are two criteria for a cut. Either this fraction of the
      * previous picture's flux vanishes and this fraction of the new picture's
-     * flux is new; or three or more lamps appear or vanish at once. */
+     * flux is new; or all of three or more lamps vanish at once, or three or
+     * more appear in a picture without lamps. */
     int32_t cut_q15;
     /* Time in which the level rises from 0 to full, or the flux rises to a
      * greater flux, milliseconds. All times of this struct are 1 .. 60000. */

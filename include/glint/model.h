@@ -15,13 +15,13 @@
  *
  * Variables of a polynomial, each -1 .. 1:
  *   u, v   position in the ghost's pupil box, a rectangle of the vertex plane
- * of the first surface: u in the plane of the light, v across; everything is
- * symmetric in v s      sine of the light's angle, scaled to the range of the
- * system w      1 / wavelength^2, scaled to the band of the system A system is
- * the polynomials for one range of angles and wavelengths. s and w are the same
- * for a whole bundle: glint_transfer_init() substitutes them; the resulting
- * polynomials depend only on u and v. The method follows [Bodonyi25], in
- * coordinates in which ghosts vary slowly.
+ *          of the first surface: u in the plane of the light, v across;
+ *          everything is symmetric in v
+ *   s      sine of the light's angle, scaled to the range of the system
+ *   w      1 / wavelength^2, scaled to the band of the system
+ *
+ * A system is the polynomials for one range of angles and wavelengths. The
+ * method follows [Bodonyi25], in coordinates in which ghosts vary slowly.
  *
  * The ghosts of a lens that is not symmetric about its axis also depend on the
  * azimuth of the light. Its model uses the lens's own frame: u lies along x, v

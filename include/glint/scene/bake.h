@@ -39,8 +39,8 @@ struct glint_scene_bake_report {
 
 /* Bakes SCENE. The file stores KEY and the first 63 characters of NAME that are
  * a-z, A-Z, 0-9, '-' or '_'. *DATA is malloc'ed. On GLINT_E_LENS, ERROR names
- * an object that is too small relative to the extent of the scene. May return
- * GLINT_E_MEMORY. */
+ * the object that cannot be baked, e.g. as it is too small relative to the
+ * scene. May return GLINT_E_MEMORY. */
 enum glint_status glint_scene_bake(const struct glint_description *scene,
                                    const char *name, uint64_t key,
                                    unsigned char **data, size_t *bytes,

@@ -50,7 +50,8 @@ struct glint_environment_options {
 struct glint_environment_report {
     int width, height; /* size of the picture, pixels */
     /* Number of pixels with negative values, which were clamped to 0; number of
-     * pixels with +inf, which were clamped to the largest finite value. */
+     * pixels with non-finite values: +inf became the largest finite value, the
+     * others 0. */
     long long negative, not_finite;
     double mean, largest; /* mean and max luminance over the sphere */
     /* Max luminance of the texels that remained after the lights were

@@ -11,7 +11,7 @@
  * detect). Each frame of the file has position and rotation of the body and the
  * position of each food item. In frame 0 the body is at the origin and not
  * rotated, so positions are relative to that pose. Axes are those of the
- * recording, right-handed.
+ * recording.
  *
  * Lengths are in steps: one unit of the recording is 2^unit_log2 steps;
  * unit_log2 is 24 except for very large or tiny recordings.
@@ -65,8 +65,8 @@ struct glint_motion_event {
  * reading a frame need not begin at frame 0. */
 struct glint_motion_index {
     uint32_t event; /* index of the first event after that frame */
-    /* Max distance, over the frames of the block, between the stored position
-     * of a food item and the position where it was observed, steps. */
+    /* Max distance, over the frames of the block, between the observed position
+     * of a food item and that known from earlier frames, steps. */
     uint32_t residual;
     /* For each food item, index of the event that states its position. */
     uint32_t food[GLINT_MOTION_MAX_FOODS];

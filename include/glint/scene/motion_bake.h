@@ -60,11 +60,13 @@ struct glint_motion_report {
     long n_frames, n_resets;
     double span; /* diagonal of the bounding box of all frames */
     double path; /* length of the body's path */
+    /* The residual of a frame is the max distance between the observed position
+     * of a food item and that known from earlier frames. residual: max over all
+     * frames, in residual_frame; residual_rms: RMS; bad_frames: number of
+     * frames that exceed span / 1000. */
     double residual, residual_rms;
-    long residual_frame, bad_frames; /* number of frames whose residual exceeds
-                                        a thousandth of the span */
-    long held_intensities;           /* number of intensities that were clamped
-                                        to 0 .. 1 */
+    long residual_frame, bad_frames;
+    long held_intensities; /* number clamped to 0 .. 1 */
     /* has_senses: the recording has tv or rv. senses_off, senses_most: distance
      * between the reconstructed position and the position that tv and rv give
      * when they are added up. senses_off is the distance in the last frame,

@@ -124,9 +124,9 @@ const char *glint_scene_lacks(const struct glint_scene_parts *parts,
 /* Places a scene in MEM[BYTES], aligned to 64; it needs no cleanup. MODEL is
  * copied; the file that it points into must outlive the scene. Returns
  * GLINT_E_MEMORY if BYTES is too small. Returns GLINT_E_UNSUPPORTED if MODEL
- * needs a module that CFG lacks. Returns GLINT_E_FORMAT if
- * glint_environment_open() or glint_translucent_open() rejects an environment
- * or a translucent medium of MODEL. */
+ * needs a module that CFG lacks. Returns GLINT_E_FORMAT if an environment,
+ * translucent medium or motion of MODEL is damaged, GLINT_E_ARGUMENT if CFG or
+ * the alignment is wrong. */
 enum glint_status glint_scene_init(struct glint_scene **scene,
                                    const struct glint_scene_config *cfg,
                                    const struct glint_scene_model *model,
@@ -209,9 +209,9 @@ enum glint_status glint_scene_turn_environment(struct glint_scene *scene,
 /* Stores a reduced copy of IMAGE as the background for reflected and refracted
  * rays that hit no object. Rays that run ahead see IMAGE unchanged; rays in
  * other directions see it mirrored. IMAGE has the size of the configuration;
- * NULL, the default, is black. Costs nothing if no visible material reflects or
- * transmits. Must be called after glint_scene_begin() and before
- * glint_scene_draw() changes IMAGE. */
+ * NULL, the default, is black. Costs nothing if no material reflects or
+ * refracts, or no object is visible. Must be called after glint_scene_begin()
+ * and before glint_scene_draw() changes IMAGE. */
 void glint_scene_look_around(struct glint_scene *scene,
                              const struct glint_image *image);
 
@@ -253,7 +253,8 @@ void glint_scene_show_kind(struct glint_scene *scene,
 
 /* Sets the radius or width of all elements of KIND; for the body, also the
  * distance of sensors from its middle. Returns GLINT_E_ARGUMENT if STEPS is not
- * within 1 .. GLINT_SCENE_SPAN / 4, or there are no elements of KIND. */
+ * within 1 .. GLINT_SCENE_SPAN / 4, there is no motion, or KIND is sensors or
+ * food items and there are none. */
 enum glint_status glint_scene_size_kind(struct glint_scene *scene,
                                         enum glint_scene_kind kind,
                                         int32_t steps);

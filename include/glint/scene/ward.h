@@ -75,9 +75,9 @@ void glint_ward_light(const struct glint_ward_lobe *lobe,
                       const int32_t frame_q14[3][3], const int32_t view_q14[3],
                       int32_t rgb_q15[3]);
 
-/* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to the value of a white surface
- * with normal NORMAL that is lit by the levels. NORMAL may have any length up
- * to 2^16. */
+/* Sets RGB, in units of ENVIRONMENT, 0 .. 2^28, to the light that a white
+ * diffuse surface with normal NORMAL reflects under ENVIRONMENT. NORMAL may
+ * have any length up to 2^16. */
 void glint_environment_irradiance(const struct glint_environment *environment,
                                   const int32_t normal[3], int32_t rgb[3]);
 
