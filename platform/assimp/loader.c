@@ -196,10 +196,10 @@ static int has_node_with_two_parents(const char *text, size_t bytes)
     return is_shared;
 }
 
-/* Returns NULL if TEXT[BYTES], the beginning of a file of ALL bytes, is a valid
- * glTF; else a text that states the error. A binary glTF begins with a magic
- * number, a version, the length of the file, and the length and type of the
- * JSON chunk. */
+/* Checks TEXT[BYTES], the beginning of a glTF file of ALL bytes, for missing
+ * bytes and shared nodes. Returns NULL, or a text that states the error. A
+ * binary glTF begins with a magic number, a version, the length of the file,
+ * and the length and type of the JSON chunk. */
 static const char *check_gltf(const uint8_t *text, size_t bytes, uintmax_t all)
 {
     if (bytes >= 4 && memcmp(text, "glTF", 4) == 0) {

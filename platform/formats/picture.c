@@ -148,9 +148,9 @@ static const char *get_name_of_file_type(const uint8_t *head, size_t bytes)
     return "any file but PPM, PGM and PFM";
 }
 
-static enum glint_status does_type_need_plugin(const char *path,
-                                               const char *type,
-                                               struct glint_error *error)
+static enum glint_status report_type_needs_plugin(const char *path,
+                                                  const char *type,
+                                                  struct glint_error *error)
 {
     const struct glint_error cause = *error;
 
@@ -169,7 +169,7 @@ static enum glint_status load_picture_by_plugin(struct loaded *loaded,
     enum glint_status status = glint_oiio_load(&oiio, error);
 
     if (status)
-        return does_type_need_plugin(path, type, error);
+        return report_type_needs_plugin(path, type, error);
     status = oiio->read(&pixels, path, error);
     if (status)
         return status;
@@ -438,7 +438,7 @@ enum glint_status glint_picture_check(const char *path,
                                   "linear light in floats",
                                   type->extension);
     if (!type->is_native && glint_oiio_load(&oiio, error))
-        return does_type_need_plugin(path, type->extension, error);
+        return report_type_needs_plugin(path, type->extension, error);
     return GLINT_OK;
 }
 
@@ -747,7 +747,7 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
     enum glint_status status = glint_oiio_load(&oiio, error);
 
     if (status)
-        return does_type_need_plugin(k->path, type, error);
+        return report_type_needs_plugin(k->path, type, error);
     status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
     if (status)
         return status;
@@ -822,7 +822,7 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
     if (type->is_native)
         return GLINT_OK;
     if (glint_oiio_load(&oiio, error))
-        return does_type_need_plugin(path, type->extension, error);
+        return report_type_needs_plugin(path, type->extension, error);
     if (!oiio->can_write(path))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "the installed OpenImageIO does not write "
@@ -877,8 +877,8 @@ enum glint_status glint_kept_make_blank(struct glint_samples *blank,
     return blank->mem ? GLINT_OK : GLINT_E_MEMORY;
 }
 
-/* Returns whether any sample of S is lighter than white. */
-static bool has_light_above_white(const struct glint_samples *s)
+/* Returns whether samples of the type of S can be lighter than white. */
+static bool can_be_above_white(const struct glint_samples *s)
 {
     return glint_sample_is_float(s->colour[0].sample) ||
            glint_tone_curve_is_hdr(&s->colours.transfer[0]);
@@ -893,7 +893,7 @@ static void report_losses(struct glint_kept_options *options,
         append_to_notes(
             options->said,
             "the file type has no alpha: the picture is composited over black");
-    if (has_light_above_white(from) && !has_light_above_white(to))
+    if (can_be_above_white(from) && !can_be_above_white(to))
         append_to_notes(
             options->said,
             to->colour[0].sample == GLINT_SAMPLE_U8

@@ -71,8 +71,8 @@ struct glint_kept_options {
     char said[GLINT_KEPT_NOTES];
 };
 
-/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME is
- * not a GIF. */
+/* Returns the number of frames of the GIF NAME, which it reads; 0 if NAME does
+ * not end in .gif, cannot be read or is too large. */
 int glint_gif_count_frames(const char *name);
 
 /* Returns whether files of PATH's extension can hold only floats. Returns false

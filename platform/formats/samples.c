@@ -273,8 +273,8 @@ static void close_sample_decoder(struct decoder *d)
         free(d->entries[c]);
 }
 
-static double decode_pixel_colours(const struct decoder *d, int c,
-                                   const uint8_t *pixel)
+static double decode_channel_to_light(const struct decoder *d, int c,
+                                      const uint8_t *pixel)
 {
     const struct glint_samples *const s = d->samples;
     const struct glint_sample_place *const from = &s->colour[c];
@@ -316,7 +316,7 @@ static void decode_pixel_light(const struct decoder *d, const uint8_t *pixel,
     else if (s->has_alpha && !s->is_premultiplied && !straight)
         factor = alpha;
     for (int c = 0; c < 3; c++)
-        own[c] = clamp_to_finite(decode_pixel_colours(d, c, pixel)) * factor;
+        own[c] = clamp_to_finite(decode_channel_to_light(d, c, pixel)) * factor;
     multiply_matrix(s->colours.to_bt709, own, rgb);
 }
 
@@ -440,7 +440,7 @@ static void add_light_to_channel(const struct decoder *d, int c, uint8_t *pixel,
     const struct glint_samples *const s = d->samples;
     const struct glint_sample_place *const at = &s->colour[c];
     const struct glint_tone_curve *const transfer = &s->colours.transfer[c];
-    const double sum = decode_pixel_colours(d, c, pixel) + light;
+    const double sum = decode_channel_to_light(d, c, pixel) + light;
     uint32_t code, lit;
 
     if (!(light > 0) || !isfinite(sum))

@@ -53,15 +53,12 @@ struct glint_samples {
     uint8_t *mem; /* [height][width] pixels, in the machine's byte order */
 };
 
-/* Returns the value of HALF, exactly. */
 float glint_half_decode(uint16_t half);
 
 /* Returns the half nearest to VALUE, ties to even; 65520 and more become
  * infinity. */
 uint16_t glint_half_encode(float value);
 
-/* glint_sample_get_bytes() returns the bytes of a sample of type SAMPLE,
- * glint_sample_is_float() whether it is a float. */
 size_t glint_sample_get_bytes(enum glint_sample sample);
 
 bool glint_sample_is_float(enum glint_sample sample);

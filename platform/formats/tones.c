@@ -102,8 +102,8 @@ double glint_tone_curve_decode(const struct glint_tone_curve *transfer,
            t->e;
 }
 
-/* Returns the code, 0 .. 1, that T's table decodes to LIGHT; the values of the
- * table must increase. */
+/* Returns the code that T's table decodes to LIGHT, extrapolated outside the
+ * table; its values must not fall. */
 static double find_code_of_light(const struct glint_tone_curve *t, double light)
 {
     const double level = light * 65535;

@@ -55,8 +55,7 @@ struct glint_colours {
     char name[48];
 };
 
-/* glint_tone_curve_set() sets TRANSFER to the curve KIND; GAMMA is used only by
- * GLINT_TONE_IS_GAMMA. glint_tone_curve_decode() and glint_tone_curve_encode()
+/* glint_tone_curve_set() uses GAMMA only for GLINT_TONE_IS_GAMMA. The others
  * convert a code to linear light, and back. */
 void glint_tone_curve_set(struct glint_tone_curve *transfer,
                           enum glint_tone_kind kind, double gamma);

@@ -17,7 +17,8 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
     (void)max_width, (void)max_height;
     *decoder = NULL;
     return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
-                              "MJPEG: glint was built without libjpeg");
+                              "MJPEG: glint was built without libjpeg; choose "
+                              "another format, or install it and build again");
 }
 
 /* Never called: glint_mjpeg_open() makes no decoder. */

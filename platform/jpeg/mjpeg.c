@@ -61,8 +61,8 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
         max_height > GLINT_PANEL_SIDE)
         return glint_error_report(
             error, GLINT_E_ARGUMENT, name,
-            "MJPEG frames of up to %d x %d pixels are not supported", max_width,
-            max_height);
+            "MJPEG frames of %d x %d pixels: width and height must be 1 to %d",
+            max_width, max_height, GLINT_PANEL_SIDE);
     d = calloc(1, sizeof *d);
     if (!d)
         return glint_error_report(error, GLINT_E_MEMORY, name,

@@ -38,8 +38,8 @@ bool glint_mjpeg_available(void);
 
 /* Makes a decoder for frames up to MAX_WIDTH x MAX_HEIGHT, 1 ..
  * GLINT_PANEL_SIDE, of any subsampling. NAME is for errors and must outlive
- * DECODER. Returns GLINT_E_UNSUPPORTED if glint is built without libjpeg, or
- * GLINT_E_MEMORY. */
+ * DECODER. Returns GLINT_E_ARGUMENT for other sizes, GLINT_E_UNSUPPORTED if
+ * glint is built without libjpeg, or GLINT_E_MEMORY. */
 enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
                                    const char *name, int max_width,
                                    int max_height, struct glint_error *error);
@@ -50,9 +50,10 @@ enum glint_status glint_mjpeg_open(struct glint_mjpeg **decoder,
  * overwrites them. Returns GLINT_E_FORMAT if the frame is empty, visibly
  * damaged, or ends before its last sample; the caller should drop the frame and
  * continue. Returns GLINT_E_UNSUPPORTED if the frame is too large, progressive,
- * RGB or CMYK, has more than 8 bits, or has an unsupported subsampling; the
- * next frame is probably of the same type. Returns GLINT_E_MEMORY if libjpeg
- * got no memory; decoding the next frame may succeed. */
+ * arithmetic-coded, RGB or CMYK, has more than 8 bits, or has an unsupported
+ * subsampling; the next frame is probably of the same type. Returns
+ * GLINT_E_MEMORY if libjpeg got no memory; decoding the next frame may
+ * succeed. */
 enum glint_status glint_mjpeg_decode(struct glint_mjpeg *decoder,
                                      const void *data, size_t bytes,
                                      struct glint_image *image,

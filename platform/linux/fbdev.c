@@ -37,10 +37,9 @@ static void restore_console(void)
     errno = saved;
 }
 
-/* Registers restore_console() with glint_at_death_register(); a second call
- * does nothing. Registered functions run from the latest to the earliest, so a
- * function that must run before the console is restored must be registered
- * after this call. */
+/* Registered functions run from the latest to the earliest, so a function that
+ * must run before the console is restored must be registered after this
+ * call. */
 static void register_console_restore(void)
 {
     glint_at_death_register(restore_console);
@@ -130,7 +129,7 @@ static void release_console(int *fd)
 #define FBIO_WAITFORVSYNC _IOW('F', 0x20, uint32_t)
 #endif
 
-/* Reports that ioctl request WHAT has failed, with the cause in errno. */
+/* Reports that ioctl WHAT failed, by errno. */
 static enum glint_status report_ioctl_failure(const struct glint_fbdev *fb,
                                               const char *what,
                                               struct glint_error *error)
@@ -188,8 +187,8 @@ convert_bit_field(const struct fb_bitfield *bits)
     return (struct glint_pixel_field){(int)bits->offset, (int)bits->length};
 }
 
-/* Returns the layout of pixels that V describes; RGB565 or XRGB8888 if the
- * driver states no bit fields. */
+/* Returns the layout of pixels that V describes. If it has no bit fields,
+ * assumes RGB565 for 2 bytes, else 8 bits per colour. */
 static struct glint_pixel_layout
 read_pixel_layout(const struct fb_var_screeninfo *v)
 {
@@ -239,8 +238,8 @@ adopt_driver_layout(struct glint_fbdev *fb, const struct fb_fix_screeninfo *fix,
         v->yres > GLINT_PANEL_SIDE)
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
-            "has %u x %u pixels, which glint does not support", v->xres,
-            v->yres);
+            "has %u x %u pixels; glint supports 1 to %d a side", v->xres,
+            v->yres, GLINT_PANEL_SIDE);
     fb->width = (int)v->xres;
     fb->height = (int)v->yres;
     fb->stride_bytes = fix->line_length;
@@ -321,11 +320,10 @@ static enum glint_status set_up_video_mode(struct glint_fbdev *fb,
     unmap_panel(fb);
     glint_panel_close(&fb->panel);
     fb->home = fb->var;
+    /* A glint process that was killed may have left the second screen visible,
+     * so the original offset is taken to be 0. */
     if (fb->home.yoffset == fb->var.yres)
-        fb->home.yoffset =
-            /* A glint process that was killed may have left the second screen
-             * visible, so the original offset is taken to be 0. */
-            0;
+        fb->home.yoffset = 0;
     if (glint_ioctl(fb->fd, FBIOGET_FSCREENINFO, &fix) < 0)
         return report_ioctl_failure(fb, "FBIOGET_FSCREENINFO", error);
     status = adopt_driver_layout(fb, &fix, error);
@@ -405,8 +403,7 @@ static void draw_to_mapped_screen(struct glint_fbdev *fb,
     glint_panel_draw(&fb->panel, image, mem, stride);
 }
 
-/* Draws IMAGE directly to the visible screen, for panels whose memory holds
- * only one screen. */
+/* For panels whose memory holds only one screen. */
 static enum glint_status draw_to_visible_screen(struct glint_fbdev *fb,
                                                 const struct glint_image *image,
                                                 struct glint_error *error)
@@ -503,7 +500,6 @@ static const char *get_default_path(void)
     return path && *path ? path : "/dev/fb0";
 }
 
-/* Opens the device and checks that it is a framebuffer. */
 static enum glint_status open_framebuffer(struct glint_fbdev *fb,
                                           struct glint_error *error)
 {

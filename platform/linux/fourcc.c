@@ -76,7 +76,7 @@ uint32_t glint_fourcc_from_format(enum glint_pixel_format format)
     return 0;
 }
 
-static bool are_characters_printable(uint32_t character)
+static bool is_printable_character(uint32_t character)
 {
     return character >= ' ' && character <= '~';
 }
@@ -86,7 +86,7 @@ void glint_fourcc_text(uint32_t fourcc, char text[5])
     for (int i = 0; i < 4; i++) {
         const uint32_t character = fourcc >> 8 * i & 255;
 
-        text[i] = are_characters_printable(character) ? (char)character : '?';
+        text[i] = is_printable_character(character) ? (char)character : '?';
     }
     text[4] = 0;
 }
@@ -119,7 +119,7 @@ bool glint_fourcc_parse(const char *text, uint32_t *fourcc)
     if (strlen(text) != 4)
         return false;
     for (int i = 0; i < 4; i++) {
-        if (!are_characters_printable((unsigned char)text[i]))
+        if (!is_printable_character((unsigned char)text[i]))
             return false;
         value |= (uint32_t)(unsigned char)text[i] << 8 * i;
     }

@@ -158,8 +158,8 @@ read_frame_into_buffer(struct glint_v4l2 *v, struct glint_v4l2_taken *t)
     return GLINT_V4L2_TAKEN;
 }
 
-/* Dequeues a filled buffer from the driver, or reads a frame with read(2). Sets
- * T to its index, data size, sequence number and time. */
+/* Dequeues a filled buffer from the driver, or reads a frame with read(2), and
+ * describes it in T. */
 static enum glint_v4l2_outcome take_filled_buffer(struct glint_v4l2 *v,
                                                   struct glint_v4l2_taken *t)
 {
@@ -222,8 +222,7 @@ static const char *map_buffer_block(struct glint_v4l2 *v, int index, int block,
     return NULL;
 }
 
-/* Maps all blocks of buffer INDEX into memory. Returns NULL, or the name of
- * the call that failed. */
+/* Like map_buffer_block(), for all blocks. */
 static const char *map_buffer(struct glint_v4l2 *v, int index)
 {
     struct v4l2_plane planes[3];
@@ -240,8 +239,7 @@ static const char *map_buffer(struct glint_v4l2 *v, int index)
     return failed;
 }
 
-/* Allocates memory for all blocks of buffer INDEX. Returns NULL, or the name
- * of the call that failed. */
+/* Like map_buffer(), with memory of glint. */
 static const char *allocate_buffer(struct glint_v4l2 *v, int index)
 {
     struct glint_v4l2_buffer *b = &v->buffer[index];
@@ -285,7 +283,8 @@ static int64_t measure_read_time_us(const void *mem, size_t bytes)
 }
 
 /* Returns whether reading buffers is about as fast as reading other memory.
- * Measures it, as no driver reports it. */
+ * Measures it for mapped buffers, as no driver reports it; others are
+ * cached. */
 static bool is_buffer_memory_cached(const struct glint_v4l2 *v)
 {
     static uint64_t own[8192];
@@ -317,8 +316,8 @@ static const char *allocate_all_buffers(struct glint_v4l2 *v, uint32_t n)
 }
 
 /* Allocates buffers of type IO. Returns NULL, or the name of the call that
- * failed, with errno set. If the first request fails, tries once more, because
- * a driver that was just stopped refuses the first request. */
+ * failed, with errno set. Unless the device is busy, a failed first request is
+ * repeated once, because a driver that was just stopped refuses it. */
 static const char *allocate_buffers(struct glint_v4l2 *v, enum glint_v4l2_io io)
 {
     const enum v4l2_memory memory =
@@ -510,9 +509,9 @@ static enum glint_status renegotiate_format(struct glint_v4l2 *v,
 
 /* Stops the stream and prepares it again with the current format of the device.
  * Only the next frame shows whether this has succeeded, so failures are ignored
- * for PATIENCE_US until a frame arrives. After that time returns the error of
- * the failed request, or, if the stream had been started, an error with the
- * text WHY. */
+ * for PATIENCE_US until a frame arrives, unless the device was removed or has
+ * no supported format. After that time returns the error of the failed request,
+ * or, if the stream had been started, an error with the text WHY. */
 static enum glint_status restart_stream(struct glint_v4l2 *v, const char *why,
                                         struct glint_error *error)
 {
@@ -555,7 +554,7 @@ static void restart_time_limits(struct glint_v4l2 *v)
         v->broken_us = v->heard_us;
 }
 
-/* Dequeues all events of the device. Returns whether the source has changed. */
+/* Returns whether the source has changed. */
 static bool dequeue_events(struct glint_v4l2 *v)
 {
     struct v4l2_event event;

@@ -65,7 +65,8 @@ struct glint_v4l2 {
     uint32_t sequence; /* sequence number of the last frame that was dequeued */
     uint32_t n_read;   /* number of frames read by read(2), which gives no
                           sequence number */
-    int64_t heard_us;  /* arrival time of the last frame, us */
+    int64_t heard_us;  /* time from which a stall is measured, us: the last
+                          frame, start or change of source */
     int64_t broken_us; /* time at which the stream failed, us; 0: the stream has
                           not failed */
     int n_useless;     /* number of damaged frames in a row */

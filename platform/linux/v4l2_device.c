@@ -34,7 +34,6 @@ static bool is_jpeg_fourcc(uint32_t fourcc)
     return fourcc == V4L2_PIX_FMT_MJPEG || fourcc == V4L2_PIX_FMT_JPEG;
 }
 
-/* Returns whether glint can read frames in FOURCC. */
 static bool can_read_format(uint32_t fourcc)
 {
     enum glint_pixel_format unused;
@@ -190,8 +189,9 @@ static void write_members_of_v4l2_format(struct v4l2_format *f,
 }
 
 /* Sets the planes of F from PIX. Returns false if the planes do not fit into
- * the blocks of F. If there is only one block, the planes follow each other in
- * it, and the strides of chroma are computed from the stride of luma. */
+ * the blocks of F, or there is neither one block nor one per plane. If there is
+ * only one block, the planes follow each other in it, and the strides of chroma
+ * are computed from the stride of luma. */
 static bool set_format_planes(struct glint_v4l2_format *f,
                               const struct pix *pix)
 {
@@ -261,8 +261,9 @@ static enum glint_status adopt_device_format(struct glint_v4l2_device *d,
         pix->n_blocks > 3)
         return glint_error_report(
             error, GLINT_E_UNSUPPORTED, d->path,
-            "delivers pictures of %ux%u, which glint does not support",
-            pix->width, pix->height);
+            "delivers pictures of %ux%u pixels in %u blocks of memory; glint "
+            "supports 1 to %d pixels a side and 1 to 3 blocks",
+            pix->width, pix->height, pix->n_blocks, GLINT_PANEL_SIDE);
     for (int i = 0; i < f->n_blocks; i++)
         f->block_bytes[i] = pix->bytes[i];
     if (!f->is_jpeg && !glint_fourcc_to_format(pix->fourcc, &f->pixels))
@@ -318,12 +319,12 @@ static enum glint_status request_format(struct glint_v4l2_device *d,
     return adopt_device_format(d, &pix, error);
 }
 
-static bool is_fraction_positive(uint32_t n)
+static bool is_positive_int(uint32_t n)
 {
     return n >= 1 && n <= INT32_MAX;
 }
 
-/* Requests the frame rate d->wish, if there is one, and stores the rate that
+/* Requests the frame rate of d->wish, unless it is 0, and stores the rate that
  * the device reports; some inputs have a fixed rate. */
 static void request_frame_rate(struct glint_v4l2_device *d)
 {
@@ -336,8 +337,7 @@ static void request_frame_rate(struct glint_v4l2_device *d)
         glint_ioctl(d->fd, VIDIOC_S_PARM, &parm);
     }
     if (glint_ioctl(d->fd, VIDIOC_G_PARM, &parm) == 0 &&
-        is_fraction_positive(t->numerator) &&
-        is_fraction_positive(t->denominator)) {
+        is_positive_int(t->numerator) && is_positive_int(t->denominator)) {
         d->format.fps_num = (int)t->denominator;
         d->format.fps_den = (int)t->numerator;
     }
@@ -391,8 +391,10 @@ static enum glint_status open_device_by_name(struct glint_v4l2_device *d,
     if (snprintf(d->path, sizeof d->path, "%s%s",
                  isdigit((unsigned char)*name) ? "/dev/video" : "",
                  name) >= GLINT_V4L2_PATH)
-        return glint_error_report(error, GLINT_E_DEVICE, name,
-                                  "the name of the device is too long");
+        return glint_error_report(
+            error, GLINT_E_DEVICE, name,
+            "the name of the device is too long (max %d bytes)",
+            GLINT_V4L2_PATH - 1);
     status = open_device_node(d, error);
     if (status != GLINT_OK)
         return status;
@@ -402,7 +404,8 @@ static enum glint_status open_device_by_name(struct glint_v4l2_device *d,
                 ? glint_report_ioctl_error(error, d->path, "VIDIOC_QUERYCAP")
                 : glint_error_report(
                       error, GLINT_E_DEVICE, d->path,
-                      "not a camera: the device does not support V4L2");
+                      "not a camera: the device does not support V4L2; "
+                      "--list-devices shows the cameras");
         glint_v4l2_device_close(d);
         return status;
     }
@@ -443,8 +446,7 @@ static void read_current_input(struct glint_v4l2_device *d)
         d->is_dv = input.capabilities & V4L2_IN_CAP_DV_TIMINGS;
 }
 
-/* Subscribes to events that report changes of the source. Drivers whose source
- * never changes refuse with EINVAL, which is ignored. */
+/* Drivers whose source never changes refuse with EINVAL, which is ignored. */
 static void subscribe_to_source_changes(const struct glint_v4l2_device *d)
 {
     struct v4l2_event_subscription wanted = {.type = V4L2_EVENT_SOURCE_CHANGE,
@@ -460,8 +462,10 @@ static enum glint_status select_input(struct glint_v4l2_device *d,
 
     if (index >= 0 && glint_ioctl(d->fd, VIDIOC_S_INPUT, &index) < 0)
         return errno == EINVAL
-                   ? glint_error_report(error, GLINT_E_DEVICE, d->path,
-                                        "has no input %d", d->wish.input)
+                   ? glint_error_report(
+                         error, GLINT_E_DEVICE, d->path,
+                         "has no input %d; --list-devices lists them",
+                         d->wish.input)
                    : glint_report_ioctl_error(error, d->path, "VIDIOC_S_INPUT");
     read_current_input(d);
     subscribe_to_source_changes(d);

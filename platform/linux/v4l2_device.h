@@ -93,7 +93,7 @@ void glint_v4l2_format_text(const struct glint_v4l2_format *format,
                             char text[96]);
 
 /* Print to OUT all cameras, or the formats, sizes and rates of DEVICE; as JSON
- * if JSON is set. */
+ * if JSON is set, else without formats that glint does not read. */
 enum glint_status glint_v4l2_list_devices(FILE *out, bool json);
 
 enum glint_status glint_v4l2_list_formats(FILE *out, const char *device,

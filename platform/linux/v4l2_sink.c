@@ -14,7 +14,7 @@
 #include "linux/request.h"
 #include "posix/error.h"
 
-/* Reports that the request WHAT failed, with the cause in errno. */
+/* Reports that WHAT failed, by errno. */
 static enum glint_status
 report_request_failure(const struct glint_v4l2_sink *out, const char *what,
                        struct glint_error *error)
@@ -123,8 +123,8 @@ static void set_frame_rate(const struct glint_v4l2_sink *out, int num, int den)
 }
 
 /* Sets the frame's layout and allocates its memory. All planes lie in one block
- * of SIZE bytes. Luma rows are STRIDE bytes apart; the strides of chroma are in
- * proportion. */
+ * of SIZE bytes (0: not stated). Luma rows are STRIDE bytes apart; the strides
+ * of chroma are in proportion. */
 static enum glint_status set_frame_layout(struct glint_v4l2_sink *out,
                                           size_t stride, size_t size,
                                           struct glint_error *error)
@@ -151,9 +151,9 @@ static enum glint_status set_frame_layout(struct glint_v4l2_sink *out,
     if (size && size < out->bytes)
         return glint_error_report(
             error, GLINT_E_DEVICE, out->name,
-            "the driver requests frames of %zu bytes with rows of %zu, which "
-            "are too small for this size",
-            size, stride);
+            "the driver requests frames of %zu bytes with rows of %zu bytes; "
+            "%d x %d needs %zu bytes; choose another size",
+            size, stride, f->width, f->height, out->bytes);
     out->mem = calloc(1, out->bytes);
     if (!out->mem)
         return glint_error_report(error, GLINT_E_MEMORY, out->name,
@@ -166,7 +166,6 @@ static enum glint_status set_frame_layout(struct glint_v4l2_sink *out,
 
 /* ------------------------------------------------------------------ frames */
 
-/* Returns the distance from the first plane of IMAGE to PLANE, bytes. */
 static uintptr_t compute_plane_offset(const struct glint_image *image,
                                       int plane)
 {
@@ -209,8 +208,9 @@ static enum glint_status write_frame(struct glint_sink *sink,
     if (image->format != out->frame.format ||
         image->width != out->frame.width || image->height != out->frame.height)
         return glint_error_report(error, GLINT_E_DEVICE, out->name,
-                                  "was opened for another size or format than "
-                                  "%d x %d",
+                                  "was opened for %d x %d pixels; a frame of "
+                                  "another size or format came (%d x %d)",
+                                  out->frame.width, out->frame.height,
                                   image->width, image->height);
     if (!has_device_layout(out, image)) {
         copy_to_device_layout(out, image);
@@ -260,7 +260,7 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
                                     .frame = *like};
     if (!fourcc)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
-                                  "V4L2 has no such format");
+                                  "V4L2 has no code for this pixel format");
     out->fd = open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (out->fd < 0)
         status = report_request_failure(out, "open", error);

@@ -74,7 +74,7 @@ void append_big32(bytes &to, uint32_t value)
 }
 
 void append_png_chunk(bytes &to, const char *name, const unsigned char *data,
-                size_t n)
+                      size_t n)
 {
     append_big32(to, static_cast<uint32_t>(n));
     append_bytes(to, reinterpret_cast<const unsigned char *>(name), 4);
@@ -126,9 +126,9 @@ void report_lost_block(std::string &lost, const char *what, size_t n)
             " KB are more than a JPEG's 64 KB";
 }
 
-/* The Exif and XMP blocks in MADE, which OpenImageIO wrote, are always removed,
- * because they contain only a part of what the blocks of B contain. This holds
- * even if the blocks of B do not fit into segments. */
+/* If B has Exif or XMP, that block of MADE, which OpenImageIO wrote, is removed
+ * even if that of B does not fit into a segment, because it contains only a
+ * part of it. */
 bytes replace_jpeg_blocks(const bytes &made, const file_blocks &b,
                           std::string &lost)
 {
@@ -158,7 +158,7 @@ bytes replace_jpeg_blocks(const bytes &made, const file_blocks &b,
 }
 
 void append_webp_chunk(bytes &to, const char *name, const unsigned char *data,
-                 size_t n)
+                       size_t n)
 {
     append_bytes(to, reinterpret_cast<const unsigned char *>(name), 4);
     for (int i = 0; i < 4; i++)

@@ -33,8 +33,9 @@ struct file_blocks {
 file_blocks read_metadata_blocks(const std::string &type, const bytes &whole);
 file_blocks read_tiff_metadata(const bytes &whole);
 
-/* Sets the orientation in B to 1 (upright). Removes the Exif thumbnail of B,
- * and the XMP properties that refer to other pictures in the file. */
+/* Sets the orientation in B to 1 (upright). Removes malformed Exif, the Exif
+ * thumbnail, and the XMP properties that refer to other pictures in the
+ * file. */
 void set_upright_orientation(file_blocks &b);
 
 /* Returns MADE, the bytes of a file of TYPE, with its own metadata blocks

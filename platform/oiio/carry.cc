@@ -14,13 +14,12 @@ namespace
 
 /* Returns whether CHUNK is copied to the new file. Chunks about the coding of
  * pixels are copied only if SAME_CODING is set, chunks about colours only if
- * DROP_ICC is not set. */
+ * DROP_ICC is not set, and critical chunks and those of transparency, histogram
+ * or animation never. */
 bool is_chunk_copied(const file_piece &chunk, bool same_coding, bool drop_icc)
 {
-    if (!(chunk.name[0] & 0x20) || is_one_of(chunk.name, {"tRNS", "hIST",
-                                                         "acTL", "fcTL",
-                                                         "fdAT"}))
-        /* acTL, fcTL and fdAT belong to the further frames of an animation. */
+    if (!(chunk.name[0] & 0x20) ||
+        is_one_of(chunk.name, {"tRNS", "hIST", "acTL", "fcTL", "fdAT"}))
         return false;
     if (is_one_of(chunk.name, {"sBIT", "bKGD"}))
         return same_coding;
@@ -41,7 +40,8 @@ bool is_metadata_segment(const file_piece &segment)
  * only for the old file. */
 bool is_picture_index(const file_piece &segment)
 {
-    return has_marker_byte(segment, 0xe2) && begins_with_text(segment, "MPF", 4);
+    return has_marker_byte(segment, 0xe2) &&
+           begins_with_text(segment, "MPF", 4);
 }
 
 bool is_icc_segment(const file_piece &segment)
@@ -50,8 +50,8 @@ bool is_icc_segment(const file_piece &segment)
            begins_with_text(segment, "ICC_PROFILE", 12);
 }
 
-void append_named_segments(bytes &to, const std::vector<file_piece> &chunks,
-                           std::initializer_list<const char *> names)
+void append_named_chunks(bytes &to, const std::vector<file_piece> &chunks,
+                         std::initializer_list<const char *> names)
 {
     for (const file_piece &chunk : chunks)
         if (is_one_of(chunk.name, names))
@@ -61,7 +61,8 @@ void append_named_segments(bytes &to, const std::vector<file_piece> &chunks,
 /* Parses CHUNK, the only chunk of a simple WebP. Sets SIDE to width - 1 and
  * height - 1, as a VP8X chunk stores them, and ALPHA. Returns false if CHUNK
  * cannot be parsed. */
-bool read_webp_canvas_size(const file_piece &chunk, uint32_t side[2], bool &alpha)
+bool read_webp_canvas_size(const file_piece &chunk, uint32_t side[2],
+                           bool &alpha)
 {
     const unsigned char *const d = chunk.data;
 
@@ -147,9 +148,9 @@ bool is_gain_map(const file_piece &segment)
 
 std::string get_xmp_packet(const file_piece &xmp_segment)
 {
-    return std::string(
-        reinterpret_cast<const char *>(xmp_segment.data) + xmp_head_bytes,
-        xmp_segment.data_bytes - xmp_head_bytes);
+    return std::string(reinterpret_cast<const char *>(xmp_segment.data) +
+                           xmp_head_bytes,
+                       xmp_segment.data_bytes - xmp_head_bytes);
 }
 
 /* Appends the XMP packet of SEGMENT, without the properties that refer to
@@ -161,10 +162,9 @@ void append_cleaned_xmp(bytes &to, const file_piece &segment)
 
     if (!remove_xmp_claims(xmp, false))
         return;
-    append_segment(to, 0xe1, reinterpret_cast<const char *>(segment.data),
-                   xmp_head_bytes,
-                   reinterpret_cast<const unsigned char *>(xmp.data()),
-                   xmp.size());
+    append_segment(
+        to, 0xe1, reinterpret_cast<const char *>(segment.data), xmp_head_bytes,
+        reinterpret_cast<const unsigned char *>(xmp.data()), xmp.size());
 }
 
 /* Returns whether all pictures that the index SEGMENT lists, except the first,
@@ -275,10 +275,10 @@ bytes copy_webp_metadata(const bytes &made, const bytes &from, bool drop_icc)
     append_bytes(file, x.data(), x.size());
     file[20] = static_cast<unsigned char>((file[20] & ~0x2cu) | flags);
     if (!drop_icc)
-        append_named_segments(file, theirs, {"ICCP"});
-    append_named_segments(file, ours, {"ALPH", "VP8 ", "VP8L"});
-    append_named_segments(file, theirs, {"EXIF"});
-    append_named_segments(file, theirs, {"XMP "});
+        append_named_chunks(file, theirs, {"ICCP"});
+    append_named_chunks(file, ours, {"ALPH", "VP8 ", "VP8L"});
+    append_named_chunks(file, theirs, {"EXIF"});
+    append_named_chunks(file, theirs, {"XMP "});
     for (int i = 0; i < 4; i++)
         file[4 + i] = static_cast<unsigned char>((file.size() - 8) >> (8 * i));
     return file;

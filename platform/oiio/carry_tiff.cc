@@ -170,8 +170,9 @@ uint32_t read_directory_pointer(const struct entry &e)
                      uint32_t(e.values[1]) << 8 | e.values[0];
 }
 
-/* Copies the directories to which D points (Exif, GPS) from FROM to TO. Sets
- * the pointers in D to their new offsets. */
+/* Copies the directories to which D points (Exif, GPS, interoperability) from
+ * FROM to TO. Sets the pointers in D to their new offsets; removes those to
+ * malformed or too deeply nested directories. */
 void copy_pointed_directories(bytes &to, const reader &from, directory &d,
                               int depth)
 {

@@ -48,8 +48,8 @@ inline size_t get_printable_utf8_length(const unsigned char *at, size_t left)
     return n;
 }
 
-/* Returns TEXT as one line that is safe to print on a terminal, with '?' for
- * control characters. */
+/* Returns TEXT as one line that is safe to print on a terminal: newlines become
+ * spaces, other control characters and malformed ones '?'. */
 inline std::string make_printable(const std::string &text)
 {
     std::string line;
@@ -113,7 +113,7 @@ class call
                       "with another program\n",
                       shown.c_str());
         if (under_way.n++ == 0)
-            hush();
+            silence_stderr();
     }
     ~call()
     {
@@ -140,7 +140,7 @@ class call
     }
 
   private:
-    static void hush()
+    static void silence_stderr()
     {
         const int err = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
         const int null = err < 0 ? -1 : open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -249,7 +249,8 @@ open_picture(const std::string &path, const OIIO::ImageSpec *config = nullptr)
 inline void reject_unsupported_spec(const OIIO::ImageSpec &spec)
 {
     if (spec.deep || spec.nchannels < 1 || spec.depth > 1)
-        throw failure{GLINT_E_UNSUPPORTED, "is a deep or 3-D picture"};
+        throw failure{GLINT_E_UNSUPPORTED,
+                      "is a deep or 3-D picture; glint reads flat ones"};
     if (spec.width < 1 || spec.height < 1 || spec.full_width < 1 ||
         spec.full_height < 1)
         throw failure{GLINT_E_FORMAT, "has no pixels"};

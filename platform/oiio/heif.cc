@@ -27,8 +27,7 @@ bool has_heif_brand(const bytes &file, const char *brand)
     const size_t end =
         file.size() < 16
             ? 0
-            : std::min<size_t>(file.size(),
-                               size_t(file[2]) << 8 | file[3]);
+            : std::min<size_t>(file.size(), size_t(file[2]) << 8 | file[3]);
 
     for (size_t at = 8; at + 4 <= end; at += 4)
         if (at != 12 && !std::memcmp(file.data() + at, brand, 4))
@@ -42,8 +41,8 @@ bool is_heif(const bytes &file)
 {
     if (file.size() < 16 || std::memcmp(file.data() + 4, "ftyp", 4))
         return false;
-    for (const char *brand : {"heic", "heix", "mif1", "msf1", "hevc", "hevx",
-                              "avif", "avis"})
+    for (const char *brand :
+         {"heic", "heix", "mif1", "msf1", "hevc", "hevx", "avif", "avis"})
         if (!std::memcmp(file.data() + 8, brand, 4))
             return true;
     return false;
@@ -58,9 +57,9 @@ int get_heif_bits(const heif_picture &picture)
 {
     /* Pictures of 10 bits as 4:2:0 and 4:4:4 would make libaom abort, because
      * of a bug in libheif 1.15. */
-    return picture.bits <= 8                        ? 8
+    return picture.bits <= 8                       ? 8
            : picture.is_avif || picture.bits == 12 ? 12
-                                                    : 10;
+                                                   : 10;
 }
 
 #if HAS_HEIF
@@ -75,7 +74,6 @@ using image = std::unique_ptr<heif_image, decltype(&heif_image_release)>;
 using nclx = std::unique_ptr<heif_color_profile_nclx,
                              decltype(&heif_nclx_color_profile_free)>;
 
-/* Throws failure of STATUS if E is an error of libheif. */
 void throw_on_heif_error(const struct heif_error &e, enum glint_status status)
 {
     if (e.code != heif_error_Ok)
@@ -99,8 +97,8 @@ context create_heif_context()
 void read_heif_metadata_blocks(const heif_image_handle *from, file_blocks &to)
 {
     heif_item_id ids[16];
-    const int n =
-        heif_image_handle_get_list_of_metadata_block_IDs(from, nullptr, ids, 16);
+    const int n = heif_image_handle_get_list_of_metadata_block_IDs(
+        from, nullptr, ids, 16);
 
     for (int i = 0; i < n; i++) {
         const std::string type =
@@ -113,10 +111,10 @@ void read_heif_metadata_blocks(const heif_image_handle *from, file_blocks &to)
             heif_image_handle_get_metadata(from, ids[i], data.data()).code)
             continue;
         /* The Exif block begins with the offset of its TIFF header. */
-        const size_t skip =
-            data.size() < 4 ? data.size()
-                            : 4 + (size_t(data[0]) << 24 | data[1] << 16 |
-                                   data[2] << 8 | data[3]);
+        const size_t skip = data.size() < 4
+                                ? data.size()
+                                : 4 + (size_t(data[0]) << 24 | data[1] << 16 |
+                                       data[2] << 8 | data[3]);
         if (type == "Exif" && skip < data.size() && to.exif.empty())
             to.exif.assign(data.begin() + static_cast<std::ptrdiff_t>(skip),
                            data.end());
@@ -194,8 +192,8 @@ std::string describe_lost_pictures(const bytes &file, heif_context *all,
 void copy_heif_pixels(const heif_image *from, heif_picture &to)
 {
     int stride = 0;
-    const uint8_t *const mem = heif_image_get_plane_readonly(
-        from, heif_channel_interleaved, &stride);
+    const uint8_t *const mem =
+        heif_image_get_plane_readonly(from, heif_channel_interleaved, &stride);
     const size_t n = static_cast<size_t>(to.width) * size_t(to.channels);
     const size_t row = n * (to.bits > 8 ? 2 : 1);
 
@@ -255,7 +253,8 @@ heif_picture decode_heif(const bytes &file)
     made.bits = heif_image_handle_get_luma_bits_per_pixel(main);
     made.is_avif = is_avif(file);
     made.is_premultiplied = heif_image_handle_is_premultiplied_alpha(main);
-    reject_unsupported_spec(OIIO::ImageSpec(made.width, made.height, made.channels));
+    reject_unsupported_spec(
+        OIIO::ImageSpec(made.width, made.height, made.channels));
     throw_on_heif_error(
         heif_decode_image(main, &decoded, heif_colorspace_RGB,
                           made.channels == 4
@@ -368,11 +367,10 @@ void add_image_plane(heif_image *to, const planes &from, heif_channel channel,
             uint8_t *const at = mem + size_t(y) * size_t(stride);
             /* The neutral value of Cb and Cr is half the number of codes, not
              * half the code of white. */
-            const double v = from.mean(x, y, step, channel) * white +
-                             (channel == heif_channel_Cb ||
-                                      channel == heif_channel_Cr
-                                  ? 0.5
-                                  : 0);
+            const double v =
+                from.mean(x, y, step, channel) * white +
+                (channel == heif_channel_Cb || channel == heif_channel_Cr ? 0.5
+                                                                          : 0);
             const uint16_t code = static_cast<uint16_t>(
                 std::clamp(static_cast<int>(v + 0.5), 0, white));
 
@@ -403,7 +401,8 @@ image build_heif_image(const heif_picture &p, heif_chroma chroma)
     return held;
 }
 
-void set_heif_colours(heif_image *to, const heif_picture &p, heif_color_profile_nclx &n)
+void set_heif_colours(heif_image *to, const heif_picture &p,
+                      heif_color_profile_nclx &n)
 {
     const bool has = p.meta.cicp[1] != 0;
 
@@ -501,14 +500,16 @@ bool is_heif_writable(bool)
 
 heif_picture decode_heif(const bytes &)
 {
-    throw failure{GLINT_E_UNSUPPORTED, "this plug-in was built without "
-                                       "libheif-dev"};
+    throw failure{GLINT_E_UNSUPPORTED,
+                  "this plug-in was built without libheif: install libheif-dev "
+                  "and build it again"};
 }
 
 bytes encode_heif_picture(const heif_picture &, int)
 {
-    throw failure{GLINT_E_UNSUPPORTED, "this plug-in was built without "
-                                       "libheif-dev"};
+    throw failure{GLINT_E_UNSUPPORTED,
+                  "this plug-in was built without libheif: install libheif-dev "
+                  "and build it again"};
 }
 
 #endif

@@ -37,8 +37,7 @@ bool is_avif(const bytes &file);
 bool is_heif_readable();
 bool is_heif_writable(bool avif);
 
-/* Returns the bits per sample of a file of PICTURE: 8, or at least 10 for
- * pictures of more than 8 bits. */
+/* Returns the bits per sample of a file of PICTURE: 8, 10 or 12. */
 int get_heif_bits(const heif_picture &picture);
 
 /* Decodes FILE; throws failure. */

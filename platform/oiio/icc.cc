@@ -118,8 +118,6 @@ struct block {
     std::vector<uint16_t> rgb;
 };
 
-/* Returns the sum of the absolute differences of the three colours of A and
- * B. */
 int compute_colour_distance(const uint16_t *a, const uint16_t *b)
 {
     return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) +
@@ -273,7 +271,8 @@ std::unique_ptr<glint::icc_link> glint::open_icc_link(const bytes &,
 glint::bytes glint::decode_cmyk_jpeg(const bytes &, int, int)
 {
     throw failure{GLINT_E_UNSUPPORTED,
-                  "this plug-in was built without liblcms2-dev"};
+                  "this plug-in was built without lcms2: install liblcms2-dev "
+                  "and build it again"};
 }
 
 #endif

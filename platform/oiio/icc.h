@@ -48,16 +48,16 @@ struct icc_link {
     virtual bytes decode(const bytes &codes) const = 0;
 
     /* Compares CODES with the pixels RGB. Where a pixel of CODES does not
-     * decode to its pixel in RGB, replaces it by codes that do. Other pixels do
-     * not change. */
+     * decode to its pixel in RGB, replaces it by codes that nearly do. Other
+     * pixels do not change. */
     virtual void encode(const bytes &rgb, bytes &codes) const = 0;
 };
 
 /* Returns the conversion by PROFILE between codes and RGB. can_encode is set if
  * MAY_ENCODE is set and PROFILE has a table for encoding. Returns NULL if
- * PROFILE is malformed, larger than 16 MiB, consists of curves and a matrix, or
- * is not for the colours of LAYOUT, or if this plug-in was built without
- * lcms2. */
+ * PROFILE is malformed, larger than 16 MiB, consists of curves and a matrix or
+ * float tables, or is not for the colours of LAYOUT, or if this plug-in was
+ * built without lcms2. */
 std::unique_ptr<icc_link>
 open_icc_link(const bytes &profile, const code_layout &layout, bool may_encode);
 

@@ -31,9 +31,9 @@
 #endif
 
 using glint::bytes;
-using glint::reject_unsupported_spec;
 using glint::failure;
 using glint::open_picture;
+using glint::reject_unsupported_spec;
 using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
@@ -47,7 +47,6 @@ struct kept_part {
     std::vector<unsigned char> pixels;
 };
 
-/* Returns whether the channels of a part have different types. */
 inline bool has_mixed_channel_types(const OIIO::ImageSpec &spec)
 {
     return !spec.channelformats.empty();
@@ -59,12 +58,13 @@ using glint::kept_part;
 
 struct glint_oiio_file {
     std::string type;   /* OpenImageIO's name of the file type */
-    glint::bytes whole; /* bytes of the file, if is_metadata_copied(type) */
+    glint::bytes whole; /* bytes of the file, if it is a HEIF or
+                           is_metadata_copied(type) */
     std::vector<glint::kept_part> parts;
     std::vector<unsigned char> icc;
     glint::file_blocks meta; /* metadata as read, for types that have metadata
                                 blocks */
-    const char *metadata; /* as in glint_oiio_facts */
+    const char *metadata;    /* as in glint_oiio_facts */
     /* HEIF only: number of bits of the file's samples, or 0; and a text that
      * lists the content that is not preserved. */
     int bits;
@@ -94,7 +94,6 @@ bool is_metadata_copied(const std::string &type)
     return type == "png" || type == "jpeg" || type == "webp" || type == "tiff";
 }
 
-/* Returns all bytes of the file PATH; throws failure. */
 bytes read_whole_file(const char *path)
 {
     FILE *const f = std::fopen(path, "rb");
@@ -201,7 +200,8 @@ bytes decode_webp(const bytes &, int)
 bytes encode_webp(const unsigned char *, int, int, int, int)
 {
     throw failure{GLINT_E_UNSUPPORTED,
-                  "this plug-in was built without libwebp-dev"};
+                  "this plug-in was built without libwebp: install libwebp-dev "
+                  "and build it again"};
 }
 
 #endif
@@ -288,7 +288,6 @@ void check_file_complete(const struct glint_oiio_file &file)
         throw failure{GLINT_E_FORMAT, missing};
 }
 
-/* Decodes the HEIF in FILE.whole by libheif. */
 void read_heif(struct glint_oiio_file &file)
 {
     glint::heif_picture read = glint::decode_heif(file.whole);
@@ -356,8 +355,8 @@ bool is_rgb_from_cmyk(const struct glint_oiio_file &file, const ImageSpec &spec)
                 : spec.get_string_attribute("tiff:ColorSpace") == "CMYK");
 }
 
-/* Opens the conversion by the profile of PART, whose pixels are in that
- * profile. */
+/* Sets FILE.link to the conversion by the profile of PART, if its samples allow
+ * one. */
 void open_icc_link_of_part(struct glint_oiio_file &file, const kept_part &part)
 {
     const ImageSpec &spec = part.spec;
@@ -377,11 +376,11 @@ void open_icc_link_of_part(struct glint_oiio_file &file, const kept_part &part)
                              file.type != "jpeg" || layout.n_colours != 4);
 }
 
-/* If the profile of the picture IN, the file PATH, is for C M Y K, requests
- * that IN is read as C M Y K. */
+/* If the profile of IN, the picture of the file PATH, is for C M Y K, sets
+ * FILE.link and, unless it is a JPEG, opens IN again to read C M Y K. */
 void request_cmyk_reading(struct glint_oiio_file &file,
-                         std::unique_ptr<ImageInput> &in, const char *path,
-                         ImageSpec &config)
+                          std::unique_ptr<ImageInput> &in, const char *path,
+                          ImageSpec &config)
 {
     /* OpenImageIO 2.4 can return only RGB for C M Y K in a TIFF compressed as
      * JPEG. */
@@ -521,7 +520,8 @@ choice choose_channels(const ImageSpec &spec)
     return best;
 }
 
-struct glint_sample_place get_position_of_sample(const ImageSpec &spec, int index)
+struct glint_sample_place get_position_of_sample(const ImageSpec &spec,
+                                                 int index)
 {
     struct glint_sample_place channel = {GLINT_SAMPLE_FLOAT, 0};
 
@@ -594,8 +594,8 @@ void append_note(char (&notes)[160], const char *text)
                   text);
 }
 
-void describe_file_in_facts(struct glint_oiio_facts &facts, struct glint_oiio_file &file,
-                const ImageSpec &spec)
+void describe_file_in_facts(struct glint_oiio_facts &facts,
+                            struct glint_oiio_file &file, const ImageSpec &spec)
 {
     const OIIO::ParamValue *const xy = spec.find_attribute("chromaticities");
 
@@ -649,7 +649,7 @@ void describe_file_in_facts(struct glint_oiio_facts &facts, struct glint_oiio_fi
 /* Describes in FACTS the colours of the RGB to which FILE's pixels were
  * converted by its profile. */
 void describe_linked_colours(struct glint_oiio_facts &facts,
-                          const struct glint_oiio_file &file)
+                             const struct glint_oiio_file &file)
 {
     facts.icc = nullptr;
     facts.colour_space[0] = 0;
@@ -742,8 +742,9 @@ int glint::is_same_type(const struct glint_oiio_file *file, const char *path)
     guarded(path, GLINT_E_FORMAT, &error, [&] {
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
-        is_same = out && file->type == out->format_name() &&
-                  (file->type != "heif" || file->is_avif == has_avif_extension(path));
+        is_same =
+            out && file->type == out->format_name() &&
+            (file->type != "heif" || file->is_avif == has_avif_extension(path));
     });
     return is_same;
 }
@@ -756,9 +757,9 @@ int glint::can_write(const char *path)
     guarded(path, GLINT_E_OUTPUT, &error, [&] {
         const std::unique_ptr<ImageOutput> out = ImageOutput::create(path);
 
-                can = out && (out->format_name() != std::string("heif") ||
-                              is_heif_writable(has_avif_extension(path)));
-            });
+        can = out && (out->format_name() != std::string("heif") ||
+                      is_heif_writable(has_avif_extension(path)));
+    });
     return can;
 }
 
@@ -817,8 +818,7 @@ class memory : public OIIO::Filesystem::IOProxy
     bytes &data;
 };
 
-/* Removes the attributes that describe how the input file was coded. Attributes
- * that describe its content stay. */
+/* Removes the attributes that describe how the input file was coded. */
 void remove_coding_attributes(ImageSpec &spec)
 {
     for (const char *name :
@@ -873,8 +873,8 @@ void remove_exif_attributes(ImageSpec &spec)
 }
 
 /* Returns the quality for writing a file of TYPE, 1 .. 100, or 0: lossless. It
- * is the quality in OPTIONS, else FILE's own if FILE has the same TYPE, else
- * 95. */
+ * is the quality in OPTIONS; else, if FILE has the same TYPE, that of a JPEG or
+ * 0 for a lossless WebP; else 95. */
 int choose_quality(const std::string &type, const struct glint_oiio_file *file,
                    const struct glint_oiio_options &options)
 {

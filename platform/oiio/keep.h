@@ -68,10 +68,8 @@ std::string describe_extra_jpeg_data(const bytes &jpeg);
  * chunk. */
 bytes find_png_chunk(const bytes &file, const char *name);
 
-/* Returns whether WEBP is an animation of several frames. */
 bool is_animated_webp(const bytes &webp);
 
-/* Returns whether WEBP is coded losslessly. */
 bool is_lossless(const bytes &webp);
 
 /* ------------------------------------------------------------------- files */

@@ -25,10 +25,10 @@
 namespace
 {
 
-using glint::reject_unsupported_spec;
 using glint::failure;
 using glint::guarded;
 using glint::open_picture;
+using glint::reject_unsupported_spec;
 
 /* Returns the indices of the channels to read as R, G, B: the first three
  * channels, or three times the first channel if there are fewer. */
@@ -66,8 +66,8 @@ void read_upright_pixels(struct glint_oiio_pixels *pixels, const char *path)
 {
     const OIIO::ImageBuf buf = load_upright_image(path);
     const OIIO::TypeDesc type = buf.spec().format;
-    const OIIO::ImageBuf rgb =
-        OIIO::ImageBufAlgo::channels(buf, 3, choose_rgb_channels(buf.nchannels()));
+    const OIIO::ImageBuf rgb = OIIO::ImageBufAlgo::channels(
+        buf, 3, choose_rgb_channels(buf.nchannels()));
 
     if (rgb.has_error())
         throw failure{GLINT_E_FORMAT, rgb.geterror()};
@@ -117,7 +117,6 @@ std::vector<unsigned char> encode_pixels(const char *path,
     return encoded;
 }
 
-/* Returns OpenImageIO's description of layer K of LAYERS. */
 OIIO::ImageSpec describe_layer(const struct glint_oiio_layers *layers, int k)
 {
     OIIO::ImageSpec spec(layers->width, layers->height, 3,
@@ -146,7 +145,8 @@ std::vector<unsigned char> encode_parts(const char *path,
         throw failure{GLINT_E_UNSUPPORTED, OIIO::geterror()};
     if (layers->n > 1 && !out->supports("multiimage"))
         throw failure{GLINT_E_UNSUPPORTED,
-                      "this type cannot hold layers; name an .exr, or put %s into the name for a file per layer"};
+                      "this type cannot hold layers; name an .exr, or put %s "
+                      "into the name for a file per layer"};
     for (int k = 0; k < layers->n; k++)
         specs.push_back(describe_layer(layers, k));
     if (!(layers->n > 1 ? out->open(file.name(), layers->n, specs.data())

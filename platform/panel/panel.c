@@ -59,7 +59,6 @@ static inline void split_pixel_groups(uint8_t *restrict a, uint8_t *restrict b,
     }
 }
 
-/* Splits N pixels of GLINT_RGB565 into 8-bit codes of R, G and B. */
 static void split_565_pixels(uint8_t *restrict r, uint8_t *restrict g,
                              uint8_t *restrict b, const uint8_t *restrict from,
                              int n)
@@ -76,26 +75,27 @@ static void split_565_pixels(uint8_t *restrict r, uint8_t *restrict g,
 
 enum { HALF_Q13 = 1 << 12 };
 
-struct mix {
+struct rgb_matrix {
     int black; /* code of Y' = 0 */
     int16_t luma_q13, red_cr_q13, green_cb_q13, green_cr_q13, blue_cb_q13;
 };
 
 /* clang-format off */
 #define Q13(x) ((int16_t)((x) * 8192 + ((x) < 0 ? -0.5 : 0.5)))
-#define MIX(black, luma, chroma, kr, kb) {                                     \
+#define MATRIX(black, luma, chroma, kr, kb) {                                  \
     black, Q13(luma), Q13((chroma) * 2 * (1 - (kr))),                          \
     Q13(-(chroma) * 2 * (1 - (kb)) * (kb) / (1 - (kr) - (kb))),                \
     Q13(-(chroma) * 2 * (1 - (kr)) * (kr) / (1 - (kr) - (kb))),                \
     Q13((chroma) * 2 * (1 - (kb))) }
 
-static const struct mix mixes[2][2] = {
+static const struct rgb_matrix rgb_matrices[2][2] = {
     [GLINT_MATRIX_BT601] = {
-        [GLINT_RANGE_FULL] = MIX(0, 1., 1., .299, .114),
-        [GLINT_RANGE_LIMITED] = MIX(16, 255. / 219, 255. / 224, .299, .114)},
+        [GLINT_RANGE_FULL] = MATRIX(0, 1., 1., .299, .114),
+        [GLINT_RANGE_LIMITED] = MATRIX(16, 255. / 219, 255. / 224, .299, .114)},
     [GLINT_MATRIX_BT709] = {
-        [GLINT_RANGE_FULL] = MIX(0, 1., 1., .2126, .0722),
-        [GLINT_RANGE_LIMITED] = MIX(16, 255. / 219, 255. / 224, .2126, .0722)},
+        [GLINT_RANGE_FULL] = MATRIX(0, 1., 1., .2126, .0722),
+        [GLINT_RANGE_LIMITED] =
+            MATRIX(16, 255. / 219, 255. / 224, .2126, .0722)},
 };
 /* clang-format on */
 
@@ -106,7 +106,7 @@ struct bias {
     int32_t red, green, blue, grey;
 };
 
-static struct bias compute_rounding_bias(const struct mix *m)
+static struct bias compute_rounding_bias(const struct rgb_matrix *m)
 {
     const int32_t grey = HALF_Q13 - m->black * m->luma_q13;
 
@@ -129,8 +129,9 @@ static inline uint8_t convert_to_code(int32_t sum_q13)
 }
 
 /* Computes R', G', B' of N pixels that each have Y', Cb and Cr. */
-static void convert_pixels_to_rgb(const struct mix *m, uint8_t *restrict r,
-                                  uint8_t *restrict g, uint8_t *restrict b,
+static void convert_pixels_to_rgb(const struct rgb_matrix *m,
+                                  uint8_t *restrict r, uint8_t *restrict g,
+                                  uint8_t *restrict b,
                                   const uint8_t *restrict luma,
                                   const uint8_t *restrict cb,
                                   const uint8_t *restrict cr, int n)
@@ -150,8 +151,9 @@ static void convert_pixels_to_rgb(const struct mix *m, uint8_t *restrict r,
 }
 
 /* Computes R', G', B' of N pairs of pixels that share Cb and Cr. */
-static void convert_pairs_to_rgb(const struct mix *m, uint8_t *restrict r,
-                                 uint8_t *restrict g, uint8_t *restrict b,
+static void convert_pairs_to_rgb(const struct rgb_matrix *m,
+                                 uint8_t *restrict r, uint8_t *restrict g,
+                                 uint8_t *restrict b,
                                  const uint8_t *restrict luma,
                                  const uint8_t *restrict cb,
                                  const uint8_t *restrict cr, int n)
@@ -176,7 +178,8 @@ static void convert_pairs_to_rgb(const struct mix *m, uint8_t *restrict r,
     }
 }
 
-static void convert_greys_to_rgb(const struct mix *m, uint8_t *restrict grey,
+static void convert_greys_to_rgb(const struct rgb_matrix *m,
+                                 uint8_t *restrict grey,
                                  const uint8_t *restrict luma, int n)
 {
     const int16_t ky = m->luma_q13;
@@ -235,7 +238,8 @@ static struct ycc get_ycc_samples(struct glint_row_rgb *row,
 static void read_ycc_row(struct glint_row_rgb *row,
                          const struct glint_image *image, int x, int y, int n)
 {
-    const struct mix *const m = &mixes[image->matrix][image->range];
+    const struct rgb_matrix *const m =
+        &rgb_matrices[image->matrix][image->range];
     const struct ycc s = get_ycc_samples(row, image, x, y, n);
     uint8_t *const r = row->rgb[0], *const g = row->rgb[1],
                    *const b = row->rgb[2];
@@ -262,8 +266,8 @@ void glint_row_rgb_read(struct glint_row_rgb *row,
         row->channel[i] = c[i];
     switch (image->format) {
     case GLINT_GREY:
-        convert_greys_to_rgb(&mixes[GLINT_MATRIX_BT601][image->range], c[0],
-                             from + x, n);
+        convert_greys_to_rgb(&rgb_matrices[GLINT_MATRIX_BT601][image->range],
+                             c[0], from + x, n);
         row->channel[1] = row->channel[2] = c[0];
         return;
     case GLINT_RGB24:
@@ -308,8 +312,8 @@ void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width)
 
 /* ------------------------------------------------------------------- layout */
 
-/* Returns the mask of FIELD in a word of N_BITS, or 0 if FIELD does not fit
- * into the word. */
+/* Returns the mask of FIELD in a word of N_BITS, or 0 if FIELD is empty, has
+ * more than 16 bits or does not fit. */
 static uint64_t compute_field_mask(const struct glint_pixel_field *field,
                                    int n_bits)
 {
@@ -471,7 +475,7 @@ void glint_row_pack_write(const struct glint_row_pack *pack, void *dst,
 /* ------------------------------------------------------------------- tables */
 
 /* Sets p->channel to the index of the channel that each byte of a pixel holds,
- * in memory order. */
+ * in memory order. Fills p->rest. */
 static void find_channel_of_each_byte(struct glint_row_pack *p, uint8_t *mem,
                                       int width)
 {
@@ -711,7 +715,6 @@ static void scale_row_of_4_byte_pixels(uint32_t *restrict to,
         to[i] = from[from_x[i]];
 }
 
-/* Returns row Y of the picture, scaled and packed for the panel. */
 static const uint8_t *pack_panel_row(struct glint_panel *p,
                                      const struct glint_image *image, int y)
 {

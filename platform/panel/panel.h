@@ -129,8 +129,8 @@ void glint_row_rgb_init(struct glint_row_rgb *row, void *mem, int width);
 void glint_row_rgb_read(struct glint_row_rgb *row,
                         const struct glint_image *image, int x, int y, int n);
 
-/* Returns whether LAYOUT is supported: 2 to 4 bytes, fields that fit and do not
- * overlap, and all three colours. */
+/* Returns whether LAYOUT is supported: 2 to 4 bytes, fields of at most 16 bits
+ * that fit and do not overlap, and all three colours. */
 bool glint_pixel_layout_is_valid(const struct glint_pixel_layout *layout);
 
 /* Returns the bytes of memory that glint_row_pack_init() needs for WIDTH. */

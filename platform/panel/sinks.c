@@ -93,13 +93,13 @@ enum { ONE_Q16 = 1 << 16, HALF_Q16 = 1 << 15 };
 /* Conversion of R', G', B' to Y', Cb, Cr. by_q16: matrix with one row per
  * result. zero_q16: constant that is added to each row: the code that stands
  * for zero, plus 1/2 for rounding. */
-struct mix {
+struct ycc_matrix {
     int32_t by_q16[3][3], zero_q16[3];
 };
 
 /* clang-format off */
 #define Q16(x) ((int32_t)((x) * ONE_Q16 + ((x) < 0 ? -0.5 : 0.5)))
-#define MIX(black, luma, chroma, r, b) {                                       \
+#define MATRIX(black, luma, chroma, r, b) {                                    \
     {{Q16((luma) * (r)), Q16((luma) * (1 - (r) - (b))), Q16((luma) * (b))},    \
      {Q16((chroma) * -.5 * (r) / (1 - (b))),                                   \
       Q16((chroma) * -.5 * (1 - (r) - (b)) / (1 - (b))), Q16((chroma) * .5)},  \
@@ -108,13 +108,14 @@ struct mix {
     {(black) * ONE_Q16 + HALF_Q16, 128 * ONE_Q16 + HALF_Q16,                   \
      128 * ONE_Q16 + HALF_Q16}}
 
-static const struct mix mixes[2][2] = {
+static const struct ycc_matrix ycc_matrices[2][2] = {
     [GLINT_MATRIX_BT601] = {
-        [GLINT_RANGE_FULL] = MIX(0, 1., 1., .299, .114),
-        [GLINT_RANGE_LIMITED] = MIX(16, 219. / 255, 224. / 255, .299, .114)},
+        [GLINT_RANGE_FULL] = MATRIX(0, 1., 1., .299, .114),
+        [GLINT_RANGE_LIMITED] = MATRIX(16, 219. / 255, 224. / 255, .299, .114)},
     [GLINT_MATRIX_BT709] = {
-        [GLINT_RANGE_FULL] = MIX(0, 1., 1., .2126, .0722),
-        [GLINT_RANGE_LIMITED] = MIX(16, 219. / 255, 224. / 255, .2126, .0722)},
+        [GLINT_RANGE_FULL] = MATRIX(0, 1., 1., .2126, .0722),
+        [GLINT_RANGE_LIMITED] =
+            MATRIX(16, 219. / 255, 224. / 255, .2126, .0722)},
 };
 /* clang-format on */
 
@@ -125,9 +126,9 @@ static uint8_t convert_to_code(int32_t sum_q16)
     return (uint8_t)(sum_q16 >= 256 * ONE_Q16 ? 255 : sum_q16 >> 16);
 }
 
-static void convert_rgb_row_to_ycc(const struct mix *m, uint8_t *restrict to,
-                                   int i, const uint8_t *const channel[3],
-                                   int n)
+static void convert_rgb_row_to_ycc(const struct ycc_matrix *m,
+                                   uint8_t *restrict to, int i,
+                                   const uint8_t *const channel[3], int n)
 {
     const int32_t r = m->by_q16[i][0], g = m->by_q16[i][1], b = m->by_q16[i][2],
                   zero = m->zero_q16[i];
@@ -165,7 +166,7 @@ void glint_convert_to_planes(const struct glint_image *to,
         for (int y = 0; y < from->height; y++) {
             glint_row_rgb_read(row, from, 0, y, from->width);
             for (int i = 0; i < 3; i++)
-                convert_rgb_row_to_ycc(&mixes[to->matrix][to->range],
+                convert_rgb_row_to_ycc(&ycc_matrices[to->matrix][to->range],
                                        get_plane_row(to, i, y), i, row->channel,
                                        from->width);
         }

@@ -57,8 +57,7 @@ static void run_handlers_at_exit(void)
     report_library_abort();
 }
 
-/* Returns whether SIGNAL_NUMBER is a signal by which a library that crashes on
- * a malformed file ends the process. */
+/* These signals end the process if a library crashes on a malformed file. */
 static bool is_library_fault(int signal_number)
 {
     return signal_number == SIGABRT || signal_number == SIGSEGV ||

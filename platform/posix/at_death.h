@@ -33,9 +33,9 @@ bool glint_at_death_register(glint_at_death_fn *fn);
 
 /* Sets REPORT, which replaces an earlier one. It is called when a library may
  * have ended the process: by exit(), as libjpeg does; by an abort (SIGABRT, an
- * assertion, std::terminate); or by an access to invalid memory, which then
- * becomes exit code 1. REPORT must be async-signal-safe. It must return 0 if
- * the library is not running; otherwise it prints a message and returns 1. */
+ * assertion, std::terminate) or an access to invalid memory; both then become
+ * exit code 1. REPORT must be async-signal-safe. It must return 0 if the
+ * library is not running; otherwise it prints a message and returns 1. */
 void glint_at_death_set_library_report(int (*report)(void));
 
 /* Runs all registered functions, then ends the process by the default action of

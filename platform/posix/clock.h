@@ -6,8 +6,7 @@
 
 #include <stdint.h>
 
-/* Returns the time of CLOCK_MONOTONIC, us. That clock never jumps, and
- * drivers use it for the time stamps of frames. */
+/* Returns the time of CLOCK_MONOTONIC, us; it never jumps. */
 int64_t glint_get_time_us(void);
 
 #endif

@@ -11,8 +11,8 @@
 bool glint_has_extension(const char *name, const char *ending);
 
 /* Returns the extension of the path NAME, including its dot. Returns "" if
- * there is none, as in "-", "/dev/stdout" and ".hidden", or if the dot belongs
- * to a number, as in "f1.4". */
+ * there is none, as in "-", "/dev/stdout" and ".hidden", or if a digit follows
+ * the dot, as in "f1.4". */
 const char *glint_get_extension(const char *name);
 
 #endif

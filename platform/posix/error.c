@@ -8,8 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Returns the length in bytes of a UTF-8 character by its FIRST byte, or 0
- * if no printable character begins with FIRST. */
+/* Returns 0 if no printable character begins with FIRST. */
 static size_t get_utf8_length_by_first_byte(unsigned char first)
 {
     if (first < 0x80)

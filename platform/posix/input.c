@@ -102,8 +102,9 @@ ptrdiff_t glint_input_read_available(struct glint_input *in, void *dst,
     return n;
 }
 
-/* Returns the bytes of the first allocation: the size of a regular file plus
- * one, so that the end of the file is detected without a larger block. */
+/* Returns the bytes of the first allocation: FIRST_BYTES, or the size of a
+ * regular file, at most MAX, plus one, so that its end is detected without a
+ * larger block. */
 static size_t estimate_input_bytes(const struct glint_input *in, size_t max)
 {
     struct stat st;

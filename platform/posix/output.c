@@ -267,7 +267,7 @@ static char *doomed[MAX_TMP];
 /* 1: the process is dying, and remove_all_temporary_files() may run; atomic */
 static int dying;
 
-/* Removes all temporary files when the process dies. Async-signal-safe. */
+/* Async-signal-safe. */
 static void remove_all_temporary_files(void)
 {
     const int saved = errno;

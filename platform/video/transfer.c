@@ -8,7 +8,7 @@
 #define ONE_Q31   (UINT64_C(1) << 31)
 
 /* Parameters of a transfer curve: light(v) = ((v + a) / (1 + a))^(power / 45)
- * for v >= toe, v / divisor below the toe. */
+ * for v above the toe, else v / divisor. */
 struct power {
     int power;       /* exponent times 45 */
     int a_10000;     /* a times 10000 */
@@ -251,8 +251,8 @@ static int32_t decode_hlg_q24(int64_t step, int64_t steps)
     return (int32_t)((light_q24 * peak_q24 / 12 + WHITE_Q24 / 2) / WHITE_Q24);
 }
 
-/* Returns 10^(DECADES_2 / 2 (v - 1)), the light of code v = STEP / STEPS of a
- * logarithmic curve, and 0 at v = 0. */
+/* Returns 10^(D (v - 1)), the light of code v = STEP / STEPS of a logarithmic
+ * curve over D = DECADES_2 / 2 decades, and 0 at v = 0. */
 static int32_t decode_log_q24(int64_t step, int64_t steps, int decades_2)
 {
     const int64_t log2_10_q32 = INT64_C(14267572527);

@@ -325,8 +325,9 @@ static enum glint_status check_stream_header(struct glint_y4m_header *h,
                                              struct glint_error *error)
 {
     if (h->width < 1 || h->height < 1)
-        return glint_error_report(error, GLINT_E_FORMAT, name,
-                                  "no width or height in the Y4M header");
+        return glint_error_report(
+            error, GLINT_E_FORMAT, name,
+            "no width (W640) or height (H480) in the Y4M header");
     if (h->width > GLINT_MAX_SIDE || h->height > GLINT_MAX_SIDE)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, name,
                                   "larger than %d pixels a side",
@@ -620,8 +621,8 @@ allocate_copy_tables(const struct glint_y4m_header *h)
     return seen;
 }
 
-/* Sets r->frame and allocates its memory. Called for the first frame, so that a
- * program that reads only the header needs no memory. */
+/* Sets r->frame and allocates its memory. Allocates only at the first frame, so
+ * that a program that reads only the header needs no memory. */
 static enum glint_status allocate_frame(struct glint_y4m_reader *r,
                                         struct glint_error *error)
 {
@@ -1015,7 +1016,7 @@ static void compute_code_change(const struct glint_y4m_light *l,
     convert_to_ycc(l, d, change_q20);
 }
 
-static bool has_block_added_light(const float *layer)
+static bool has_added_light(const float *layer)
 {
     return layer[0] > 0 || layer[1] > 0 || layer[2] > 0;
 }
@@ -1060,7 +1061,7 @@ static void add_light_to_block(const struct glint_y4m_light *l,
             const int cover = cover_q8 ? cover_q8[at] : 0;
             int64_t change[3];
 
-            if (!cover && !has_block_added_light(light))
+            if (!cover && !has_added_light(light))
                 continue;
             ycc[0] = read_sample_code(&plane[0], x, y);
             compute_code_change(l, ycc, light, cover, change);

@@ -547,8 +547,8 @@ TEST(open_rejects_invalid_sizes)
     assert_int_equal(
         glint_mjpeg_open(&d, NAME, 8, GLINT_PANEL_SIDE + 1, &error),
         GLINT_E_ARGUMENT);
-    assert_string_equal(error.text, NAME ": MJPEG frames of up to 8 x 8193 "
-                                         "pixels are not supported");
+    assert_string_equal(error.text, NAME ": MJPEG frames of 8 x 8193 pixels: "
+                                         "width and height must be 1 to 8192");
     glint_mjpeg_close(NULL);
 }
 

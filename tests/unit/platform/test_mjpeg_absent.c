@@ -18,6 +18,7 @@ TEST(reports_that_libjpeg_is_missing)
                      GLINT_E_UNSUPPORTED);
     assert_null(decoder);
     assert_string_equal(error.text,
-                        "/dev/video0: MJPEG: glint was built without libjpeg");
+                        "/dev/video0: MJPEG: glint was built without libjpeg; "
+                        "choose another format, or install it and build again");
     glint_mjpeg_close(decoder);
 }

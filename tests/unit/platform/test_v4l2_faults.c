@@ -71,7 +71,8 @@ TEST(reports_failed_requests)
          "another program is using it"},
         {VIDIOC_G_FMT, EINVAL, ": VIDIOC_G_FMT: Invalid argument"},
         {VIDIOC_QUERYCAP, ENOTTY,
-         ": not a camera: the device does not support V4L2"},
+         ": not a camera: the device does not support V4L2; --list-devices "
+         "shows the cameras"},
         {VIDIOC_QUERYCAP, ENODEV, "; the device was removed"},
         {VIDIOC_S_FMT, ENODEV, "; the device was removed"},
     };
