@@ -89,9 +89,9 @@ static const struct bench_variation all[] = {
                                  * baked models */
 };
 
-/* Sets the exposure of T such that lights 12 degrees off the axis have a well
- * exposed flare. Other cases of the lens, such as lights far off-screen, get
- * the same exposure. */
+/* Sets the exposure of T so that lights 12 degrees off the axis have a well
+ * exposed flare. Lights at other angles get the same exposure; starbursts get
+ * 1. */
 static enum glint_status set_exposure(struct flare_case *t,
                                       const struct bench_variation *v)
 {
@@ -111,7 +111,6 @@ static enum glint_status set_exposure(struct flare_case *t,
     return status;
 }
 
-/* Adds the case of LENS with variation V. Returns an exit code. */
 static int add_bench_case(struct bench *b, const struct opened_lens *lens,
                           const struct bench_variation *v)
 {

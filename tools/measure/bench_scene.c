@@ -99,7 +99,8 @@ static int open_bench_frame(struct scene_case *t, struct scene_frame *frame,
 }
 
 /* Sets DIALS to the quality parameters of the command line, changed by
- * variation V. Returns false if V changes none of them. */
+ * variation V. Returns false if V has an option or a size but changes none of
+ * them. */
 static bool set_quality_parameters(const struct bench *b,
                                    const struct bench_variation *v,
                                    struct scene_dials *dials)

@@ -52,9 +52,9 @@ static bool has_same_exact_image(const struct settings *a,
     return a->tolerance == b->tolerance && a->n_wavelengths == b->n_wavelengths;
 }
 
-/* Returns the lens opened with the options of SET. Settings that do not differ
- * in these options use the same opened lens. On failure prints the error, sets
- * *CODE to the exit code and returns NULL. */
+/* Returns the lens opened with the options of SET. Settings with the same
+ * tolerance and number of wavelengths share an opened lens. On failure prints
+ * the error, sets *CODE to the exit code and returns NULL. */
 static const struct sweep_lens *
 find_lens(struct bay *b, const struct sweep_setting *set, int *code)
 {
@@ -68,7 +68,8 @@ find_lens(struct bay *b, const struct sweep_setting *set, int *code)
     if (b->n_open == MAX_OPEN) {
         *code = tool_usage(
             b->s->tool,
-            "a case opens the lens with more than %d different settings",
+            "a case has more than %d different pairs of tolerance and number "
+            "of wavelengths",
             MAX_OPEN);
         return NULL;
     }

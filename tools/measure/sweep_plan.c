@@ -117,8 +117,8 @@ static enum glint_status add_sweep_point(struct sweep *s, int c,
     return GLINT_OK;
 }
 
-/* Adds points with a single parameter set. A small sweep skips parameters that
- * need a bake, and all values but the first and last. */
+/* Adds points that differ from the default in one parameter. A small sweep
+ * skips parameters that need a bake, and all values but the first and last. */
 static enum glint_status add_single_parameter_points(struct sweep *s, int c)
 {
     enum glint_status status = GLINT_OK;

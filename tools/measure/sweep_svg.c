@@ -51,7 +51,7 @@ static void draw_setting_dots(const struct plot *p,
 }
 
 /* Plots DOT[N], which must be sorted by cost, and a line along their Pareto
- * front. Leaves out settings with a large flux error. */
+ * front. */
 static void draw_front_panel(struct plot *p, const struct sweep_mean *dot,
                              int n)
 {
@@ -82,7 +82,7 @@ static void draw_front_panel(struct plot *p, const struct sweep_mean *dot,
 }
 
 /* Plots the means over all cases with combined parameters, and each of these
- * cases. */
+ * cases, without settings whose flux error reaches MAX_FLUX_ERROR. */
 void sweep_write_front_svg(const struct sweep *s, FILE *file)
 {
     int n_panels = 1, n, n_dots = 0;

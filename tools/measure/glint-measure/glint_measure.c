@@ -140,7 +140,7 @@ static int measure_row_to_json(const struct recipe *r,
 
 /* --------------------------------------------------------------------- csv */
 
-static void read_first_line_of_file(const char *command, char text[128])
+static void read_first_line_of_output(const char *command, char text[128])
 {
     FILE *const pipe = popen(command, "r"); /* NOLINT: a fixed command */
 
@@ -162,9 +162,9 @@ static void append_csv_line(const struct recipe *r,
     if (!file)
         return;
     if (!conditions[0][0])
-        read_first_line_of_file("git describe --always --dirty --abbrev=8",
-                                conditions[0]);
-    read_first_line_of_file("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
+        read_first_line_of_output("git describe --always --dirty --abbrev=8",
+                                  conditions[0]);
+    read_first_line_of_output("cut -d ' ' -f 1 /proc/loadavg", conditions[1]);
     if (is_new)
         fputs("figure,parameters,metric,value,revision,machine,load\n", file);
     for (const char *at = r->metrics; at; at = strchr(at, ',')) {
@@ -185,10 +185,12 @@ static void append_csv_line(const struct recipe *r,
 
 /* ------------------------------------------------------------------- table */
 
-/* Writes to TO the metric of the placeholder {NAME%FORMAT~TOLERANCE} at AT.
- * Returns false if the row does not have the metric. */
-static bool write_metric_value(const char *at, const struct recipe_row *row,
-                               const char *json, char *to, size_t bytes)
+/* Writes to TO the value of the placeholder at AT: the parameter {NAME}, or the
+ * metric {NAME%FORMAT~TOLERANCE}. Returns false if the row does not have the
+ * metric. */
+static bool write_placeholder_value(const char *at,
+                                    const struct recipe_row *row,
+                                    const char *json, char *to, size_t bytes)
 {
     const size_t length = strcspn(at, "%}");
     const char *value;
@@ -241,7 +243,8 @@ static void write_table_cell(const struct recipe_column *column,
             to[used] = '\0';
             continue;
         }
-        if (!write_metric_value(at + 1, row, json, to + used, bytes - used)) {
+        if (!write_placeholder_value(at + 1, row, json, to + used,
+                                     bytes - used)) {
             *to = '\0';
             return;
         }

@@ -13,12 +13,12 @@
 
 #include "measure/glint-measure/row.h"
 
-#define FAR       1e3
+#define FAR       1e3 /* error of a ray that the model does not cover, pixels */
 #define SENSOR_PX 0.25 /* target: 99th percentile of the error, pixels */
-#define STOP_RMS  8e-4
+#define STOP_RMS  8e-4 /* target: RMS error, stop radii */
 
 enum {
-    ACROSS = 40,
+    ACROSS = 40, /* number of grid steps in x */
     /* number of grid steps in y over the half y >= 0; the other half is
      * symmetric */
     DOWN = 20,
@@ -85,7 +85,6 @@ static void add_uncovered_ray(struct tally *t, double light)
     t->energy[find_error_histogram_bin(1)]++;
 }
 
-/* Adds the tally FROM, scaled by WEIGHT, to T. */
 static void merge_tally(struct tally *t, const struct tally *from,
                         double weight)
 {

@@ -12,7 +12,7 @@
 #include "model/model_summary.h"
 #include "model/table_file.h"
 
-#define ROW_BAKE "bake_s,model_kib,mean_terms,barrel_rms,f_number,table_ghosts"
+#define ROW_BAKE    "bake_s,model_kib,mean_terms,barrel_rms,f_number,table_ghosts"
 #define ROW_PICTURE "psnr_db,ssim,flux"
 #define ROW_FRAME                                                           \
     "edges,refs,bundles,ghosts,arena_kib,arena_mib,plan_ms,bin_ms,draw_ms," \
@@ -396,8 +396,9 @@ static enum glint_status draw_reference_image(struct figure_row *r,
     return status;
 }
 
-/* Sets the exposure and draws the reference image. This is the image of the
- * reference row, if there is one, else an image by exact rays. */
+/* Sets the exposure. If a metric of ROW_PICTURE is requested, also draws the
+ * reference image: that of the reference row, if there is one, else an image by
+ * exact rays. */
 static enum glint_status set_exposure(struct figure_row *r, struct frame *f)
 {
     enum glint_status status = GLINT_OK;

@@ -135,9 +135,9 @@ static void draw_axis_tick(const struct plot *p, bool is_x, double v)
 }
 
 /* Draws the ticks of axis A. Linear: every 1, 2 or 5 times a power of ten.
- * Logarithmic: at 1, 2 and 5 times powers of ten, at more if the axis spans
- * less than a factor of 12, only at some powers if it spans four decades or
- * more. */
+ * Logarithmic: at 1, 2 and 5 times powers of ten; at more values if the axis
+ * spans less than a factor of 12; only at powers of ten if it spans four
+ * decades or more, and at every second one from eight decades on. */
 static void draw_axis_ticks(const struct plot *p, const struct plot_axis *a,
                             bool is_x)
 {

@@ -103,8 +103,8 @@ static void write_base64(FILE *file, const uint8_t *data, size_t n)
     }
 }
 
-/* Returns an uncompressed PNG file, which the caller frees. If there is no
- * memory, its member at is NULL. */
+/* Returns an uncompressed PNG file, which the caller frees. Without memory the
+ * member AT of the result is NULL. */
 static struct bytes make_uncompressed_png(const uint8_t *rgb, int width,
                                           int height)
 {
@@ -138,8 +138,8 @@ static struct bytes make_uncompressed_png(const uint8_t *rgb, int width,
     return b;
 }
 
-/* Returns a compressed PNG file, encoded by the image plug-in; at is NULL if
- * the plug-in is missing or fails. */
+/* Returns a compressed PNG file, encoded by the image plug-in. The member AT of
+ * the result is NULL if the plug-in is missing or fails. */
 static struct bytes make_compressed_png(const uint8_t *rgb, int width,
                                         int height)
 {
