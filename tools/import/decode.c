@@ -63,8 +63,9 @@ static void convert_line_ends(uint8_t *data, size_t bytes)
             data[i] = '\n';
 }
 
-/* Decodes DATA[*BYTES] in place: converts UTF-16 of either byte order to ASCII,
- * other characters to '?', and removes a byte order mark. */
+/* Decodes DATA[*BYTES] in place: converts UTF-16 to ASCII, other characters to
+ * '?', removes a byte order mark, and converts line ends '\r' to '\n'. UTF-16
+ * without a byte order mark is recognised if it is little-endian. */
 static void decode_text(uint8_t *data, size_t *bytes)
 {
     if (*bytes >= 2 && data[0] == 0xff && data[1] == 0xfe)

@@ -264,9 +264,10 @@ static double compute_abbe_number(const struct glint_glass *glass)
             compute_refractive_index(glass, LINE_C_NM));
 }
 
-/* Guesses the Abbe number of S from its index. Uses a glass of the catalogue
- * whose index agrees to the fifth decimal; if there is none, the typical Abbe
- * number of glasses of this index. */
+/* Guesses the Abbe number of S from its index. If the index has five decimals
+ * or more, uses a glass of the catalogue that has this index to the fifth
+ * decimal. If there is none, uses the typical Abbe number of glasses of this
+ * index. */
 static double guess_abbe_number(struct imported *lens,
                                 const struct imported_surface *s)
 {
@@ -404,7 +405,6 @@ static double compute_paraxial_curvature(const struct imported_surface *s)
     return s->shape.bend == GLINT_BEND_X ? 0 : compute_curvature(s);
 }
 
-/* Traces RAY through all surfaces. */
 static void trace_paraxial_ray(const struct imported *lens,
                                struct thin_ray *ray)
 {
@@ -462,8 +462,8 @@ static bool remove_dummy_surfaces(struct imported *lens)
 
 /* ------------------------------------------------------------------ stop */
 
-/* Returns the sag of S at height H, in the file's unit. Beyond a sphere's
- * equator returns the sag at the equator. */
+/* Returns the sag of S at height H, in the file's unit. Beyond the equator of a
+ * sphere or conic, the root in the formula counts as 0. */
 static double compute_surface_sag(const struct imported_surface *s, double h)
 {
     const double c = compute_curvature(s);
@@ -488,7 +488,8 @@ static bool insert_stop_surface(struct imported *lens, int k)
 
 /* Moves the stop from the glass surface K into the adjacent air. The new
  * position on the axis is that of the surface's rim or of its vertex, whichever
- * is farther from the glass. */
+ * is farther from the glass; that of the vertex if the neighbouring surface is
+ * nearer than the rim. */
 static bool move_stop_to_air(struct imported *lens, int k)
 {
     struct imported_surface *s = &lens->surface[k], stop = *s;
@@ -534,7 +535,6 @@ static int find_stop_surface(const struct imported *lens)
     return k;
 }
 
-/* Moves the stop to the air if it is on a glass surface. */
 static bool separate_stop_from_glass(struct imported *lens)
 {
     const int at = find_stop_surface(lens);
@@ -542,9 +542,9 @@ static bool separate_stop_from_glass(struct imported *lens)
     return is_dummy_surface(lens, at) || move_stop_to_air(lens, at);
 }
 
-/* Finds the stop, and moves the stop into the air if it is on a glass surface.
- * A stop without a semi-diameter is moved later, because the move needs the
- * surface's rim. */
+/* Finds the stop, or assumes it at the front surface, and moves it into the air
+ * if it is on a glass surface. A stop without a semi-diameter is moved later,
+ * because the move needs the surface's rim. Rejects a second stop. */
 static bool place_stop_surface(struct imported *lens)
 {
     int at = -1;
@@ -578,8 +578,8 @@ static double compute_focal_length(const struct imported *lens)
     return ray.u != 0 ? -1 / ray.u : 0;
 }
 
-/* Sets the film to a 3 : 2 rectangle within the lens's image circle, unless the
- * file states it. */
+/* Unless the file states the film, sets it to a 3 : 2 rectangle within the
+ * lens's image circle, or to 36 x 24 mm if the file states no field. */
 static void set_film_size(struct imported *lens, double focal_units)
 {
     double half = lens->height;
@@ -640,7 +640,8 @@ static bool set_pupil_and_f_number(struct imported *lens, double focal_units)
 
 /* Sets missing semi-diameters by two paraxial rays: the ray through the rim of
  * the pupil, and the chief ray from the edge of the field. Semi-diameters are
- * 1.05 times the sum of the two heights. */
+ * 1.05 times the sum of the two heights. Enlarges a stop that is too small for
+ * the f-number. */
 static void set_missing_semi_diameters(struct imported *lens)
 {
     const int stop = find_stop_surface(lens);
@@ -711,7 +712,8 @@ double imported_compute_gap_at_height(const struct imported_surface *s,
 }
 
 /* Reduces semi-diameters where neighbouring surfaces cross. This happens at
- * thin lenses if semi-diameters are estimates. */
+ * thin lenses if semi-diameters are estimates. Rejects surfaces that cross near
+ * the axis. */
 static bool separate_surface_rims(struct imported *lens)
 {
     for (int k = 0; k + 1 < lens->n; k++) {
@@ -745,7 +747,7 @@ static bool separate_surface_rims(struct imported *lens)
     return true;
 }
 
-static bool set_focus_distance(struct imported *lens)
+static bool set_missing_sensor_distance(struct imported *lens)
 {
     struct thin_ray ray = {.y = 1};
     struct imported_surface *last = &lens->surface[lens->n - 1];
@@ -769,9 +771,9 @@ static bool set_focus_distance(struct imported *lens)
         behind * lens->unit_mm);
 }
 
-/* Adds a note that light comes from infinity if the file has a near object,
- * and a note that the sensor is not refocused if the file has a defocus. */
-static void note_object_and_image(struct imported *lens)
+/* If the file has a near object, adds a note that light from infinity is
+ * assumed, and whether the sensor is at the distance in the file. */
+static void note_near_object(struct imported *lens)
 {
     if (lens->object_near)
         imported_add_note(
@@ -838,7 +840,7 @@ static bool complete_lens(struct imported *lens)
     if (!set_all_media(lens) || !remove_dummy_surfaces(lens) ||
         !check_thicknesses(lens) || !check_last_surface(lens))
         return false;
-    note_object_and_image(lens);
+    note_near_object(lens);
     if (!place_stop_surface(lens))
         return false;
     f = compute_focal_length(lens);
@@ -863,7 +865,7 @@ static bool complete_lens(struct imported *lens)
     limit_semi_diameters(lens);
     if (!separate_stop_from_glass(lens) || !check_front_aperture(lens, f))
         return false;
-    return separate_surface_rims(lens) && set_focus_distance(lens);
+    return separate_surface_rims(lens) && set_missing_sensor_distance(lens);
 }
 
 /* Writes the lines "shape" for the bend, conic and aspheric terms of SHAPE. A

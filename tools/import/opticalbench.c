@@ -119,7 +119,8 @@ static bool select_zoom_position(struct optical_bench *b)
     return imported_choose_position(b->lens, 0, n > 0 ? n : 1, &b->at);
 }
 
-/* Sets VALUE to half of the diameter in word K, or to 0 if it is not stated. */
+/* Sets VALUE to half of the diameter in word K, or to 0 if the word is missing,
+ * "Infinity" or "undefined". */
 static bool parse_diameter(struct optical_bench *b, int k, double *value)
 {
     const char *text = get_word_or_empty(b, k);

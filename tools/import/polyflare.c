@@ -56,8 +56,8 @@ static bool report_too_many_words(struct polyflare *p)
         "more than %d zoom positions are not supported", POSITIONS);
 }
 
-/* Parses "#EFL" and similar lines. All other lines that begin with '#' are
- * comments. */
+/* Parses "#EFL", "#FOV" or "#!scale". Notes any other line "#!..." as not read;
+ * all other lines that begin with '#' are comments. */
 static bool parse_header_line(struct polyflare *p)
 {
     const struct lines *l = &p->lines;

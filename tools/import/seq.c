@@ -60,7 +60,6 @@ static bool parse_glass(struct seq *q, const char *word)
     return true;
 }
 
-/* Sets the surface's radius from word K, which is a curvature if CURVATURE. */
 static bool parse_surface_radius(struct seq *q, int k, bool curvature)
 {
     return curvature
@@ -196,7 +195,8 @@ static bool parse_dimension_command(struct seq *q)
 
     if (unit != 'I' && unit != 'C' && unit != 'M')
         return imported_report_error(q->lens, q->lines.number,
-                                     "unit '%s' is unknown; expected M, C or I",
+                                     "unit '%s' is unknown; expected M (mm), C "
+                                     "(cm) or I (inches)",
                                      word);
     return imported_set_unit(q->lens, q->lines.number,
                              unit == 'I'   ? 25.4

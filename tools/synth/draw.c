@@ -180,7 +180,8 @@ static void interpolate_light(const struct glint_float_image *from, double x,
 }
 
 /* Resamples the crop of FROM, which ITEM defines, to RGB. A pixel of RGB is the
- * mean of N x N points, where N is the ratio of the pixel sizes. */
+ * mean of N x N points, where N is the ratio of the pixel sizes, rounded up, at
+ * most 64. */
 static void resample_cropped_background(const struct glint_float_image *from,
                                         const struct synth_item *item,
                                         float *rgb)
@@ -212,8 +213,9 @@ static void resample_cropped_background(const struct glint_float_image *from,
         }
 }
 
-/* Scales RGB such that its mean light is LEVEL. Returns the factor in stops,
- * which is limited to SYNTH_LEAST_EV .. SYNTH_MOST_EV. */
+/* Scales RGB[N] by the ratio of LEVEL to the mean of its samples, each clamped
+ * to at most 1. Returns the factor in stops, which is limited to
+ * SYNTH_LEAST_EV .. SYNTH_MOST_EV. */
 static double scale_to_mean_level(float *rgb, size_t n, double level)
 {
     double sum = 0, ev;
@@ -227,7 +229,6 @@ static double scale_to_mean_level(float *rgb, size_t n, double level)
     return ev;
 }
 
-/* Returns the path of ITEM's background, or NULL. */
 static const char *find_background_path(const struct synth_backgrounds *list,
                                         const struct synth_item *item)
 {
@@ -261,7 +262,7 @@ static enum glint_status load_background(const struct synth_backgrounds *list,
     if (status == GLINT_OK && strcmp(key, item->background_key) != 0)
         return glint_error_report(error, GLINT_E_IO, path,
                                   "is not the picture that the item was drawn "
-                                  "on: its key is %s, not %s",
+                                  "on (hash %s, not %s): use the original file",
                                   key, item->background_key);
     if (status == GLINT_OK)
         status = glint_picture_load_float(path, &image, error);

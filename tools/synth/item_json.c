@@ -17,7 +17,6 @@ static enum glint_status report_bad_member(struct glint_error *error,
                               cause);
 }
 
-/* Stores VALUE, a text or number, in member FIELD of the struct TO. */
 static enum glint_status store_json_member(const struct synth_field *field,
                                            const json_t *value, void *to,
                                            struct glint_error *error)
