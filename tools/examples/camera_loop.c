@@ -20,8 +20,8 @@ enum { WIDTH = 640, HEIGHT = 480, BYTES = 2 * WIDTH * HEIGHT, US = 33333 };
 
 static unsigned char frame[BYTES], model[8 << 20];
 
-/* Requests 640x480 YUYV from CAMERA. Also returns true if CAMERA is a file,
- * whose format is fixed. */
+/* Requests 640x480 YUYV from CAMERA. Returns whether it has this format. An
+ * open file, which is not a camera, is assumed to have it. */
 static int request_camera_format(int camera)
 {
     struct v4l2_capability can;

@@ -48,8 +48,8 @@ static int parse_number(const uint8_t **at)
     return n;
 }
 
-/* Sets IMAGE to the pixels of the PPM file in picture, BYTES long. Returns 0 if
- * the file is not a binary 8-bit PPM without comments. */
+/* Sets IMAGE to the pixels of the PPM file in picture, BYTES long. Returns
+ * whether the file is a complete binary 8-bit PPM without comments. */
 static int find_ppm_pixels(struct glint_image *image, size_t bytes)
 {
     const uint8_t *at = picture + 2;
@@ -98,8 +98,9 @@ static int draw_flare(const struct glint_lens *lens,
     return 1;
 }
 
-/* Returns the centre of the pixel with the number TEXT. The number is clamped
- * to 2 * GLINT_MAX_SIDE, far outside the largest picture. */
+/* Returns the centre of the pixel with the number TEXT. A number outside
+ * -GLINT_MAX_SIDE .. 2 * GLINT_MAX_SIDE counts as the latter, far outside the
+ * largest picture. */
 static int32_t parse_pixel_centre_q8(const char *text)
 {
     const int pixel = atoi(text);

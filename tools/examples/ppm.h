@@ -32,7 +32,9 @@ static inline int ppm_read(const char *path, struct glint_image *image)
     if (file)
         fclose(file);
     if (!codes) {
-        fprintf(stderr, "%s: not a binary PPM of 8 bits, or cut short\n", path);
+        fprintf(stderr,
+                "%s: cannot be read as a complete binary PPM of 8 bits\n",
+                path);
         return 3;
     }
     *image = (struct glint_image){

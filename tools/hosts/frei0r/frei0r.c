@@ -150,10 +150,11 @@ void f0r_get_param_value(void *instance, void *value, int index)
         *(double *)value = (values->number[index] - p.low) / (p.high - p.low);
 }
 
-/* Returns the microseconds since the last picture. For the first picture, and
- * after a jump back, returns the duration of a frame at 25 pictures per second.
- * A difference of ten seconds or more is taken as milliseconds, because ffmpeg
- * 5.1 passes the time times 1000. */
+/* Returns the microseconds since the last picture. A difference of ten seconds
+ * or more is taken as milliseconds, because ffmpeg 5.1 passes the time times
+ * 1000. For the first picture, after a jump back, and if the difference is
+ * still ten seconds or more, returns the duration of a frame at 25 frames per
+ * second. */
 static int32_t compute_elapsed_us(const struct instance *i, double seconds)
 {
     const double us = 1e6 * (seconds - i->seconds);

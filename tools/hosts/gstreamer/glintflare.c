@@ -117,8 +117,8 @@ static gboolean find_pixel_format(GstVideoFormat from,
     return FALSE;
 }
 
-/* Returns the transfer curve of the frames: the curve that the caps state,
- * otherwise the usual one for RGB or for luma. */
+/* Returns the transfer curve of the frames: that of sRGB if the caps state it,
+ * or for RGB whose caps state no curve; else that of BT.709. */
 static enum glint_tone find_transfer_curve(const GstVideoInfo *info)
 {
     switch (info->colorimetry.transfer) {

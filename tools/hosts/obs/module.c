@@ -54,8 +54,8 @@ static enum glint_matrix find_luma_matrix(const struct obs_source_frame *frame)
     return cr > between ? GLINT_MATRIX_BT709 : GLINT_MATRIX_BT601;
 }
 
-/* Returns the transfer curve that the frame states, otherwise the usual one for
- * RGB or for luma. */
+/* Returns the transfer curve of sRGB if the frame states it, or if the frame is
+ * RGB and states no curve; else that of BT.709. */
 static enum glint_tone find_transfer_curve(const struct obs_source_frame *frame,
                                            bool is_rgb)
 {
