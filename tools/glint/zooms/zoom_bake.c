@@ -221,14 +221,14 @@ static void record_lowest_position_psnr(struct run *run,
     }
     if (!run->tool->quiet)
         fprintf(stderr,
-                "glint bake: at %.2f mm bakes %d more ghost%s, %.0f s\n",
+                "glint bake: at %.2f mm bakes %d more ghost%s, %.0f s so far\n",
                 glint_real_value(run->zoom.header.focal_mm), n_added,
                 n_added == 1 ? "" : "s", tool_clock_s() - run->start);
 }
 
-/* Marks which errors to measure in the middle of the step from FROM to TO:
- * those of ghosts baked at both ends, unless their error was small before.
- * Returns whether any ghost is baked at both ends. */
+/* Sets those errors in run->ghost to -1 that must be measured in the middle of
+ * the step from FROM to TO: those of ghosts baked at both ends, unless their
+ * error was small before. Returns whether any ghost is baked at both ends. */
 static bool mark_errors_to_measure(struct run *run, int from, int to)
 {
     const struct place *const p = &run->place[from];
@@ -309,8 +309,8 @@ static enum glint_status bake_even_positions(struct run *run)
         tool_progress_set_part(p, (double)k / positions, 1.0 / positions);
         status = bake_zoom_position(run, k * run->step, true);
         if (status == GLINT_OK && !run->tool->quiet)
-            fprintf(stderr, "glint bake: position %d of %d, %.0f s\n", k + 1,
-                    positions, tool_clock_s() - run->start);
+            fprintf(stderr, "glint bake: position %d of %d, %.0f s so far\n",
+                    k + 1, positions, tool_clock_s() - run->start);
     }
     return status;
 }

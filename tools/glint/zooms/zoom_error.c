@@ -15,8 +15,7 @@
  * larger images. */
 enum { WIDE = 480, MOST_HIGH = 480 };
 
-/* Max angle of lights: where the lens images at BEYOND * half the diagonal of
- * the field */
+/* max angle of lights, as a multiple of the angle of a corner of the film */
 #define BEYOND 1.5
 
 /* azimuth of lights, degrees; not on a symmetry axis of the film */
@@ -114,7 +113,6 @@ static enum glint_status draw_ghost_image(struct glint_engine *engine,
                                image->rgb, &report);
 }
 
-/* Measures the ghosts that are marked as WANTED at ANGLE. */
 static enum glint_status measure_ghosts_at_angle(const struct measuring *m,
                                                  struct pictures *p, int angle)
 {
@@ -151,7 +149,7 @@ static bool allocate_error_image(struct glint_float_image *image,
     return image->rgb != NULL;
 }
 
-static void measure_ghosts_at_angle_of_job(void *ctx, int angle, int worker)
+static void run_measurement_at_angle(void *ctx, int angle, int worker)
 {
     struct measuring *const m = ctx;
     struct pictures p = {.exposure = 1};
@@ -201,10 +199,10 @@ static bool find_ghost_angle_ranges(struct measuring *m)
     return has_room;
 }
 
-/* Returns whether to measure a ghost with the states KNOWN at ANGLE, which lies
- * between two measured angles. It is measured if it is visible at only one of
- * these, or in only one of the two images. It is also measured if it has rays
- * at ANGLE but at neither of these. */
+/* Returns whether to measure a ghost with the states KNOWN at ANGLE. The ghost
+ * must be measured at both neighbours, STEP before and after ANGLE. It is
+ * measured at ANGLE if it is visible at only one of them, or in only one of the
+ * two images, or if it has rays at ANGLE but at neither neighbour. */
 static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
                                   int angle, int step)
 {
@@ -218,8 +216,9 @@ static bool is_measurement_wanted(const unsigned char known[ZOOM_ANGLES],
            (known[angle] & ~(before | after) & IN_RANGE);
 }
 
-/* Marks every STEP-th angle of the requested ghosts as wanted. If the angle
- * lies between two measured ones, is_measurement_wanted() decides. */
+/* In the first pass (STEP = EACH) marks every STEP-th angle of the requested
+ * ghosts as wanted. Later passes mark those odd multiples of STEP that
+ * is_measurement_wanted() chooses. */
 static void mark_angles_to_measure(struct measuring *m, int step)
 {
     for (int g = 0; g < m->n; g++)
@@ -275,8 +274,7 @@ static enum glint_status measure_all_angles(struct measuring *m,
 
     for (int step = EACH; step > 0 && status == GLINT_OK; step /= 2) {
         mark_angles_to_measure(m, step);
-        glint_workers_run(workers, ZOOM_ANGLES, measure_ghosts_at_angle_of_job,
-                          m);
+        glint_workers_run(workers, ZOOM_ANGLES, run_measurement_at_angle, m);
         for (int k = 0; k < ZOOM_ANGLES && status == GLINT_OK; k++)
             status = m->status[k];
     }

@@ -23,8 +23,8 @@ struct zoom_error {
 };
 
 /* Measures the ghosts whose first error in ERROR[N], an entry for each ghost,
- * is below 0. Lights are at angles up to that of 1.5 times the half diagonal of
- * the field of LENS, at most MAX_DEG. SHIFT, 0 .. 1, is the position of each
+ * is below 0. Lights are at angles up to 1.5 times that of a corner of the film
+ * of LENS, at most MAX_DEG. SHIFT, 0 .. 1, is the position of each
  * light within its interval of angles. Every fourth angle is measured. Other
  * angles are measured only near those where a ghost appears or vanishes, and
  * are otherwise interpolated. */
