@@ -18,11 +18,11 @@ int coating_parse_option(const struct tool *tool, struct coating *c,
     return tool_usage(
         tool,
         "--coating must be table, mixed, none or coatings NAME[/NM] or "
-        "NM[/INDEX[:QUARTERS]]...[,...], not '%s': %s",
+        "NM[/INDEX[:QUARTERS]]...[,...], such as 510/1.38/2.1:2/1.69, not "
+        "'%s': %s",
         text, error.text);
 }
 
-/* Returns the name of COATING, or NULL if it is not a named coating. */
 static const char *find_coating_name(const struct glint_coating *coating)
 {
     struct glint_coating known;

@@ -26,7 +26,8 @@ enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
                                   const struct glint_setup *setup,
                                   const char *lens, struct glint_error *error);
 
-/* Parses TEXT[BYTES] in the same way; NAME is the file's name in errors. */
+/* Parses TEXT[BYTES] like ghost_file_read(); NAME is the file's name in errors.
+ */
 enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
                                    const char *text, size_t bytes,
                                    const struct glint_setup *setup,

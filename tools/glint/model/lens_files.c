@@ -68,19 +68,20 @@ bool lens_find_folder(int i, const char *kind, char *path, size_t bytes)
 }
 
 /* subfolders of a lens folder that may contain tables; "": the folder itself */
-static const char *const rooms[] = {"",      "/anamorphic", "/normal", "/phone",
-                                    "/tele", "/vision",     "/wide",   "/zoom"};
+static const char *const groups[] = {"",       "/anamorphic", "/normal",
+                                     "/phone", "/tele",       "/vision",
+                                     "/wide",  "/zoom"};
 
-enum { N_ROOMS = sizeof rooms / sizeof *rooms };
+enum { N_GROUPS = sizeof groups / sizeof *groups };
 
 bool lens_find_file(const char *name, char *path, size_t bytes)
 {
     for (int i = 0; lens_find_folder(i, "lenses", path, bytes); i++) {
         const size_t used = strlen(path);
 
-        for (int r = 0; used > 0 && r < N_ROOMS; r++)
+        for (int r = 0; used > 0 && r < N_GROUPS; r++)
             if ((size_t)snprintf(path + used, bytes - used, "%s/%s.lens",
-                                 rooms[r], name) < bytes - used &&
+                                 groups[r], name) < bytes - used &&
                 access(path, R_OK) == 0)
                 return true;
     }
@@ -165,8 +166,8 @@ int lens_files_visit_all(lens_files_fn *each, void *ctx)
 
     pthread_once(&once, check_user_folder);
     for (int i = 0; ok && lens_find_folder(i, "lenses", path, sizeof path); i++)
-        for (int r = 0; ok && *path && r < N_ROOMS; r++) {
-            snprintf(room, sizeof room, "%s%s", path, rooms[r]);
+        for (int r = 0; ok && *path && r < N_GROUPS; r++) {
+            snprintf(room, sizeof room, "%s%s", path, groups[r]);
             ok = add_lens_folder(&l, room);
         }
     if (l.n > 0)

@@ -197,8 +197,9 @@ static void print_model_header(const struct model_file *model)
         "those with y >= 0; the others are mirrored",
         "those with x and y >= 0; the others are mirrored"};
 
-    printf("%s\nbaked model, %zu bytes, %s basis, key %08lx%08lx\n\n", h->name,
-           model->bytes, model_get_basis_name(&model->lens),
+    printf("%s\nbaked model, %zu bytes, for %s lenses, key %08lx%08lx\n\n",
+           h->name, model->bytes,
+           glint_basis_is_lens(h->basis) ? "asymmetric" : "round",
            (unsigned long)h->key[1], (unsigned long)h->key[0]);
     if (glint_basis_is_lens(h->basis))
         printf("directions baked    %s\n", lights[h->basis & 3U]);
@@ -212,7 +213,7 @@ static void print_model_header(const struct model_file *model)
            "model\n",
            model_convert_real_to_double(h->stop_radius_mm),
            model_convert_real_to_double(h->f_number));
-    printf("front               %10.3f mm radius\n",
+    printf("front element       %10.3f mm semi-diameter\n",
            model_convert_real_to_double(h->front_mm));
     printf("film                %6gx%g mm\n",
            model_convert_real_to_double(h->film_width_mm),
@@ -225,14 +226,14 @@ static void print_model_header(const struct model_file *model)
     printf("largest angle       %10.3f degrees\n",
            model_convert_sine_to_deg(h->sine_hi_q30));
     printf("surfaces            %6lu\n", (unsigned long)h->n_surfaces);
-    printf("ghosts              %6lu in %lu parts, %lu zones, "
+    printf("ghosts              %6lu in %lu pupil regions, %lu zones, "
            "%.1f terms per output\n",
            (unsigned long)model_count_ghosts(&model->lens),
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_compute_mean_terms(&sum));
     if (model->zoom)
-        printf("positions           %6d of the zoom range, %d more of single "
-               "ghosts; all other values are those of the first\n",
+        printf("positions           %6d with all ghosts, %d more with some of "
+               "them; all other values are those of the first\n",
                model_file_count_positions(model->zoom),
                model->zoom->n_models - model_file_count_positions(model->zoom));
 }
@@ -367,10 +368,12 @@ static void print_output_details(const struct model_summary *sum)
 
         if (e->n)
             printf("       %-9s %5.1f terms  rms %-8.3g p50 %-8.3g p99 %-8.3g "
-                   "max %.3g%s\n",
+                   "max %-8.3g %s%s\n",
                    model_output_names[kind], e->terms, sqrt(e->mean2), e->p50,
-                   e->p99, e->max,
-                   e->p99 > model_output_targets[kind] ? "  misses" : "");
+                   e->p99, e->max, model_output_units[kind],
+                   e->p99 > model_output_targets[kind]
+                       ? "  misses the error target"
+                       : "");
     }
 }
 
@@ -405,7 +408,7 @@ static void print_bake_statistics(const struct tool *tool,
     print_fit_table(lens, tool->verbose > 0);
     print_ghosts_without_zones(lens);
     print_model_errors(&sum);
-    printf("\n%s: %lu bytes, %lu ghosts in %lu parts, %lu zones, "
+    printf("\n%s: %lu bytes, %lu ghosts in %lu pupil regions, %lu zones, "
            "%.1f terms per output, %.1f s\n",
            h->name, (unsigned long)h->bytes,
            (unsigned long)model_count_ghosts(lens), (unsigned long)h->n_ghosts,

@@ -184,13 +184,12 @@ static bool is_model_entry_of_ghost(const struct glint_lens *lens,
            lens->ghost[entry].j == lens->ghost[ghost].j;
 }
 
-/* Updates MISS if the error of an output exceeds its target in SYSTEM, the
- * polynomials of a zone (range of angles). */
-static void add_zone_with_missed_target(const struct glint_lens *lens,
-                                        uint32_t system,
-                                        struct model_miss *miss)
+/* Updates MISS if the error of an output exceeds its target in zone (range of
+ * angles) number ZONE, whose polynomials are lens->system[ZONE]. */
+static void add_zone_if_target_missed(const struct glint_lens *lens,
+                                      uint32_t zone, struct model_miss *miss)
 {
-    const struct model_span span = {system, 1};
+    const struct model_span span = {zone, 1};
     const struct model_summary sum = model_compute_summary(lens, span);
     double range_deg[2];
 
@@ -222,7 +221,7 @@ struct model_miss model_find_missed_zones(const struct glint_lens *lens,
 
         for (uint32_t k = 0;
              is_model_entry_of_ghost(lens, entry, ghost) && k < span.n; k++)
-            add_zone_with_missed_target(lens, span.first + k, &miss);
+            add_zone_if_target_missed(lens, span.first + k, &miss);
     }
     return miss;
 }

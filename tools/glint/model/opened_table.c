@@ -93,7 +93,6 @@ static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
 #define MOST_PATHS 50000
 enum { SHAPED = 7 };
 
-/* Rejects LENS, named NAME, if it exceeds MOST_PATHS. */
 static int check_path_count(const struct tool *tool,
                             const struct glint_prescription *lens,
                             const char *name)
@@ -114,7 +113,8 @@ static int check_path_count(const struct tool *tool,
 }
 
 /* Opens the model of LENS, named NAME, for lights up to DEG off the axis. Bakes
- * the model if there is none. */
+ * a missing model, unless settings->unbaked requests exact rays or waits for a
+ * lamp; then sets lens->is_unbaked. Returns an exit code. */
 static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
                               const struct settings *settings, const char *name,
                               double deg)

@@ -88,7 +88,6 @@ render_model_and_exact_pictures(const struct picture_pair *pair,
     return status;
 }
 
-/* Compares the two images of light FIRST + I. */
 static void compare_pictures_of_light(void *ctx, int i, int worker)
 {
     struct job *const job = ctx;
@@ -136,7 +135,6 @@ static void compare_all_lights(const struct tool *tool, struct job *job)
     tool_progress_end(&progress);
 }
 
-/* Fills the list of lights of JOB, at angles up to MOST degrees. */
 static void list_test_lights(struct job *job, double most)
 {
     for (int i = 0; i < NEAR; i++)
@@ -146,7 +144,6 @@ static void list_test_lights(struct job *job, double most)
         job->light[job->n++].angle_deg = most * i / STEPS;
 }
 
-/* Sets CHECK to the light of JOB whose pictures have the lowest PSNR. */
 static enum glint_status
 find_light_with_lowest_psnr(const struct job *job, struct picture_check *check,
                             struct glint_error *error)

@@ -5,7 +5,6 @@
 #include "formats/picture.h"
 #include "model/stop_mask.h"
 
-/* Sets TO[height][width] to the luma codes of IMAGE. */
 static void read_luma_codes(const struct glint_image *image, uint8_t *to)
 {
     for (int y = 0; y < image->height; y++)

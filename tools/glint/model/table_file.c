@@ -40,7 +40,8 @@ static bool print_matching_lens(void *matches, const char *name)
     return true;
 }
 
-/* Prints the lenses whose names contain NAME. Returns their number. */
+/* Prints the lenses whose names contain NAME, if there are several. Returns
+ * their number, or 0 if NAME has fewer than three letters. */
 static int print_matching_lenses(const struct tool *tool, const char *name)
 {
     struct lens_matches m = {.word = name};
