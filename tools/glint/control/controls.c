@@ -126,7 +126,8 @@ static struct reader peek_next_word(const struct reader *r)
 
 /* ---------------------------------------------------------------- the form */
 
-/* Reports an unknown word and lists the valid words. */
+/* Reports an unknown word and suggests a similar one. BEFORE: the command to
+ * which it belongs; NULL: the word is itself a command. */
 static enum glint_status report_unknown_word(const struct reader *r,
                                              const char *before)
 {
@@ -228,7 +229,6 @@ static enum glint_status read_command_numbers(struct reader *r,
 
 /* -------------------------------------------------------------------- line */
 
-/* Reads the frame number at the beginning of the line, if there is one. */
 static enum glint_status read_frame_number(struct reader *r,
                                            struct control_line *line)
 {
@@ -242,7 +242,8 @@ static enum glint_status read_frame_number(struct reader *r,
         !(v >= 0 && v <= CONTROL_MOST_FRAME) || v != rint(v))
         return control_set_line_error(
             r->error, r->where, r->column,
-            "a frame must be a whole number from 0, not '%.24s'", r->word);
+            "a frame must be a whole number from 0 to 1000000000, not '%.24s'",
+            r->word);
     line->frame = (int)v;
     return GLINT_OK;
 }
@@ -270,7 +271,6 @@ static enum glint_status read_option_value(struct reader *r,
                                   accepts, line->v[0]);
 }
 
-/* Reads the command after the frame number. */
 static enum glint_status read_command_words(struct reader *r,
                                             struct control_line *line)
 {
@@ -476,7 +476,6 @@ static void format_line_location(const struct controls *in, int number,
              number);
 }
 
-/* Parses TEXT, the last line read, into LINE. */
 static enum glint_status parse_control_line(const struct controls *in,
                                             const char *text,
                                             struct control_line *line,

@@ -186,7 +186,7 @@ int keyboard_parse_key(const char *text, int n, struct control_line *line);
 enum glint_status controls_open(struct controls *input, const char *path,
                                 bool is_live, struct glint_error *error);
 
-/* Returns the next line for PICTURE or an earlier one, or NULL if there are
+/* Returns the next line for PICTURE or an earlier picture, or NULL if there are
  * no more. PICTURE must not decrease from call to call. */
 const struct control_line *controls_next_line(struct controls *input,
                                               int picture);

@@ -96,8 +96,8 @@ static enum glint_status change_environment(struct steer *steer,
 }
 
 /* Sets KIND to the type that NAME denotes, such as "shells", of a recorded
- * motion's objects. Returns false if NAME is not a type or is the name of an
- * object. */
+ * motion's objects. Returns false if there is no motion, or if NAME is not a
+ * type or is the name of an object. */
 static bool find_object_type(const struct steer *steer, const char *name,
                              enum glint_scene_kind *kind)
 {
@@ -137,7 +137,9 @@ static enum glint_status check_motion_sensor(const struct steer *steer,
     return line->v[0] > n
                ? control_set_line_error(
                      error, where, line->column,
-                     "no such sensor: the scene's motion has %d of them", n)
+                     "no such sensor: the scene's motion has %d, numbered "
+                     "from 1",
+                     n)
                : GLINT_OK;
 }
 
@@ -234,7 +236,7 @@ static enum glint_status move_camera(struct steer *s, struct glint_scene *scene,
                            line->v[0]); /* rotates the view to the right */
         rotate_camera_axes(axis, 2, 1,
                            line->v[1]); /* rotates the view upwards */
-        rotate_camera_axes(axis, 1, 0, line->v[2]); /* rolls up to the right */
+        rotate_camera_axes(axis, 1, 0, line->v[2]); /* rolls clockwise */
     }
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < 3; i++)
@@ -576,7 +578,6 @@ static enum glint_status execute_camera_command(struct steer *s,
 
 /* ----------------------------------------------------- material appearance */
 
-/* Applies LINE to LOOK, the present appearance of material I. */
 static void change_material_appearance(const struct steer *s,
                                        const struct control_line *line, int i,
                                        struct glint_scene_look *look)
@@ -601,7 +602,7 @@ static void change_material_appearance(const struct steer *s,
 }
 
 /* Returns whether material I with the appearance LOOK reflects at most as much
- * light as it receives. */
+ * light as it receives. Returns true for all but brushed metal. */
 static bool conserves_energy(const struct steer *s, int i,
                              const struct glint_scene_look *look)
 {

@@ -13,7 +13,7 @@ enum { MAX_BYTES = 1 << 26 };
  * the same name and has its limits. */
 static const struct text_column columns[KEYS_COLUMNS] = {
     [KEYS_FRAME] = {"frame", 0, TEXT_MAX_FRAME,
-                    "frame must be a whole number from 0"},
+                    "frame must be a whole number from 0 to 1000000000"},
     [KEYS_EXPOSURE] = {.name = "exposure"},
     [KEYS_STRENGTH] = {.name = "strength"},
     [KEYS_GAIN] = {.name = "gain"},

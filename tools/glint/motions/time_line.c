@@ -5,8 +5,8 @@
 
 #include "formats/paint.h"
 
-/* Max number of events (new landmarks) that are drawn one by one. If there are
- * more, a tick marks each block of poses with events. */
+/* If there are fewer events (new landmarks) than this, a tick marks each of
+ * them, else each block of poses with events. */
 enum { MOST_EVENTS = 4096 };
 
 struct bar {

@@ -16,14 +16,14 @@
 
 #define MAX_FILE_BYTES ((size_t)1 << 28)
 
-static bool is_environment_text(const char *name)
+static bool has_environment_extension(const char *name)
 {
     return glint_has_extension(name, ".environment");
 }
 
 bool environment_file_is_source(const char *argument)
 {
-    return is_environment_text(argument) ||
+    return has_environment_extension(argument) ||
            glint_has_extension(argument, ".exr") ||
            glint_has_extension(argument, ".hdr") ||
            glint_has_extension(argument, ".pfm") ||
@@ -85,7 +85,6 @@ bake_picture(const char *named, const char *from,
     return status;
 }
 
-/* Reads the picture or text PATH and bakes it. */
 static enum glint_status
 bake_source(const char *path, const char *written,
             void (*override)(void *ctx, struct glint_environment_options *),
@@ -100,7 +99,7 @@ bake_source(const char *path, const char *written,
     /* The key is a hash of all bytes of the options, so padding must be 0. */
     memset(&options, 0, sizeof options);
     glint_environment_defaults(&options);
-    if (is_environment_text(path)) {
+    if (has_environment_extension(path)) {
         status = read_environment_text(path, &options, source, error);
         if (status == GLINT_OK)
             status = tool_make_input_path(path, source, written, beside, error);
@@ -168,8 +167,8 @@ void environment_file_close(struct environment_file *file)
 }
 
 struct counts {
-    /* number of texels: stored in all levels; in a mipmap; in the same number
-     * of levels if all had the size of the first */
+    /* number of texels: of all stored levels; of a mipmap, whose levels have
+     * half the side each; of as many levels with the size of the first */
     long long texels, mips, full;
     size_t levels, irradiance, lights, header; /* bytes of each section */
 };

@@ -12,7 +12,7 @@ enum { MAX_BYTES = 1 << 28, FRAME = 0, OBJECT, PLACE, TURN = 5, COLUMNS = 9 };
 
 static const struct text_column columns[COLUMNS] = {
     {"frame", 0, TEXT_MAX_FRAME - 1,
-     "frame must be a whole number from 0, or *"},
+     "frame must be a whole number from 0 to 999999999, or *"},
     {"object", 0, 0, ""},
     {"x", -DBL_MAX, DBL_MAX, ""},
     {"y", -DBL_MAX, DBL_MAX, ""},
@@ -25,10 +25,11 @@ static const struct text_column columns[COLUMNS] = {
 
 /* --------------------------------------------------------------------- line */
 
-/* Returns the index of the object, light or camera NAME. Returns -2 with an
- * error message in LINES if there is none. */
-static int find_object_by_name(const struct glint_scene_model *m,
-                               const char *name, struct text_lines *lines)
+/* Returns the index of the object NAME, n_objects plus that of the light NAME,
+ * or POSES_CAMERA if NAME is "camera". Returns -2 with an error message in
+ * LINES if there is none. */
+static int find_pose_target(const struct glint_scene_model *m, const char *name,
+                            struct text_lines *lines)
 {
     const int n = (int)m->header->n_objects;
     struct suggest suggest;
@@ -56,8 +57,8 @@ static int find_object_by_name(const struct glint_scene_model *m,
 }
 
 /* Sets TO to X[N] divided by its length, Q30. For a right-handed scene negates
- * z of a vector (N = 3), or x and y of a quaternion (N = 4). Returns false if
- * the length is 0. */
+ * z of a vector (N = 3), or x and y of a quaternion w, x, y, z (N = 4). Returns
+ * false if the length is outside 1e-15 .. 1e15. */
 static bool set_unit_vector_q30(const struct glint_scene_model *m,
                                 const double *x, int n, int32_t *to)
 {
@@ -102,7 +103,7 @@ static const char *make_pose(const struct glint_scene_model *m,
     if (v[FRAME] != floor(v[FRAME]))
         return columns[FRAME].range;
     pose->frame = v[FRAME] < 0 ? 0 : (int)v[FRAME];
-    pose->thing = find_object_by_name(m, name, lines);
+    pose->thing = find_pose_target(m, name, lines);
     if (pose->thing == -2)
         return lines->cause;
     is_sun =
@@ -117,7 +118,6 @@ static const char *make_pose(const struct glint_scene_model *m,
     return NULL;
 }
 
-/* Splits LINE into the columns FIELD. Returns NULL or an error message. */
 static const char *split_line_into_columns(struct text_lines *lines, char *line,
                                            char *field[COLUMNS])
 {
@@ -203,7 +203,7 @@ static const char *insert_pose(struct poses *p, const struct pose *pose)
     if (p->lines.is_pipe && p->next == p->n)
         i = p->next = p->n = 0;
     if (p->lines.is_pipe && p->n == POSES_AHEAD)
-        return "too many poses of later frames are queued";
+        return "more than 65536 poses of later frames are queued";
     more = text_grow_array(p->row, p->n, sizeof *more);
     if (!more)
         return text_no_memory;

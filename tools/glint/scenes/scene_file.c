@@ -107,7 +107,6 @@ static enum glint_status read_texture_picture(void *ctx, const char *name,
     return status;
 }
 
-/* Reads or bakes an environment. The caller frees its data. */
 static enum glint_status read_or_bake_environment(void *ctx, const char *name,
                                                   uint8_t **data, size_t *bytes,
                                                   struct glint_error *error)
@@ -139,7 +138,6 @@ static enum glint_status read_or_bake_medium(void *ctx, const char *name,
     return store_read_data(reading, status, file.data, file.bytes, data, bytes);
 }
 
-/* Reads or bakes a motion. The caller frees its data. */
 static enum glint_status read_or_bake_motion(void *ctx, const char *name,
                                              uint8_t **data, size_t *bytes,
                                              struct glint_error *error)

@@ -46,7 +46,6 @@ static void set_frame_config(struct glint_scene_config *cfg,
 /* ------------------------------------------------------------------ memory
  */
 
-/* Allocates memory for the scene and initialises the scene there. */
 static enum glint_status allocate_scene_memory(struct scene_frame *frame)
 {
     const size_t bytes = glint_scene_bytes(&frame->cfg, frame->model);
@@ -81,8 +80,9 @@ static int report_scene_status(const struct tool *tool,
             : NULL);
 }
 
-/* Rejects a scene if its picture needs more than SCENE_TESTS intersection tests
- * with all objects at the poses of the scene file. */
+/* Rejects a scene if its picture, with all objects at the poses of the scene
+ * file, needs more intersection tests than SCENE_TESTS, or than SCENE_TESTS_PX
+ * per pixel if that is more. */
 static int check_intersection_tests(struct scene_frame *frame)
 {
     const int64_t px = (int64_t)frame->cfg.width * frame->cfg.height;

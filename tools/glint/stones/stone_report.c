@@ -74,9 +74,9 @@ static void print_medium_text(const struct stone_file *file,
            get_scatter_model_name(h), h->n_planes, h->n_planes > 1 ? "s" : "",
            h->rank, h->kernel, h->kernel);
     if (file->is_baked_now) {
-        printf(
-            "PSNR         %.1f dB to the full table, before rounding %.1f dB\n",
-            file->errors.baked_db, file->errors.fit_db);
+        printf("PSNR         %.1f dB against the responses of all texels, "
+               "before rounding to integers %.1f dB\n",
+               file->errors.baked_db, file->errors.fit_db);
         printf("rank loss    %.3g %% of the kernels' energy; columns have %d "
                "bits\n",
                100 * file->errors.kernel_loss, file->errors.tap_bits);
