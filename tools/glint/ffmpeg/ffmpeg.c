@@ -202,8 +202,8 @@ static int read_child_exec_errno(int fd)
     return n == (ssize_t)sizeof number ? number : 0;
 }
 
-/* Opens the pipe DATA for frames, and the pipe FAILED for the errno of exec,
- * which closes both in the child. */
+/* Opens the pipe DATA for the child's input or output, and the pipe FAILED for
+ * the errno of exec. exec closes both in the child. */
 static bool open_child_pipes(int data[2], int failed[2])
 {
     if (pipe2(data, O_CLOEXEC) < 0)
@@ -430,7 +430,7 @@ static const char *const input_limits[] = {"-format_whitelist", containers,
 /* -------------------------------------------------------------------- probe */
 
 /* If LINE is "NAME=value", sets WORD to the value, unless WORD is already set
- * or the value is "unknown". */
+ * or the value is "unknown", "N/A" or "reserved". */
 static void parse_word_property(const char *line, const char *name, char *word)
 {
     const size_t n = strlen(name);
@@ -453,7 +453,6 @@ static void parse_number_property(const char *line, const char *name,
         tool_parse_integer(word, 1, GLINT_MAX_SIDE, number);
 }
 
-/* Parses LINE, a property of the first video stream. */
 static void parse_stream_line(struct ffmpeg_video *v, const char *line)
 {
     parse_word_property(line, "codec_name", v->codec);
@@ -786,8 +785,8 @@ static int compare_times(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Reads packet times from FROM, lines "seconds,flags". Skips packets with the
- * flag D, which are not displayed. */
+/* Reads packet times from FROM, lines "seconds,flags", and sorts them. Skips
+ * packets with the flag D, which are not displayed. */
 static void read_packet_times(FILE *from, struct ffmpeg_times *times)
 {
     double *more;
@@ -813,9 +812,9 @@ static void read_packet_times(FILE *from, struct ffmpeg_times *times)
         qsort(times->at, (size_t)times->n, sizeof *times->at, compare_times);
 }
 
-/* Returns whether TIMES deviate from a constant RATE, frames per second: a
- * single interval by more than a quarter and 2 ms, or the total by half an
- * interval. */
+/* Returns whether TIMES deviate by more than 2 ms from a constant RATE, frames
+ * per second: an interval also by more than a quarter of it, or the time since
+ * the first frame also by more than half an interval. */
 static bool is_frame_rate_variable(const struct ffmpeg_times *times,
                                    double rate)
 {
@@ -1027,8 +1026,8 @@ static void add_other_streams(struct words *w, const struct ffmpeg_target *t,
                 t->name, ext, v->sound);
 }
 
-/* Adds range, matrix, transfer and primaries of V for both input and output, so
- * that ffmpeg does not convert colours. */
+/* Adds the range of T and the matrix, transfer and primaries of V. If input and
+ * output have the same ones, ffmpeg does not convert colours. */
 static void add_colour_tags(struct words *w, const struct ffmpeg_target *t,
                             const struct ffmpeg_video *v)
 {
@@ -1057,8 +1056,8 @@ static const char *find_padding_filter(const struct ffmpeg_target *t,
                   : "pad=iw:ih+1,fillborders=bottom=1:mode=smear";
 }
 
-/* Adds the encoder options of H.264 files. Odd sizes are padded by one pixel if
- * chroma is subsampled.
+/* Adds the encoder options of H.264 files, and prints a note if the size will
+ * be padded by find_padding_filter().
  *
  * ffmpeg's .mov writer labels 10-bit H.264 in the sizes of AVC-Intra (4:2:2 of
  * 1280x720 and 1920x1080, 4:2:0 of 960x720 and 1440x1080) as AVC-Intra and
@@ -1117,7 +1116,6 @@ static bool is_transfer_hdr(const struct ffmpeg_video *v)
            strcmp(v->transfer, "arib-std-b67") == 0;
 }
 
-/* Returns whether the installed ffmpeg has ENCODER. */
 static bool is_encoder_installed(const char *encoder)
 {
     const char *const argv[] = {"ffmpeg", "-hide_banner", "-v",
@@ -1135,7 +1133,8 @@ static bool is_encoder_installed(const char *encoder)
 }
 
 /* Returns the encoder for a file of T's type: that of V's codec, or else HEVC
- * for HDR video. Returns NULL for the default encoder of the type. */
+ * for HDR video. Returns NULL, which means the default encoder of the type, if
+ * there is none or ffmpeg lacks it. */
 static const struct family *choose_encoder_family(const struct ffmpeg_target *t,
                                                   const struct ffmpeg_video *v)
 {
@@ -1155,7 +1154,8 @@ static const struct family *choose_encoder_family(const struct ffmpeg_target *t,
     return found && is_encoder_installed(found->encoder) ? found : NULL;
 }
 
-/* Returns the name of V's profile for the encoder prores_ks. */
+/* Returns the name of V's profile for the encoder prores_ks. For an unknown
+ * profile this is "4444" if chroma is not subsampled, else "hq". */
 static const char *find_prores_profile(const struct ffmpeg_video *v)
 {
     static const char *const names[][2] = {

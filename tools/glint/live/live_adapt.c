@@ -10,7 +10,7 @@
 /* drawing time / frame period below which quality may rise after HOLD_S */
 #define SPARE      0.55
 #define SETTLE_S   0.3 /* min seconds between two steps down */
-#define HOLD_S     2.0
+#define HOLD_S     2.0 /* seconds below SPARE before a step up, at first */
 #define MAX_HOLD_S 60.0
 #define SMOOTHING  0.2
 

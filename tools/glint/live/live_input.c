@@ -262,9 +262,9 @@ static void close_test_image(struct glint_source *source)
     s->mem = NULL;
 }
 
-/* Returns the format of the test image: limited range, the size of WISH or
- * 640 x 360, without memory. */
-static struct glint_image set_test_format(const struct glint_v4l2_config *wish)
+/* Returns the test image, still without planes: limited range, the size of
+ * WISH, or 640 x 360. */
+static struct glint_image make_test_format(const struct glint_v4l2_config *wish)
 {
     const int width = wish->width ? wish->width : 640;
     const int height = wish->width ? wish->height : 360;
@@ -295,14 +295,13 @@ static enum glint_status allocate_test_images(struct live_timed *s)
 /* Opens the test image as TEST. WISH may set width and height, 16 to
  * GLINT_PANEL_SIDE pixels, rate, range and matrix. SEED is the seed of the
  * noise. The lamp circles in eight seconds. If IS_BLACK, all frames are black
- * instead. On failure TEST is closed. Errors: GLINT_E_UNSUPPORTED,
- * GLINT_E_MEMORY, GLINT_E_DEVICE. */
+ * instead. Errors: GLINT_E_UNSUPPORTED, GLINT_E_MEMORY. */
 static enum glint_status open_test_image(struct live_timed *test,
                                          const struct glint_v4l2_config *wish,
                                          uint32_t seed, bool is_black,
                                          struct glint_error *error)
 {
-    const struct glint_image image = set_test_format(wish);
+    const struct glint_image image = make_test_format(wish);
 
     if (image.width < 16 || image.height < 16 ||
         image.width > GLINT_PANEL_SIDE || image.height > GLINT_PANEL_SIDE)
@@ -440,7 +439,8 @@ void live_input_close(struct live_input *input)
     input->source = NULL;
 }
 
-/* Returns whether NAME has a file extension; names of devices have none. */
+/* Returns whether NAME has a file extension. Returns false for names in /dev/.
+ */
 static bool has_file_extension(const char *name)
 {
     const char *const slash = strrchr(name, '/');

@@ -262,7 +262,6 @@ void live_log_init(struct live_log *log, const struct tool *tool,
                                             : LIVE_REPORT_LINE;
 }
 
-/* Returns whether statistics overwrite one line of a terminal. */
 static bool is_terminal_line_overwritten(const struct live_log *log)
 {
     return log->report == LIVE_REPORT_LINE && isatty(STDERR_FILENO);

@@ -46,7 +46,7 @@ struct live {
 
 /* ------------------------------------------------------------------ set-up */
 
-/* Queries and prints the format of the input. */
+/* Stores the format of the input, and how often the input has restarted. */
 static void read_input_format(struct live *l)
 {
     const struct glint_source *source = l->in.source;
@@ -251,8 +251,8 @@ static void record_frame_statistics(struct live *l,
 /* ------------------------------------------------------------- device loss */
 
 /* Prints that the device WHAT was lost, with the reason WHY. With --reconnect
- * the run continues, the panel shows the last image, and the device is retried.
- * Returns -1 to continue, or an exit code. */
+ * and STATUS GLINT_E_DEVICE returns -1: the run continues, the panel shows the
+ * last image, and the device is retried. Otherwise returns an exit code. */
 static int report_device_loss(struct live *l, const char *what,
                               enum glint_status status, const char *why)
 {
@@ -328,7 +328,8 @@ static int draw_and_show_frame(struct live *l,
     int64_t at_us[4];
     int code;
 
-    /* From this time on, as the conversion includes the decoding of a JPEG. */
+    /* The conversion begins here, because it includes the decoding of a JPEG.
+     */
     at_us[0] = taken_us;
     if (!frame->is_drawable)
         image = live_copy_image(&l->copy, image);
@@ -372,9 +373,9 @@ static void report_stop_signal(struct live *l)
     l->had_signal = has;
 }
 
-/* Sets up drawing and output for the new format after the input has restarted
- * with another one, then starts the input. Returns -1 to continue, or an exit
- * code. */
+/* Called after the input has restarted with another format: sets up drawing and
+ * output for this format, then starts the input. Returns -1 to continue, or an
+ * exit code. */
 static int restart_input(struct live *l)
 {
     struct glint_error error = {""};

@@ -22,7 +22,8 @@ static double get_lens_focal_mm(const struct drawing *d)
 
 /* ------------------------------------------------------------------ opening */
 
-/* Lowers --quality for a preview, unless the user set it. Does not change the
+/* Lowers --quality and --area-samples for a preview, unless the user set the
+ * quality by --quality, --grid, --error or --budget. Does not change the
  * tolerance, so that the same baked model is used. */
 static void lower_preview_quality(struct settings *s)
 {
@@ -205,8 +206,8 @@ static bool are_rays_exact(const struct drawing *d)
     return d->files.has_lens && !d->files.lens.model.data;
 }
 
-/* Shows the progress of drawing by exact rays, which takes seconds per
- * frame. */
+/* Starts the progress of drawing by exact rays, which takes seconds per frame.
+ * For a video, prints that the brightness is measured first. */
 static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
                                     struct glint_engine_config *cfg)
 {

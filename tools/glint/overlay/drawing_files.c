@@ -26,7 +26,8 @@ static void set_f_number_to_key(struct settings *s, struct drawing_files *f,
 }
 
 /* Rejects key frames that change the stop of a lens drawn by exact rays.
- * Otherwise the lens is opened with the smallest f-number of the key frames. */
+ * Otherwise sets the f-number of S, with which the lens is then opened, to the
+ * smallest one of the key frames. */
 static int check_stop_keys(const struct tool *tool, struct settings *s,
                            struct drawing_files *f)
 {
@@ -189,7 +190,8 @@ static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
 }
 
 /* If the lens is a table, checks that it supports all zoom values of the key
- * frames, before scene and lens are opened. */
+ * frames, before scene and lens are opened. Without a lens, prevents control
+ * lines from setting options. */
 static int check_table_zoom_keys(const struct tool *tool,
                                  struct drawing_line *line,
                                  struct drawing_files *f)
@@ -283,7 +285,6 @@ static int open_scene_file(const struct tool *tool,
                : EXIT_OK;
 }
 
-/* Copies the file names from the options to the members of F. */
 static void set_file_names(const struct drawing_line *line,
                            struct drawing_files *f)
 {

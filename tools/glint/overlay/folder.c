@@ -81,8 +81,8 @@ static int check_folder_inputs(const struct tool *tool, char **input, int n)
     return EXIT_OK;
 }
 
-/* Rejects an output in FOLDER that would overwrite one of the N inputs. FILE is
- * scratch memory for N files. */
+/* Rejects an output in FOLDER that would overwrite another of the N inputs.
+ * FILE is scratch memory for N files. */
 static int check_output_overwrites_no_input(const struct tool *tool,
                                             const char *folder, char **input,
                                             struct stat *file, int n)

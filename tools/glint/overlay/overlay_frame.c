@@ -15,7 +15,7 @@ static void print_frame_statistics(const struct overlay *o)
     char lights[64];
 
     settings_write_light_counts(&o->drawing.run.report, lights);
-    fprintf(stderr, "frame %d: %s, %d ghosts, %d primitives\n",
+    fprintf(stderr, "frame %d: %s, %d ghosts, %d edges of ray cells\n",
             o->drawing.run.n_frames - 1, lights, o->drawing.run.report.ghosts,
             o->drawing.run.report.stats.primitives);
 }
@@ -89,8 +89,8 @@ static void extend_value_range(struct overlay_span *of, double x)
     of->n++;
 }
 
-/* Extends the ranges of strength, exposure and gain by the values O of a
- * frame. */
+/* Extends the range of gain, and that of exposure (if the option was given) or
+ * strength, by the values O of a frame. */
 static void record_frame_brightness(struct overlay_figures *f,
                                     const struct glint_options *o)
 {

@@ -85,7 +85,6 @@ struct overlay_light overlay_measure_light(struct overlay *o)
     return light;
 }
 
-/* Returns the power of LAMP in stops over a white pixel. */
 static double convert_lamp_power_to_stops(const struct glint_engine_lamp *lamp)
 {
     return log2(fmax(lamp->lamp.power, 1e-30));

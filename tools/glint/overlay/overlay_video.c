@@ -102,8 +102,8 @@ static bool can_keep_other_streams(const struct overlay *o)
 }
 
 /* Sets range, matrix and transfer of the input by its tags. Prints a warning if
- * a tag is unknown, or if a video with BT.2020 primaries has no transfer
- * tag. */
+ * a tag is unknown, or if a video with primaries other than BT.709 has no
+ * transfer tag. */
 static void set_input_colour_tags(struct video *v)
 {
     static const char *const matrices[] = {"601", "709", "2020"};

@@ -34,7 +34,8 @@ bool zoom_clip_parse(struct zoom_clip *clip, const char *text)
     return clip->is_asked;
 }
 
-/* Returns the number of frames of the y4m file NAME; 0 if it cannot be read. */
+/* Returns the number of frames of the y4m file NAME, up to the first damaged
+ * one; 0 if the file cannot be opened. */
 static long count_y4m_frames(const char *name, struct glint_error *error)
 {
     struct glint_y4m_reader in;
@@ -49,8 +50,9 @@ static long count_y4m_frames(const char *name, struct glint_error *error)
     return n;
 }
 
-/* Returns key frames that zoom by CLIP over N frames, as text allocated by
- * malloc(). */
+/* Returns key frames that zoom by CLIP over N frames, in equal ratios for mm
+ * and in equal steps for 0 .. 1, as text allocated by malloc(); NULL without
+ * memory. */
 static char *make_zoom_keys(const struct zoom_clip *clip, long n)
 {
     const bool is_mm = clip->from > 1;
@@ -97,7 +99,8 @@ int zoom_clip_open(struct tool *tool, struct zoom_clip *clip, const char *input,
     if ((n <= 0 || n > MOST_FRAMES) && !error.text[0])
         glint_error_report(
             &error, GLINT_E_FORMAT, input,
-            "the number of frames, which --zoom A-B needs, is unknown");
+            "the number of frames, which --zoom A-B needs, is unknown or too "
+            "large; use --keys with a column zoom");
     if (n <= 0 || n > MOST_FRAMES)
         return tool_fail(tool, GLINT_E_FORMAT, error.text);
     clip->keys = make_zoom_keys(clip, n);
