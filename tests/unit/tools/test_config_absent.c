@@ -15,6 +15,7 @@ TEST(reports_that_inih_is_missing)
 
     assert_int_equal(config_parse(&config, "x.ini", "", 0, &error), EXIT_INPUT);
     assert_string_equal(error.text,
-                        "x.ini: --config: glint was built without inih");
+                        "x.ini: --config: glint was built without inih, which "
+                        "reads these files");
     config_free(&config);
 }

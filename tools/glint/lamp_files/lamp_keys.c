@@ -114,7 +114,6 @@ bool lamp_keys_interpolate_at(const struct lamp_list *list, int i, int frame,
     return true;
 }
 
-/* Lists the ids of the lamps at FRAME. Returns their number. */
 static int list_lamp_ids_at_frame(const struct lamp_list *list, int frame,
                                   uint32_t id[GLINT_ENGINE_MAX_LAMPS])
 {

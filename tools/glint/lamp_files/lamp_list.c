@@ -36,7 +36,7 @@ enum {
 
 static const struct text_column columns[COLUMNS] = {
     {"frame", 0, TEXT_MAX_FRAME - 1,
-     "frame must be a whole number from 0, or *"},
+     "frame must be a whole number from 0 to 999999999, or *"},
     {"x", -1e6, 1e6, FAR},
     {"y", -1e6, 1e6, FAR},
     {"power", 0, GLINT_MAX_LAMP_POWER, POWERS},
@@ -51,7 +51,8 @@ static const struct text_column columns[COLUMNS] = {
     {"seen", 0, 1e6, "seen must be 0 to a million pixels"},
 };
 
-static const char plain[] = "expected 4, 7 or 8 numbers separated by commas";
+static const char plain[] = "expected 4, 7 or 8 numbers separated by commas: "
+                            "frame,x,y,power[,r,g,b[,size]]";
 
 /* Parser state of a lamp list */
 struct reading {

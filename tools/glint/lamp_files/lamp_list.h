@@ -40,7 +40,8 @@ struct lamp_list {
 enum glint_status lamp_list_read(struct lamp_list *list, const char *path,
                                  struct glint_error *error);
 
-/* Parses TEXT[BYTES] in the same way; NAME is the file's name in errors. */
+/* Parses TEXT[BYTES] like lamp_list_read(); NAME is the file's name in errors.
+ */
 enum glint_status lamp_list_parse(struct lamp_list *list, const char *text,
                                   size_t bytes, const char *name,
                                   struct glint_error *error);

@@ -187,8 +187,9 @@ int tool_apply_option(struct tool *tool, int option, const char *value)
     case 'S':
         if (tool_parse_integer(value, 0, INT_MAX, &tool->seed))
             return -1;
-        return tool_usage(tool, "--seed must be a whole number, not '%s'",
-                          value);
+        return tool_usage(tool,
+                          "--seed must be a whole number, 0 to %d, not '%s'",
+                          INT_MAX, value);
     default: /* getopt_long() has printed the error */
         if (tool->cause)
             snprintf(tool->cause->text, sizeof tool->cause->text,

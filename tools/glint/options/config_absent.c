@@ -20,7 +20,8 @@ int config_parse(struct config *config, const char *name, const char *text,
 {
     (void)config, (void)text, (void)bytes;
     glint_error_report(error, GLINT_E_UNSUPPORTED, name,
-                       "--config: glint was built without inih");
+                       "--config: glint was built without inih, which reads "
+                       "these files");
     return EXIT_INPUT;
 }
 

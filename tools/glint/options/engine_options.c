@@ -52,7 +52,6 @@ static void write_help_blanks(struct page *page, int column)
         write_help_text(page, " ", 1);
 }
 
-/* Writes the words of TEXT into the column of explanations. */
 static void write_explanation_words(struct page *page, const char *text)
 {
     while (*text) {
@@ -94,7 +93,8 @@ static void find_option_default(const struct glint_options *defaults, int i,
 }
 
 /* Returns the text that begins a range with the lower limit LOW: "LOW to ", or
- * "above 0, up to ". START is memory for it. */
+ * "above 0, up to " if LOW is above 0 but below 1e-5. START is memory for it.
+ */
 static const char *format_range_start(double low, char start[32])
 {
     if (low > 0 && low < 1e-5)

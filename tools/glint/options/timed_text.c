@@ -296,6 +296,8 @@ const char *text_parse_json_object(struct text_lines *lines, char *line,
     return *skip_blanks(at + 1) ? "text follows the closing brace" : NULL;
 }
 
+/* ------------------------------------------------------------------ values */
+
 const char *text_parse_value(const struct text_column *column, const char *text,
                              const char *other, double *value)
 {
@@ -304,8 +306,6 @@ const char *text_parse_value(const struct text_column *column, const char *text,
     return *value >= column->low && *value <= column->high ? NULL
                                                            : column->range;
 }
-
-/* ------------------------------------------------------------------ values */
 
 void *text_grow_array(void *rows, int n, size_t size)
 {

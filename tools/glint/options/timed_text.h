@@ -117,16 +117,17 @@ const char *text_parse_json_object(struct text_lines *lines, char *line,
                                    const struct text_column *column, int n,
                                    char **field);
 
+/* ------------------------------------------------------------------ values */
+
 /* Sets VALUE to the number TEXT. Returns NULL on success, else an error
  * message: OTHER if TEXT is not a number, column->range if the number is out of
  * range. */
 const char *text_parse_value(const struct text_column *column, const char *text,
                              const char *other, double *value);
 
-/* ------------------------------------------------------------------ values */
-
-/* Reallocates ROWS, N rows of SIZE bytes, so that one more row fits. Returns
- * the new address, or NULL, with ROWS unchanged, if there is no memory. */
+/* Reallocates ROWS, N rows of SIZE bytes, so that one more row fits. Must be
+ * called for each row. Returns the new address, or NULL, with ROWS unchanged,
+ * if there is no memory. */
 void *text_grow_array(void *rows, int n, size_t size);
 
 #endif
