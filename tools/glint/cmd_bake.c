@@ -314,8 +314,8 @@ static void print_zoom_report(const struct tool *tool, const struct bake *b,
     }
     if (tool->quiet)
         return;
-    printf("%d zoom positions with all ghosts, %d between them with single "
-           "ghosts, %zu bytes, %.0f s\n",
+    printf("%d zoom positions with all ghosts, %d between them with some of "
+           "the ghosts, %zu bytes, %.0f s\n",
            b->positions, baked->n_models - b->positions, baked->bytes, seconds);
     if (baked->least_db > 0)
         printf("min PSNR halfway between positions, against exact pictures: "

@@ -71,7 +71,6 @@ static struct reflected compute_reflectance(const struct coat *c, double nm,
     return r;
 }
 
-/* Returns wavelength number K of the printed table, nm; K = 0 .. STEPS. */
 static double get_table_wavelength_nm(int k)
 {
     return band_nm[0] + (band_nm[1] - band_nm[0]) * k / STEPS;
@@ -306,9 +305,10 @@ static int find_lens_coating(const struct tool *tool, const char *name,
         if (s->vd <= 0 && c->surface > 0)
             s--;
         else if (c->surface > 0 && s[-1].vd > 0)
-            code = tool_usage(
-                tool, "surface %d of %s is cemented, so it has no coating",
-                c->surface, name);
+            code = tool_usage(tool,
+                              "surface %d of %s is cemented, so it has no "
+                              "coating; choose another --surface",
+                              c->surface, name);
         c->glass[0] = s->nd;
         c->glass[1] = s->vd;
     }

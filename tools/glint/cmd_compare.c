@@ -132,9 +132,11 @@ static int compare_image_files(const struct tool *tool, const struct asked *a)
     }
     if (code == EXIT_OK && (image[0].width != image[1].width ||
                             image[0].height != image[1].height)) {
-        fprintf(stderr, "glint compare: %s is %dx%d, %s is %dx%d\n", a->name[0],
-                image[0].width, image[0].height, a->name[1], image[1].width,
-                image[1].height);
+        fprintf(stderr,
+                "glint compare: %s is %dx%d, %s is %dx%d; pictures of equal "
+                "size are needed\n",
+                a->name[0], image[0].width, image[0].height, a->name[1],
+                image[1].width, image[1].height);
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)

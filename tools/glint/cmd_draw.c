@@ -123,7 +123,8 @@ static int save_lens_drawing(const struct tool *tool, const struct draw *o)
     if (code != EXIT_OK)
         return code;
     if (shown == 0 && !tool->quiet)
-        fprintf(stderr, "glint draw: no ray reaches the sensor\n");
+        fprintf(stderr, "glint draw: no ray reaches the sensor; try a smaller "
+                        "--angle, or another ghost\n");
     if (tool->json)
         json_write(&(struct json_writer){.to = stdout}, "{rays: %d}\n", shown);
     return EXIT_OK;

@@ -175,8 +175,8 @@ static void print_entry_text(struct lenses *l, const char *name,
 
 /* --------------------------------------------------------------- HTML page */
 
-/* Sets SETTINGS for thumbnails of E: three wavelengths and coarse grids, which
- * suffice for their size. */
+/* Sets SETTINGS for thumbnails of E: the defaults, or, without a model, exact
+ * rays on coarse grids, which suffice for their size. */
 static void set_thumbnail_settings(struct settings *settings,
                                    const struct entry *e)
 {

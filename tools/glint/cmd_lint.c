@@ -118,7 +118,7 @@ static bool is_index_precise(double nd)
 /* Returns the index of the first surface of LENS whose nd or Vd is suspect, and
  * writes the reason to TEXT[BYTES]. Returns -1 if there is none. A surface is
  * suspect if no glass has its nd and Vd, or if an earlier surface has the same
- * nd, stated with four decimals or more, and another Vd. */
+ * nd, stated with four decimals or more, and a Vd that differs by over 1.5. */
 static int find_suspect_glass(const struct glint_prescription *lens, char *text,
                               size_t bytes)
 {
@@ -284,7 +284,6 @@ static void try_decimal_point_shifts(struct search *s, const char number[24])
     }
 }
 
-/* Tries all misprints of the number at S->at. */
 static void try_misprints_of_number(struct search *s)
 {
     char number[24] = "", flipped[24];
@@ -302,7 +301,6 @@ static void try_misprints_of_number(struct search *s)
     try_decimal_point_shifts(s, number);
 }
 
-/* Tries all misprints of the numbers in the line START .. END. */
 static void try_misprints_of_line(struct search *s, size_t start, size_t end)
 {
     size_t at = start;

@@ -149,7 +149,7 @@ static bool parse_frame_rate(const char *text, int *num, int *den)
            (!slash || tool_parse_integer(slash + 1, 1, 1000000, den));
 }
 
-/* Returns whether TEXT has exactly one printf conversion, of an int. */
+/* Returns whether TEXT has exactly one '%', which begins %d or %0Nd. */
 static bool is_numbered_pattern(const char *text)
 {
     const char *at = strchr(text, '%');

@@ -183,11 +183,11 @@ static int check_raw_video_options(const struct tool *tool,
     return EXIT_OK;
 }
 
-/* Rejects options that do not allow an output folder. These are options that
- * write a single file, if there are N > 1 inputs, and raw input, which does not
- * determine the type of the output. Returns an exit code. */
-static int check_folder_options(const struct tool *tool,
-                                const struct overlay *o, int n)
+/* Rejects options that exclude an output folder: --format, --list-shots, and,
+ * with N > 1 inputs, --layers and --save-lights, which write a single file.
+ * Returns an exit code. */
+static int reject_options_without_folder(const struct tool *tool,
+                                         const struct overlay *o, int n)
 {
     if (o->has_raw)
         return tool_usage(tool, "--format excludes an output folder: raw "
@@ -279,7 +279,7 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
             "needs an input: a picture, a sequence or a video");
     if (!output && o->output && folder_is_path_a_folder(o->output)) {
         *folder = o->output;
-        code = check_folder_options(tool, o, argc - optind);
+        code = reject_options_without_folder(tool, o, argc - optind);
         return code == EXIT_OK ? -1 : code;
     }
     if (output)
@@ -342,8 +342,9 @@ static void print_overlay_result(const struct tool *tool, struct overlay *o)
         print_overlay_statistics(o);
 }
 
-/* Rejects an input that is missing, empty or not an image before a lens is
- * baked. Returns an exit code. */
+/* Rejects an input that is missing, unreadable or empty, before a lens is
+ * baked. Names a picture in the settings, so that opening the lens checks its
+ * type. Returns an exit code. */
 static int check_input_file(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
@@ -414,8 +415,9 @@ static int check_output_file(struct tool *tool, struct overlay *o)
     return EXIT_OUTPUT;
 }
 
-/* Disables the bake and the brightness measurement in S if the strength is 0,
- * unless key frames, control lines or a zoom may need them later. */
+/* Disables the bake and the brightness measurement in S, because --list-shots
+ * draws nothing. Does nothing if key frames, control lines or a zoom
+ * (IS_ZOOMED) may change the lens. */
 static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
 {
     struct glint_options *const o = &s->options;

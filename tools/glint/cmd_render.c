@@ -229,12 +229,12 @@ static void print_light_statistics(const struct tool *tool,
     if (!tool->verbose || tool->quiet)
         return;
     settings_write_light_counts(report, lights);
-    fprintf(stderr, "%s, %d ghosts, %d primitives; flare memory %zu bytes\n",
+    fprintf(stderr,
+            "%s, %d ghosts, %d edges of ray cells; flare memory %zu bytes\n",
             lights, report->ghosts, report->stats.primitives,
             report->arena_bytes + report->star_bytes);
 }
 
-/* Returns the name of the chosen ray method for JSON: "model" or "exact". */
 static const char *get_ray_method_name(const struct render *r,
                                        const char *model, const char *exact)
 {

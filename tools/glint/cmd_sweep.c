@@ -71,7 +71,7 @@ static void add_sweep_case(struct sweep *s, struct sweep_case c)
 /* Adds cases with a small image for the first lens: one with a single light,
  * and one with 16 lights that can merge. Exact images of 16 lights at full size
  * would take too long. */
-static void add_smaller_cases(struct sweep *s)
+static void add_small_image_cases(struct sweep *s)
 {
     const struct sweep_case c = {
         .width = 640, .height = 360, .n_lamps = 1, .angle = 12};
@@ -97,7 +97,7 @@ static void add_requested_cases(struct sweep *s, const struct asked *a)
                                        .angle = a->angle[m],
                                        .together = i == 0 && k == 0 && m == 0});
         if (lens == 0 && a->plain)
-            add_smaller_cases(s);
+            add_small_image_cases(s);
     }
 }
 

@@ -29,9 +29,8 @@ enum { SYNTH_MAX_FILES = 6, SYNTH_PATH_BYTES = 4096 };
 
 /* An output file that each item of the data set has */
 struct synth_file {
-    const char *folder,
-        /* folder and beginning of the file name, before the item number */
-        *prefix;
+    /* folder, and beginning of the file name, before the item number */
+    const char *folder, *prefix;
     /* layers to sum, one bit per enum synth_layer; 0: coverage of each pixel by
      * lights */
     unsigned layers;
@@ -90,7 +89,6 @@ static const struct synth_layout layouts[] = {
       {"scenes/", "", BASE, false}}},
 };
 
-/* Returns the layout NAME, or NULL if there is none. */
 static const struct synth_layout *find_layout_by_name(const char *name)
 {
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++)
@@ -126,7 +124,8 @@ static bool make_description_path(char path[SYNTH_PATH_BYTES],
 
 /* ------------------------------------------------------------------ folders */
 
-/* Creates the folder PATH and the folders above it, up to the last slash. */
+/* Creates the folders in PATH, which precede its last slash. Returns an exit
+ * code. */
 static int create_folder(const struct tool *tool, char *path)
 {
     struct glint_error error;
@@ -243,7 +242,8 @@ static int open_item_set(const struct tool *tool, const struct synth_set *set,
                                 set->folder, path);
 }
 
-/* Writes SETTINGS, which must be valid, to synth.json. */
+/* Writes SETTINGS to synth.json, unless the file exists. Returns an exit code.
+ */
 static int write_set_settings(const struct tool *tool,
                               const struct synth_set *set, const char *settings)
 {
@@ -258,7 +258,6 @@ static int write_set_settings(const struct tool *tool,
 
 /* -------------------------------------------------------------------- items */
 
-/* Returns whether item NUMBER exists and is complete. */
 static bool is_item_complete(const struct synth_set *set, int number)
 {
     const struct synth_file *const file = set->layout->file;
@@ -273,7 +272,6 @@ static bool is_item_complete(const struct synth_set *set, int number)
     return is_there;
 }
 
-/* Writes FILE of ITEM; RGB is scratch memory for its pixels. */
 static enum glint_status write_item_file(const struct synth_set *set,
                                          const struct synth_file *file,
                                          const struct synth_item *item,
@@ -741,7 +739,6 @@ static char *format_set_settings(const struct synth *s, int seed)
     return NULL;
 }
 
-/* Sets ITEM to the random parameters of item NUMBER. */
 static int choose_item_parameters(const struct tool *tool, struct synth *s,
                                   int number, struct synth_item *item)
 {

@@ -108,8 +108,8 @@ static void find_nearest_object_pixel(const struct heat *h, int object,
         }
 }
 
-/* Draws the number of each object at the mean position of its visible
- * pixels. */
+/* Draws the number of each object with at least 64 visible pixels at that
+ * visible pixel which is nearest to their mean position. */
 static void draw_object_numbers(const struct heat *h)
 {
     struct paint p = {.image = h->image, .line = h->scale};

@@ -45,7 +45,6 @@ static double compute_direction_angle_deg(double y, double x)
     return atan2(y, x) * 180 / GLINT_PI;
 }
 
-/* Returns the number of ghosts that light a pixel. */
 static int count_visible_ghosts(const struct glint_explain *e)
 {
     int n = 0;

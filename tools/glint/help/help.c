@@ -123,7 +123,6 @@ void help_print_screen(const struct help *help)
 
 /* ------------------------------------------------------------------ options */
 
-/* Prints the first line of the description of option NAME in TEXT. */
 static bool print_option_summary(const char *text, const char *name)
 {
     char at[NAME_CHARS];

@@ -430,7 +430,6 @@ static void draw_glass_element(const struct figure *f, int k)
             s->nd, s->vd);
 }
 
-/* Draws the barrel around the glass from surface FIRST to LAST. */
 static void draw_lens_barrel(const struct figure *f, int first, int last)
 {
     const struct glint_prescription *lens = f->drawing->lens;
@@ -488,7 +487,6 @@ static void draw_aperture_stop(const struct figure *f, double radius)
                 convert_height_to_px(f, side * radius));
 }
 
-/* Writes the number of surface K above its rim. */
 static void draw_surface_number(const struct figure *f, int k)
 {
     double at[3];

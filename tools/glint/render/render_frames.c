@@ -196,7 +196,6 @@ static enum glint_status write_video_frame(struct frames *f,
     return glint_y4m_writer_put(&f->writer, &f->frame, "", error);
 }
 
-/* Writes r->image as frame NUMBER. Returns an exit code. */
 static int write_output_frame(struct frames *f, int number)
 {
     struct glint_error error = {""};
