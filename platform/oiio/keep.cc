@@ -1007,8 +1007,10 @@ glint::file_blocks get_upright_blocks(const struct glint_oiio_file *file,
     glint::set_upright_orientation(b);
     if (file && !options.drop_colours)
         b.icc = file->icc;
-    else
+    else {
+        b.icc.clear();
         std::fill_n(b.cicp, 4, static_cast<unsigned char>(0));
+    }
     return b;
 }
 

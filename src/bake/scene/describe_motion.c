@@ -170,12 +170,11 @@ static bool read_motion_file(struct glint_describer *d,
         return glint_text_set_error(&d->text, file->place, "%s", reason);
     if (!has_size)
         m->size = ldexp(motion.header.size, -motion.header.unit_log2);
-    if (m->size > REACH || !append_motion_objects(d, &motion, file->place))
-        return m->size <= REACH ||
-               glint_text_set_error(&d->text, file->place,
+    if (m->size > REACH)
+        return glint_text_set_error(&d->text, file->place,
                                     "the body's radius is %g; the limit is %g",
                                     m->size, REACH);
-    return true;
+    return append_motion_objects(d, &motion, file->place);
 }
 
 static bool check_detect_clauses(struct glint_describer *d,
