@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * objects SET N SCENE... - draws N images of baked scenes and prints a hash of
+ * things SET N SCENE... - draws N images of baked scenes and prints a hash of
  * all output, which is the same on every CPU, compiler target and set of
  * kernels. SET is c, sse41, avx2, neon or best.
  *

@@ -2,7 +2,8 @@
  *
  * translucent_table - compares scattering models on four translucent media of
  * 48 x 48 texels with kernels of 21 x 21. Prints the tables of [Kurt14] as
- * Markdown, with the published values next to ours.
+ * Markdown, with the published values next to ours. C1 to C13 are the claims of
+ * tests/figures/scenes/translucent.md.
  */
 #include <math.h>
 #include <stdio.h>
@@ -237,7 +238,7 @@ static void shift_random_rows(const struct glint_scatter_rows *rows,
                        rows->r + (x * 3 + c) * k2, (k2 - 1) * sizeof *off->r);
 }
 
-/* Table C3. */
+/* Prints table C3: errors when rows are shifted by a texel. */
 static void print_shifted_row_errors(struct table *t)
 {
     static const int terms[] = {1, 2, 5, 15};
@@ -265,7 +266,7 @@ static void print_shifted_row_errors(struct table *t)
     free(off.r);
 }
 
-/* Table C5. */
+/* Prints table C5: errors by numbers of terms and degrees. */
 static void print_polynomial_errors(struct table *t)
 {
     static const int terms[GRID_TERMS] = {1, 2, 5, 10, 15};
@@ -290,7 +291,7 @@ static void print_polynomial_errors(struct table *t)
     }
 }
 
-/* Table C6. */
+/* Prints table C6: errors of models of logarithms. */
 static void print_logarithm_errors(struct table *t)
 {
     static const double as[] = {0.01, 0.1, 1, 10, 100, 1000};

@@ -16,7 +16,8 @@ enum power_shape { POWER_DISC, POWER_SQUARE, POWER_TUBE, POWER_SHAPES };
 struct power_lamp {
     enum power_shape shape;
     double x, y; /* centre, pixels */
-    /* half the side of a square, half the length of a tube, pixels */
+    /* radius of a disc, half the side of a square or length of a tube,
+     * pixels */
     double radius;
     double angle; /* radians */
     double sigma; /* standard deviation of the blur, pixels */

@@ -59,8 +59,9 @@ static double compute_sag(double radius, double height)
                      copysign(sqrt(radius * radius - height * height), radius);
 }
 
-/* Chooses glasses, semi-diameters of at least 0.1 .. 0.5, and radii of
- * curvature that grow with the number of surfaces. */
+/* Chooses glasses, semi-diameters that start at 0.1 .. 0.5 mm and change by up
+ * to 10 % per surface, and radii of curvature that grow with the number of
+ * surfaces. */
 static void choose_glasses_and_radii(uint64_t *r, struct glint_prescription *l)
 {
     const double weak = sqrt(l->n_surfaces / 4.0);

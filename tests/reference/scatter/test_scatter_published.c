@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests published models of subsurface scattering on small translucent media:
- * claims C1 and C3 to C13 of the sources listed in src/README.md.
+ * claims C1 and C3 to C13 of tests/figures/scenes/translucent.md.
  */
 #include <math.h>
 #include <stdio.h>

@@ -455,7 +455,7 @@ static void set_invalid_name(struct glint_model_header *h, int number)
 
     /* number 5 is a name without a terminating 0 */
     if (number == 5)
-        memset(h->name, 'x', sizeof h->name); /* not terminated */
+        memset(h->name, 'x', sizeof h->name);
     else
         snprintf(h->name, sizeof h->name, "%s", name[number]);
 }

@@ -9,7 +9,7 @@
  *     glint_scene_open(&model, s.data, s.bytes, &reason);
  *
  * Members may be changed until the scene is sealed. Functions scene_add_...()
- * return the index of the added object.
+ * return the index of what they add.
  */
 #ifndef GLINT_TESTS_SCENE_BUILDER_H
 #define GLINT_TESTS_SCENE_BUILDER_H

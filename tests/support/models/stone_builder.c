@@ -7,7 +7,8 @@
 
 #include "support/test.h"
 
-/* Sets H to a Gaussian of standard deviation WIDTH texels and sum 1. */
+/* Sets H to a kernel of sum 1 that falls as exp(-d) / d^2, where d is the
+ * distance in units of WIDTH texels. */
 static void set_gaussian_kernel(double *h, int kernel, double width)
 {
     const int r = kernel / 2;
@@ -37,8 +38,8 @@ static void *allocate_array(size_t n, size_t bytes)
     return mem;
 }
 
-/* Sets F to a fit of one or two Gaussian kernels per channel, whose factors
- * differ between light and dark fields of a checkerboard. */
+/* Sets F to a fit of one or two kernels per channel, whose factors differ
+ * between light and dark fields of a checkerboard. */
 static void set_scatter_fit(struct glint_scatter_fit *f, double albedo)
 {
     const size_t k2 = (size_t)(f->kernel * f->kernel);

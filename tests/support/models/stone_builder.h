@@ -17,9 +17,10 @@ struct built_stone {
 };
 
 /* Builds a translucent medium of SIDE x SIDE texels with a kernel of KERNEL x
- * KERNEL texels: Gaussians, wider in red than in blue, that scatter the
- * fraction ALBEDO of the light. The albedo varies on a chessboard of 8 x 8
- * fields. Factored models get a second term, which is negative in places. */
+ * KERNEL texels: falling as exp(-d) / d^2, wider in red than in blue. They
+ * scatter the fraction ALBEDO of red light, and less of green and blue. Dark
+ * fields of a chessboard of 8 x 8 fields scatter 0.6 of this. Factored models
+ * get a second term, which is negative in places. */
 void build_translucent_model(struct built_stone *b,
                              enum glint_scatter_model model, int side,
                              int kernel, double albedo);

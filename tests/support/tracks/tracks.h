@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Simulates a body that moves among stationary foods (landmarks), by one of the
- * four motions of requirement D3. Each frame contains what the body observes:
- * the positions of the foods in the body's own axes. Motions are random by a
- * seed, and computed in double precision.
+ * Simulates a body that moves among stationary foods (landmarks), by one of
+ * four motions. Each frame contains what the body observes: the positions of
+ * the foods in the body's own axes. Motions are random by a seed, and computed
+ * in double precision.
  *
  *     track_begin_motion(&track, &options);
  *     while (...) track_next_frame(&track, &frame);

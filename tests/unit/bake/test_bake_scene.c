@@ -164,9 +164,8 @@ TEST(right_handed_scene_is_mirrored)
     free(b.data);
 }
 
-/* Requirement A12: checks that a transparent object of refractive index 1 is
- * neither baked nor drawn with refraction, and that objects of other indices
- * refract. */
+/* Checks that refractive index 1 is baked as no refraction, and that the index
+ * 1.001 is kept. */
 TEST(a12_index_1_is_not_refracted)
 {
     static const char *const refract[3] = {"", " refract 1", " refract 1.001"};
@@ -345,8 +344,8 @@ TEST(vertices_are_stored_once)
     free(b.data);
 }
 
-/* Checks triangles whose vertices lie 10 steps inside or outside the sides of
- * grid cells: each must be listed in all cells that it touches when enlarged by
+/* Checks a triangle with a vertex 10 steps inside or outside the side of a grid
+ * cell: triangles must be listed in all cells that they touch when enlarged by
  * the margin. */
 TEST(triangles_are_listed_in_all_cells_they_touch)
 {
@@ -369,7 +368,7 @@ TEST(triangles_are_listed_in_all_cells_they_touch)
 }
 
 /* Checks that equal texts give equal bytes, that objects too small for the
- * extent of the scene are reported, and that extreme scenes can be opened. */
+ * extent of the scene are rejected, and that extreme scenes can be opened. */
 TEST(extreme_scenes_can_be_opened)
 {
     static const char *const texts[] = {

@@ -281,8 +281,8 @@ TEST(levels_equal_sums_over_all_texels)
     free(b.data);
 }
 
-/* Requirement B5: checks the numbers of texels of a map of side 256. The side
- * of a Gaussian level is twice that of a mipmap level. */
+/* Checks the numbers of texels of a map of side 256. The side of a Gaussian
+ * level is twice that of a mipmap level. */
 TEST(b5_levels_have_the_published_sizes)
 {
     long mip = 0, full = 0, ours = 0;
@@ -335,7 +335,7 @@ static double compute_sky_and_sun_light(const double d[3])
            1 + .5 * d[1];
 }
 
-/* Checks that the bake extracts a disc of 4 degrees as a light, with the
+/* Checks that the bake extracts a disc of radius 4 degrees as a light, with the
  * direction, power and size of the disc, and fills the resulting hole in the
  * map with the surrounding light. */
 TEST(disc_light_is_extracted)

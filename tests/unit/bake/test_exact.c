@@ -297,9 +297,9 @@ TEST(integer_renderer_matches_exact_renderer)
     }
 }
 
-/* Checks that a frame whose ray fields and edges exceed the memory limit is
- * drawn in several passes, with bit-identical result. The test uses one thread,
- * as each thread has a memory limit of its own. */
+/* Checks that a frame whose rays and edges exceed the memory limit is drawn in
+ * several passes, with bit-identical result. The test uses one thread, as each
+ * thread has a memory limit of its own. */
 TEST(picture_does_not_depend_on_memory)
 {
     const struct glint_view view = {
@@ -452,7 +452,7 @@ TEST(adopted_rays_do_not_change_the_picture)
 
 /* Checks that a frame that has drawn other pictures draws the same bits as a
  * new one. In one of these pictures, lamps had another extent, which exact rays
- * of point lights do not show; in another, most ghosts were muted. */
+ * of point lights do not show; in another, all ghosts were muted. */
 TEST(earlier_pictures_do_not_change_the_picture)
 {
     static float linear[2][3 * 240 * 135];

@@ -293,7 +293,7 @@ static const struct {
     {4, "film 36", "x.lens:4:8: film height is missing"},
     {4, "film 0 24", "x.lens:4:6: film width must be 0.1 .. 1000, not 0"},
     {4, "film 36 x24", "x.lens:4:9: film height 'x24' is not a number"},
-    /* words that strtod() would accept as numbers, but lens tables do not */
+    /* Numbers must be decimal. strtod() would accept the first three words. */
     {3, "f-number inf", "x.lens:3:10: f-number 'inf' is not a number"},
     {3, "f-number nan", "x.lens:3:10: f-number 'nan' is not a number"},
     {3, "f-number 0x8", "x.lens:3:10: f-number '0x8' is not a number"},

@@ -32,8 +32,9 @@ static bool is_ray_in_pupil_box(const struct glint_pupil *box, double x,
 }
 
 /* Compares the pupil box of GHOST at THETA_DEG and the wavelength NM with a
- * dense scan of rays. NEAR: the box is found as in a frame, by extending the
- * box found at 532 nm. Adds the number of unblocked rays to *N_SEEN. */
+ * dense scan of rays. NEAR: the search starts at the box found at 532 nm, and
+ * that box, extended, is compared as well. Adds the number of unblocked rays to
+ * *N_SEEN. */
 static void check_pupil_box_by_scan(int ghost, double theta_deg, double nm,
                                     bool near, int *n_seen)
 {

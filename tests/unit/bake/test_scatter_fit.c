@@ -311,9 +311,9 @@ TEST(decomposition_matches_lapack)
     dlclose(library);
 }
 
-/* Checks that singular vectors are orthogonal and that the residual is the
- * smallest possible, which is the sum of the squares of the omitted singular
- * values. The same must hold with equal and with zero singular values. */
+/* Checks the singular values of a matrix that has equal values and zeros among
+ * them, and that the vectors of the values above 0 are orthogonal to all
+ * others. */
 TEST(decomposition_is_orthogonal_and_optimal)
 {
     double a[TALL * WIDE] = {0};

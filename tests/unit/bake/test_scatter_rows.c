@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Compares rows of the scattering matrix of a translucent medium with a
- * closed form and with measured rows. Checks that rows are reciprocal and
- * return no more light than they receive. C1 and C2 in names are numbers of
- * requirements.
+ * Compares rows of the scattering matrix of a translucent medium with a closed
+ * form and with measured rows. Checks that rows are reciprocal and return no
+ * more light than they receive. C1 and C2 in names are claims of
+ * tests/figures/scenes/translucent.md.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -131,8 +131,8 @@ TEST(total_light_matches_the_dipole)
     free(entry);
 }
 
-/* Requirement C1: checks that rows are reciprocal, that no entry is negative,
- * and that no row sums to more than 1. */
+/* Checks that rows are reciprocal, that no entry is negative, and that no row
+ * sums to more than 1. */
 TEST(c1_reciprocal)
 {
     static const enum glint_stone_pattern pattern[] = {GLINT_STONE_CHESS,
@@ -158,9 +158,8 @@ TEST(c1_reciprocal)
     }
 }
 
-/* Requirement C2: checks that offsets in a row are relative to the lit texel,
- * that entries outside the square are 0, and that measured rows are read
- * unchanged. */
+/* Checks that offsets in a row are relative to the lit texel, that entries
+ * outside the square are 0, and that measured rows are read unchanged. */
 TEST(c2_places)
 {
     enum { S = 3, N = 5, WIDE = S * N };

@@ -53,14 +53,14 @@ TEST(parts_are_disjoint)
 
 /* The attempted fit of a zone of a bright ghost, from FROM to TO degrees. LEFT
  * is the error of the fit divided by the tolerance. The zone that was halved
- * into this one had an error of 10. */
+ * into this one had an error of 10. SHAPED, FAR: see struct glint_visible. */
 struct attempted {
     bool shaped, far;
     double from, to, left;
-    /* number of halvings of the pupil box in a thorough fit; -1: there was no
-     * thorough fit */
+    /* halvings of the pupil box in a thorough fit (next.h); -1: there was
+     * none */
     int depth;
-    int axis_depth;
+    int axis_depth; /* limit of DEPTH on the axis */
     enum glint_next next;
 };
 
@@ -94,9 +94,9 @@ static enum glint_next choose_next_division_of_zone(const struct attempted *c)
 }
 
 /* In wide zones (ranges of angles) of aspheric lenses, pupil parts would have
- * gaps between them. So the bake halves these zones in angle, where it divides
- * zones of spherical lenses into pupil parts. It may also halve their pupil
- * boxes more often. */
+ * gaps between them. So the bake halves these zones in angle, whereas it
+ * divides zones of spherical lenses into pupil parts. It may also halve the
+ * pupil boxes of aspheric lenses more often. */
 TEST(wide_zones_of_aspheres_are_halved)
 {
     static const struct attempted all[] = {

@@ -101,8 +101,8 @@ TEST(callers_memory_gives_the_same_image)
     free(mem);
 }
 
-/* Checks that lamps in a video are fully faded in after 30 frames, and that
- * lower quality parameters draw fewer ray bundles. */
+/* Checks that both lamps of a video are found after 30 frames, and that lower
+ * quality parameters draw fewer ray bundles. */
 TEST(tracked_lamps_are_present_after_30_frames)
 {
     static uint8_t px[BYTES];
@@ -211,8 +211,8 @@ TEST(stop_set_later_equals_stop_at_creation)
     glint_engine_destroy(engine);
 }
 
-/* Checks that an image of a wrong size, and too many lamps, are rejected at
- * each step of drawing, including automatic exposure. */
+/* Checks that an image of a wrong size, and too many lamps, are rejected by all
+ * functions that draw. */
 TEST(rejects_images_of_wrong_size)
 {
     static uint8_t px[BYTES];
@@ -610,10 +610,10 @@ TEST(config_without_stops_accepts_only_clean_blades)
     }
 }
 
-/* Checks that each numeric option accepts its limits, rejects values beyond
- * them, and counts as given only after it was set. Strength and exposure
- * exclude each other, as do quality and error: the option that was set last is
- * used. */
+/* Checks that each numeric option accepts its lower limit, rejects values
+ * beyond its limits, and counts as given only after it was set. Strength and
+ * exposure exclude each other, as do quality and error: the option that was set
+ * last is used. */
 TEST(options_accept_their_limits)
 {
     struct glint_options o;

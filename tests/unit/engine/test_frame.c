@@ -311,8 +311,8 @@ TEST(memory_limit_does_not_depend_on_workers)
     assert_memory_equal(got, want, BYTES);
 }
 
-/* Checks that the ray bundles dropped for lack of reserved memory do not depend
- * on the number of workers, either. */
+/* Checks that with little reserved memory no ray bundle is dropped, and that
+ * the image does not depend on the number of workers, either. */
 TEST(dropped_bundles_do_not_depend_on_workers)
 {
     static uint8_t got[2][BYTES];

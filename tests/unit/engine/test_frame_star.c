@@ -147,7 +147,7 @@ TEST(glare_of_a_small_lamp_does_not_widen_spikes)
 }
 
 /* Checks that if there are more lamps than stars may be drawn, the brightest
- * lamps get stars, in descending order, whatever the order of the input. */
+ * lamps get stars, in descending order. They are passed in ascending order. */
 TEST(brightest_lamps_get_stars)
 {
     enum { N = GLINT_STAR_MAX_LIGHTS + 100 };

@@ -129,8 +129,7 @@ TEST(outline_is_convex_and_has_its_area)
 }
 
 /* Checks that the integer test finds points on the same side of the outline as
- * a test in double precision, and near the outline at the same distance from
- * it. */
+ * a test in double precision, and at the same distance from it. */
 static void check_integer_stop_test(const struct glint_setup *s,
                                     const struct glint_iris_sides *sides)
 {

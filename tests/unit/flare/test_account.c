@@ -240,9 +240,8 @@ TEST(counts_bundles_outside_the_image)
     free_model_and_flare(&f);
 }
 
-/* Checks the two counts of ray bundles fainter than FAINTEST: ghosts that are
- * faint for a single light, and ghosts that are faint even in the sum over
- * several lights. */
+/* Checks that ray bundles fainter than FAINTEST are counted as faint, with one
+ * light and with several. */
 TEST(counts_faint_bundles)
 {
     struct fixture f;

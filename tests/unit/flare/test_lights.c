@@ -137,8 +137,8 @@ TEST(no_light_and_one_light_are_unchanged)
     assert_int_equal(glint_lights_merge(&b, 1, NEAR_Q30, 1, &apart), 0);
 }
 
-/* Checks that two lights are merged if they are nearer than the larger of their
- * two merge distances, in either order. */
+/* Merges two lights at the same position, in either order. Checks that the
+ * merged light keeps the larger of their two merge distances. */
 TEST(merge_distance_is_the_larger_of_two)
 {
     for (int order = 0; order < 2; order++) {

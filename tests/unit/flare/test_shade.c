@@ -149,8 +149,8 @@ TEST(dirt_rotates_with_the_blades)
     }
 }
 
-/* Checks that a white mask changes almost nothing and that a black one
- * leaves no light. */
+/* Checks that a white mask changes nothing and that a black one leaves no
+ * light. */
 TEST(white_and_black_masks_pass_all_or_nothing)
 {
     uint8_t mask[4] = {255, 255, 255, 255};
@@ -166,7 +166,7 @@ TEST(white_and_black_masks_pass_all_or_nothing)
     assert_true(sum_channel_light(pixels, 0) == 0);
 }
 
-/* Checks that dust adds few edges: at most one patch of them per cell. */
+/* Checks that dust adds few edges: at most ten per cell. */
 TEST(dust_adds_few_edges)
 {
     const struct glint_iris iris = {.dust = 0.3, .dust_seed = 5};
@@ -181,8 +181,8 @@ TEST(dust_adds_few_edges)
     assert_true(dusty < plain_edges + 16 * 16 * 10);
 }
 
-/* Checks a mask with one white half: this half passes all light, the other half
- * none, and the boundary is sharp. */
+/* Checks a mask with one white half: it passes half of the light, and hardly
+ * any pixel becomes negative. */
 TEST(half_mask_passes_half_of_the_light)
 {
     uint8_t mask[64 * 64];
@@ -202,7 +202,7 @@ TEST(half_mask_passes_half_of_the_light)
         assert_true(pixels[k] > -want[3 * (75 * WIDTH + 100)] / 100);
 }
 
-/* Checks that the light across a soft edge follows its profile, for straight
+/* Checks that a soft edge passes the mean light of its profile, for straight
  * sides, arcs and circles. */
 TEST(soft_edge_has_the_light_of_its_profile)
 {

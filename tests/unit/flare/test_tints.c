@@ -112,8 +112,8 @@ TEST(gain_and_tint_scale_the_light)
     free_model_with_tints(f);
 }
 
-/* Mutes ghosts one after the other. Checks that the light of the others does
- * not change, and that nothing is planned when all are muted. */
+/* Draws each ghost with all others muted. Checks that the sum of their light is
+ * that of all ghosts, and that nothing is planned when all are muted. */
 TEST(muted_ghosts_add_no_light)
 {
     struct fixture *f = open_model_with_tints();

@@ -729,10 +729,9 @@ TEST(quads_of_uniform_blocks_are_exact)
         }
 }
 
-/* Checks blocks of 2 x 2 different pixels with one light value for all. Bright
- * pixels must change less than dark ones, and no pixel may become darker or
- * exceed white. The order of the pixels must be preserved, and strong light
- * must make all four white. */
+/* Checks blocks of 2 x 2 different pixels with one light value for all. No
+ * pixel may become darker or exceed white. The order of the two left pixels
+ * must be preserved, and strong light must make all four white. */
 TEST(quads_of_edges_stay_ordered)
 {
     static const uint8_t luma[2][2] = {{16, 235}, {90, 17}};

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests how a body is localised by the foods (landmarks) that it observes.
- * Checks the requirements D1 to D6 of recorded motion, for the four body
- * motions of tests/support/tracks.
+ * Tests how a body is localised by the foods (landmarks) that it observes, for
+ * the four body motions of tests/support/tracks.
  */
 #include <math.h>
 #include <stdint.h>
@@ -98,8 +97,8 @@ static struct track_options make_track_options(int motion, int reset_every,
         motion, FRAMES, 5, reset_every, digits, (uint32_t)(SEED + motion)};
 }
 
-/* Requirement D1: with the weights of four foods (landmarks), errors are about
- * 1e-6 in float32 and do not grow with time. */
+/* With the weights of four foods (landmarks), errors are about 1e-6 in float32
+ * and do not grow with time. */
 TEST(row_d1_four_foods_do_not_drift)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -118,8 +117,7 @@ TEST(row_d1_four_foods_do_not_drift)
     }
 }
 
-/* Requirement D2: if the motions from frame to frame are chained, the error
- * grows with time. */
+/* If the motions from frame to frame are chained, the error grows with time. */
 TEST(row_d2_the_chain_drifts)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -137,9 +135,9 @@ TEST(row_d2_the_chain_drifts)
     }
 }
 
-/* Requirement D5: some foods (landmarks) end and others appear. Rigid fits, and
- * averages over a food's lifetime, keep the error below 1e-4. The error of the
- * published solution is a thousand times as large. */
+/* Some foods (landmarks) end and others appear. Rigid fits, and averages over a
+ * food's lifetime, keep the error below 1e-4. The error of the published
+ * solution is a thousand times as large. */
 TEST(row_d5_resets_keep_the_error_small)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {
@@ -161,8 +159,8 @@ TEST(row_d5_resets_keep_the_error_small)
     }
 }
 
-/* Requirement D6: errors correlate only weakly with the mean distance of the
- * foods (landmarks). */
+/* Errors correlate only weakly with the mean distance of the foods
+ * (landmarks). */
 TEST(row_d6_error_depends_weakly_on_food_distance)
 {
     for (int m = 0; m < TRACK_MOTIONS; m++) {

@@ -217,7 +217,7 @@ static char *write_recording_file(const struct track_options *o, bool is_second)
 
 /* Checks that both sets of key names give the same motion, that `reset` in the
  * first frame has no effect, and the sums of the fields rv (rotation) and tv
- * (translation), requirement D11. */
+ * (translation). */
 TEST(both_sets_of_key_names_are_equal)
 {
     const struct track_options o = {2, 500, 5, 60, 6, 11};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests recorded motion in scenes: requirements D7 to D10.
+ * Tests recorded motion in scenes: frames, detected foods (landmarks) and
+ * cameras in sensors.
  */
 #include <math.h>
 #include <stdint.h>
@@ -40,10 +41,10 @@ static uint64_t hash_image(const struct moving *d)
     return hash;
 }
 
-/* ---------------------------------------------------------- any frame (D8) */
+/* --------------------------------------------------------------- any frame */
 
-/* Requirement D8: checks that a frame is the same whether it is reached by
- * playing, by single steps or by jumps, for all tile sizes. */
+/* Checks that a frame is the same whether it is reached by playing, by single
+ * steps or by jumps, for all tile sizes. */
 TEST(row_d8_seeking_equals_playing)
 {
     enum { N = 40 };
@@ -82,7 +83,7 @@ TEST(row_d8_seeking_equals_playing)
     }
 }
 
-/* ------------------------------------------- detection by brute force (D7) */
+/* ------------------------------------------------ detection by brute force */
 
 /* Sets AT to vector V rotated by the unit quaternion Q. */
 static void rotate_vector(const double q[4], const double v[3], double at[3])
@@ -96,8 +97,7 @@ static void rotate_vector(const double q[4], const double v[3], double at[3])
 }
 
 /* Returns by which angle, radians, food F (a landmark) of FRAME is inside the
- * detection angle of sensor S, by the formula of requirement D7. Negative: F is
- * outside. */
+ * detection angle of sensor S. Negative: F is outside. */
 static double compute_detection_margin(const struct glint_motion_frame *frame,
                                        double size, int s, int f)
 {
@@ -122,9 +122,9 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
            acos(dot / sqrt(square));
 }
 
-/* Requirement D7: compares detection by angle, and by angle and intensity, with
- * brute force, for 10 000 frames of random steps, rotations and foods
- * (landmarks), with six sensors and five foods. */
+/* Compares detection by angle, and by angle and intensity, with brute force,
+ * for 10 000 frames of random steps, rotations and foods (landmarks), with six
+ * sensors and five foods. */
 TEST(row_d7_detection_matches_brute_force)
 {
     enum { N = 10000 };
@@ -258,7 +258,7 @@ TEST(failed_control_lines_change_nothing)
     moving_close_scene(d);
 }
 
-/* ------------------------------------------------- camera in a sensor (D9) */
+/* ------------------------------------------------------ camera in a sensor */
 
 /* Returns the mean column of the pixels with more red than blue; -1: there are
  * none. Sets *N to their number. */
@@ -278,9 +278,9 @@ static double compute_mean_column_of_red(const struct moving *d, int *n)
     return *n ? sum / *n : -1;
 }
 
-/* Requirement D9: checks a camera placed in a sensor. The object ahead must be
- * in the image centre, and the field of view must be that of the sensor.
- * Leaving the sensor must restore the previous image. */
+/* Checks a camera placed in a sensor. The object ahead must be in the image
+ * centre, and the field of view must be that of the sensor. Leaving the sensor
+ * must restore the previous image. */
 TEST(row_d9_camera_is_placed_in_a_sensor)
 {
     /* foods (landmarks): one ahead of sensor 0, one ahead of sensor 1, and two
@@ -323,10 +323,10 @@ TEST(row_d9_camera_is_placed_in_a_sensor)
     moving_close_scene(d);
 }
 
-/* ---------------------------------------------------- detected foods (D10) */
+/* ---------------------------------------------------------- detected foods */
 
-/* Requirement D10: checks detections of foods (landmarks): three foods by one
- * sensor each, two by all sensors, and two by two sensors. */
+/* Checks detections of foods (landmarks): three foods by one sensor each, two
+ * by all sensors, and two by two sensors. */
 TEST(row_d10_sensors_detect_their_foods)
 {
     double three[3][3] = {{5, 0, 0}, {0, 5, 0}, {0, 0, 5}};

@@ -136,7 +136,7 @@ TEST(icc_profile_matches_hand_computation)
     assert_false(glint_icc_read_colours(&c, p, 100));
     memcpy(p + 16, "CMYK", 4);
     assert_false(glint_icc_read_colours(&c, p, sizeof p));
-    /* a profile truncated at any byte is rejected */
+    /* a truncated profile is not read beyond its end */
     for (size_t n = 0; n < 400; n++) {
         write_icc_profile(p, 563);
         uint8_t *const exact = malloc(n + 1);
@@ -147,8 +147,8 @@ TEST(icc_profile_matches_hand_computation)
     }
 }
 
-/* Checks that the lookup table of a tone curve accepts any float, and clamps
- * floats outside its range. */
+/* Checks that the lookup table of a tone curve accepts any float, and continues
+ * the curve outside its range. */
 TEST(curve_table_accepts_any_float)
 {
     struct glint_tone_curve t = {

@@ -99,8 +99,8 @@ TEST(more_power_never_darkens_codes)
                     (double)white / lit, 0.999, "");
 }
 
-/* Checks that a power of 0, below 0 or NaN draws nothing, alone or next to
- * another light, as pixel codes and as linear light. */
+/* Checks that a power of 0, 1e-300, below 0, NaN or infinite draws nothing,
+ * alone or next to another light, as pixel codes and as linear light. */
 TEST(invalid_powers_draw_nothing)
 {
     const double none[] = {

@@ -178,7 +178,7 @@ TEST(grazing_rays_match_the_reference)
     check_worst_errors("floors and balls that graze, to 1e-5", &worst);
 }
 
-/* Checks the same ball and pyramid at sizes from 1e-6 to 1e5. */
+/* Checks the same ball and pyramid at sizes from 1e-6 to 1e3. */
 TEST(tiny_and_huge_objects_match_the_reference)
 {
     struct outcome worst = NOTHING_YET;
@@ -202,7 +202,7 @@ TEST(tiny_and_huge_objects_match_the_reference)
     check_worst_errors("sizes 1e-6 to 1e3", &worst);
 }
 
-/* Checks objects of sizes up to 1e6. They are lit by a sun, whose light is the
+/* Checks objects of sizes up to 5e5. They are lit by a sun, whose light is the
  * same everywhere. */
 TEST(large_objects_in_sunlight_match_the_reference)
 {

@@ -115,8 +115,8 @@ TEST(position_in_the_pixel_keeps_star_light)
                    most, 0.005, "");
 }
 
-/* Checks that doubling the power gives less light in no pixel, and that an
- * invisible power gives none. */
+/* Checks that doubling the power lowers no pixel by more than one code, and
+ * that an invisible power gives none. */
 TEST(more_power_never_darkens_stars)
 {
     double most = 0;

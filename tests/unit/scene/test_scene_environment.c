@@ -131,8 +131,8 @@ TEST(image_equals_the_reference)
 
 /* ----------------------------------------- scene texts, changes of a scene */
 
-/* Requirement B7: checks that an anisotropy ratio above 10 is clamped to 10,
- * and that the parser warns of this. */
+/* Checks that an anisotropy ratio above 10 is clamped to 10, and that the
+ * parser warns of this. */
 TEST(clamped_anisotropy_is_warned_of)
 {
     struct glint_description *s = malloc(sizeof *s);
@@ -185,8 +185,8 @@ TEST(missing_module_is_rejected)
     drawn_close_scene(&d);
 }
 
-/* Requirement B2: changes colours and alphas between frames. Checks that the
- * image equals that of a scene baked with the new values. */
+/* Changes colours and alphas between frames. Checks that the image equals that
+ * of a scene baked with the new values. */
 TEST(b2_changed_materials_equal_a_new_scene)
 {
     static const char *const text[2] = {
@@ -234,7 +234,7 @@ TEST(b2_changed_materials_equal_a_new_scene)
           "material white\nsphere a at 0 .5 0 radius " radius      \
           " material " material "\n"
 
-/* Requirement B8: changes material, radius and environment of objects between
+/* Changes material and radius of an object and rotates the environment between
  * frames. Checks that the image equals that of a scene baked with the new
  * values. */
 TEST(b8_changed_objects_equal_a_new_scene)
@@ -282,9 +282,8 @@ TEST(b8_changed_objects_equal_a_new_scene)
 #define UNDER(environments) \
     STAGE environments "shadow on\nbackground environment\n" BALLS "white\n"
 
-/* Requirement B8: changes the visible environment and its brightness between
- * frames. Checks that the image equals that of a scene that has only this
- * environment. */
+/* Changes the visible environment and its brightness between frames. Checks
+ * that the image equals that of a scene that has only this environment. */
 TEST(b8_changed_environment_equals_a_new_scene)
 {
     static const struct scene_dials dials = {

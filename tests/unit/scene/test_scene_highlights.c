@@ -280,8 +280,7 @@ TEST(other_bright_objects_are_no_highlights)
 }
 
 /* Checks that highlights are merged if their squares touch or their centres are
- * within 12 pixels. If there are too many, the brightest must be returned. A
- * merged highlight must lie at the centroid, weighted by light. */
+ * within 12 pixels. If there are too many, the brightest must be returned. */
 TEST(near_highlights_are_merged)
 {
     static const char two[] = CAMERA STEEL(".01 .01") BRIGHT
@@ -321,9 +320,9 @@ TEST(near_highlights_are_merged)
 
 /* ---------------------------------------------------------------- extremes */
 
-/* Checks that the power of a highlight is proportional to the light, up to
- * saturation. A highlight on a ball of one pixel, or at the image border, must
- * have the power of its visible part. */
+/* Checks that the power of a highlight grows with the light, up to saturation.
+ * Highlights on a ball of one pixel, or at the image border, must lie in the
+ * image. */
 TEST(power_is_linear_up_to_saturation)
 {
     static char text[400];

@@ -244,8 +244,7 @@ TEST(a8_phong_matches_double_precision)
 /* ----------------------------------------------------------- shadows (A10) */
 
 /* Returns the light on a floor below a lamp at height 4. Unless HIDDEN is set,
- * a ball of radius 1 with its centre at height H is between the lamp and the
- * floor. */
+ * a ball of radius 1 has its centre at height H below or above the lamp. */
 static int32_t measure_light_under_ball(double h, int hidden)
 {
     const int32_t lamp[3] = {0, 4 * UNIT, 10 * UNIT};
@@ -437,9 +436,9 @@ static int is_second_hit_outside(const double middle[3], double radius,
     return l2 > (float)(radius * radius + more);
 }
 
-/* Checks that each ray through a ball of half transmittance enters and
- * leaves it exactly once. The simpler methods hit the ball again at the
- * entry point. */
+/* Checks that each ray through a ball of half transmittance enters and leaves
+ * it exactly once. With is_second_hit_outside() instead, rays would hit the
+ * ball again at the entry point. */
 TEST(a11_ray_leaves_a_ball_once)
 {
     enum { RAYS = 100000 };

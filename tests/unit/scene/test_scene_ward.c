@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests Ward's reflection lobe over an environment map: requirements B1, B2,
- * B4 and B6 to B8, a lobe in uniform light (white furnace), and the lookups in
- * double precision.
+ * Tests Ward's reflection lobe over an environment map: samples and levels, a
+ * lobe in uniform light (white furnace), and the lookups in double precision.
  */
 #include <math.h>
 #include <stdint.h>
@@ -264,7 +263,7 @@ TEST(samples_approximate_the_sum_over_texels)
     assert_true(least >= 60);
 }
 
-/* --------------------------------------------------- requirements B1 to B8 */
+/* ------------------------------------------------------ samples and levels */
 
 /* Sets TO to the ball's image, averaged over N uniform directions of the
  * hemisphere. Each is looked up in the mipmap level that matches its solid
@@ -315,10 +314,10 @@ static void render_by_sum_of_texels(const double alpha[2], struct reference *r)
     glint_sphere_free(&r->sphere);
 }
 
-/* Requirement B1: half vectors drawn by the published density of the lobe must
- * have a smaller error than uniform directions, for every number of samples and
- * alphas up to .2. Requirement B4: with 8 samples, Gaussian levels must have a
- * smaller error than mipmaps. */
+/* Half vectors drawn by the published density of the lobe must have a smaller
+ * error than uniform directions, for every number of samples and alphas up to
+ * .2. With 8 samples, Gaussian levels must have a smaller error than
+ * mipmaps. */
 TEST(b1_b4_sampled_lobe_beats_uniform_directions)
 {
     static const double alphas[3][2] = {{.05, .05}, {.2, .2}, {.05, .2}};
@@ -361,9 +360,9 @@ TEST(b1_b4_sampled_lobe_beats_uniform_directions)
     free(mip.data);
 }
 
-/* Requirement B2: changes colours and alphas of materials that share one baked
- * environment. Checks that each lobe is that of its material, and that it is
- * proportional to the colour. */
+/* Changes colours and alphas of materials that share one baked environment.
+ * Checks that each lobe is that of its material, and that it is proportional to
+ * the colour. */
 TEST(b2_materials_share_an_environment)
 {
     static ward_picture red, white, wide;
@@ -388,8 +387,8 @@ TEST(b2_materials_share_an_environment)
     free(m.data);
 }
 
-/* Requirement B8: checks that 8 samples are sufficient: they must reach 30 dB
- * in display codes, on a map of spots and waves. */
+/* Checks that 8 samples are sufficient: they must reach 30 dB in display codes,
+ * on a map of spots and waves. */
 TEST(b8_eight_samples_are_sufficient)
 {
     static const double alphas[3][2] = {{.05, .05}, {.1, .1}, {.05, .2}};
@@ -414,8 +413,8 @@ TEST(b8_eight_samples_are_sufficient)
     free(m.data);
 }
 
-/* Requirement B6: checks that images with more samples are closer to the sum
- * over all texels. */
+/* Checks that images with more samples are closer to the sum over all
+ * texels. */
 TEST(b6_more_samples_come_closer)
 {
     static const int samples[3] = {1, 8, 32};
@@ -482,8 +481,8 @@ TEST(extreme_environments_only_scale_the_image)
     free(m.data);
 }
 
-/* Requirement B7: checks that an anisotropy ratio of 200 is clamped to 10, and
- * that the call reports this. */
+/* Checks that an anisotropy ratio of 200 is clamped to 10, and that the call
+ * reports this. */
 TEST(b7_extreme_anisotropy_is_clamped)
 {
     struct glint_ward_lobe held, plain;

@@ -169,7 +169,7 @@ TEST(fans_rotate_with_the_blades)
     }
 }
 
-/* Checks that a soft edge of the stop does not change the centre of the
+/* Checks that a soft edge of the stop keeps most light in the centre of the
  * pattern, and removes its light far out. */
 TEST(soft_edge_removes_distant_light)
 {

@@ -73,8 +73,8 @@ TEST(enough_time_keeps_step_0)
     assert_true(seen.last_change_s < 0); /* the step never changed */
 }
 
-/* Checks that half a second of missed frames lowers the quality by one step, or
- * by several steps if a frame takes more than two frame periods. */
+/* Checks that missed frames of less than half a second lower the quality by one
+ * step, or by several steps if a frame takes more than two frame periods. */
 TEST(misses_reduce_the_quality)
 {
     static const double cost[8] = {80, 70, 45, 26, 20, 15, 10, 5};

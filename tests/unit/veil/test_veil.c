@@ -386,8 +386,7 @@ TEST(veil_is_bit_identical)
 /* ----------------------------------------------------------------- extremes */
 
 /* Checks lamps of any power at the borders of the image and outside it. More
- * power must make no pixel darker, and lamps that are too far outside must be
- * skipped. */
+ * power must not reduce the total light, and lamps outside must add none. */
 TEST(extreme_lamps_give_valid_veils)
 {
     static const double place[][2] = {{0, 0},     {160, 90}, {80.5, 45},

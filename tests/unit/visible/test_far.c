@@ -66,9 +66,9 @@ enum { GRAZED = 61 };
 static const double grazed_deg[2] = {82.85, 83.25};
 
 /* Checks a ghost whose rays pass the second surface, almost a hemisphere,
- * within 0.003 of its rim. Rays outside the rim are invalid. The barrel
- * aperture there must be found, as it blocks a part of the light, although no
- * ray passes more than 1e-3 outside. */
+ * within 0.003 semi-diameters of its rim. Rays outside the rim are invalid. The
+ * barrel aperture there must be found, as it blocks a part of the light,
+ * although no ray passes more than 1e-3 semi-diameters outside. */
 TEST(grazed_barrel_is_found)
 {
     static struct glint_zone_rays rays;
@@ -178,9 +178,9 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
     return sqrt(sum / n);
 }
 
-/* The complete ghost lies within 0.003 of the rim of the barrel aperture.
- * Checks that the rules for lights beyond 60 degrees fit this aperture with an
- * error below a hundredth of that range. The rules for lights nearer to the
+/* All rays of the ghost pass within 0.003 semi-diameters of the rim of the
+ * barrel aperture. Checks that the rules for lights beyond 60 degrees fit this
+ * aperture with an RMS error below 1e-5. The rules for lights nearer to the
  * axis must fit it less precisely, as grazed apertures matter little there. */
 TEST(grazed_barrel_is_fitted_within_its_margin)
 {
