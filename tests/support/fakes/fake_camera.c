@@ -354,7 +354,7 @@ static int answer_enum_interval(struct v4l2_frmivalenum *i)
     return 0;
 }
 
-static int answer_set_parm(struct v4l2_streamparm *p, bool set)
+static int answer_frame_interval(struct v4l2_streamparm *p, bool set)
 {
     struct v4l2_fract *t = &p->parm.capture.timeperframe;
 
@@ -621,7 +621,7 @@ static int answer_camera_ioctl(unsigned long request, void *arg)
         return answer_set_format(arg);
     case VIDIOC_G_PARM:
     case VIDIOC_S_PARM:
-        return answer_set_parm(arg, request == VIDIOC_S_PARM);
+        return answer_frame_interval(arg, request == VIDIOC_S_PARM);
     case VIDIOC_G_INPUT:
         *(int *)arg = (int)camera.input;
         return 0;

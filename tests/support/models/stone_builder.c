@@ -9,7 +9,7 @@
 
 /* Sets H to a kernel of sum 1 that falls as exp(-d) / d^2, where d is the
  * distance in units of WIDTH texels. */
-static void set_gaussian_kernel(double *h, int kernel, double width)
+static void set_exponential_kernel(double *h, int kernel, double width)
 {
     const int r = kernel / 2;
     double sum = 0;
@@ -48,8 +48,8 @@ static void set_scatter_fit(struct glint_scatter_fit *f, double albedo)
     f->h = allocate_array((size_t)f->kernels * 3 * k2, sizeof *f->h);
     for (int j = 0; j < f->kernels; j++)
         for (int c = 0; c < 3; c++)
-            set_gaussian_kernel(f->h + (size_t)(3 * j + c) * k2, f->kernel,
-                                (j ? 2.5 : 5.) - .7 * c);
+            set_exponential_kernel(f->h + (size_t)(3 * j + c) * k2, f->kernel,
+                                   (j ? 2.5 : 5.) - .7 * c);
     f->in = allocate_array(3 * texels, sizeof *f->in);
     f->f = allocate_array((size_t)f->kernels * 3 * texels, sizeof *f->f);
     f->cluster = allocate_array(texels, 1);

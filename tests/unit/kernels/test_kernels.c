@@ -139,7 +139,7 @@ static void allocate_rows(struct rows *r)
     }
 }
 
-static void init_random_mix(struct glint_mix *mix)
+static void init_random_colour_factors(struct glint_mix *mix)
 {
     const struct glint_image image = {
         .matrix = (enum glint_matrix)(random_bits() & 1),
@@ -171,7 +171,7 @@ static void check_luma_kernel(const struct glint_kernels *k, const char *name)
         const int n =
             GLINT_LANES * (1 + (int)(random_bits() % (N / GLINT_LANES)));
 
-        init_random_mix(&mix);
+        init_random_colour_factors(&mix);
         for (int i = 0; i < 8; i++)
             round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < N; i++) {
@@ -237,7 +237,7 @@ static void check_pixel_pair_kernel(const struct glint_kernels *k,
         const enum glint_pair_step step =
             (enum glint_pair_step)(random_bits() % 3);
 
-        init_random_mix(&mix);
+        init_random_colour_factors(&mix);
         for (int i = 0; i < 16; i++)
             round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < N; i++) {
@@ -291,7 +291,7 @@ static void check_packed_kernel(const struct glint_kernels *k, const char *name)
                   at = (int)(random_bits() & 1);
         const int dark = (int)(random_bits() % N);
 
-        init_random_mix(&mix);
+        init_random_colour_factors(&mix);
         for (int i = 0; i < 16; i++)
             round[i] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < 2 * N + 1; i++)
@@ -354,7 +354,7 @@ static void check_2x2_block_kernel(const struct glint_quad_kernels *k,
         const int one_chroma = one_row || random_bits() % 2;
         const int dark = (int)(random_bits() % (N / 2));
 
-        init_random_mix(&mix);
+        init_random_colour_factors(&mix);
         for (int i = 0; i < 32; i++)
             round[i / 8][i % 8] = (int16_t)(random_bits() & 127);
         for (int i = 0; i < 8 && one_row; i++)

@@ -43,7 +43,7 @@ static double find_outline_position(const float *rgb, int at, int step)
 
 /* Returns whether the outline at AT can be measured: the light inside is even,
  * and there is no light outside. */
-static bool is_clean_outline(const float *rgb, int at, int step)
+static bool is_measurable_outline(const float *rgb, int at, int step)
 {
     const double first = (double)rgb[at - INSIDE * step];
 
@@ -72,7 +72,7 @@ static void add_outline_offset(struct offsets *o, int at, int step)
     const double cos2 = compute_gradient_cosine2(finest, at, step);
     double off;
 
-    if (cos2 < 0.5 || !is_clean_outline(finest, at, step) ||
+    if (cos2 < 0.5 || !is_measurable_outline(finest, at, step) ||
         !(drawn[at - 3 * step] > 0))
         return;
     off = fabs(find_outline_position(drawn, at, step) -
