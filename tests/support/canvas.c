@@ -74,7 +74,12 @@ double canvas_encode_light(double light, enum glint_tone tone)
 
 int canvas_encode_srgb(double light)
 {
-    return (int)(255 * canvas_encode_light(light, GLINT_TONE_SRGB) + 0.5);
+    return (int)(canvas_encode_srgb_exactly(light) + 0.5);
+}
+
+double canvas_encode_srgb_exactly(double light)
+{
+    return 255 * canvas_encode_light(fmax(light, 0), GLINT_TONE_SRGB);
 }
 
 double canvas_decode_srgb(int code)

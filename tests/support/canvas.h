@@ -34,8 +34,10 @@ double canvas_decode_value(double v, enum glint_tone tone);
 double canvas_encode_light(double light,
                            enum glint_tone tone); /* clamped to 1 */
 
-/* sRGB code 0 .. 255 of linear light 0 .. 1 */
+/* canvas_encode_srgb() returns the sRGB code 0 .. 255 of linear light, which is
+ * clamped to 0 .. 1, canvas_encode_srgb_exactly() the unrounded code. */
 int canvas_encode_srgb(double light);
+double canvas_encode_srgb_exactly(double light);
 
 double canvas_decode_srgb(int code);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/power_picture.h"
+#include "support/canvas.h"
 #include "support/rng.h"
 
 #include <math.h>
@@ -171,13 +172,8 @@ static void make_srgb_tables(void)
 {
     uint32_t seed = 1;
 
-    for (int i = 0; i <= CODES; i++) {
-        const double light = (double)i / CODES;
-
-        code[i] =
-            255 * (light <= 0.0031308 ? 12.92 * light
-                                      : 1.055 * pow(light, 1 / 2.4) - 0.055);
-    }
+    for (int i = 0; i <= CODES; i++)
+        code[i] = canvas_encode_srgb_exactly((double)i / CODES);
     for (int i = 0; i < NOISE; i++)
         noise[i] = make_gaussian_noise(&seed);
 }

@@ -12,6 +12,7 @@
 #include "flare/plan.h"
 #include "glint/flare.h"
 #include "glint/kernels.h"
+#include "support/canvas.h"
 #include "support/model_builder.h"
 #include "support/models/frame_parts.h"
 #include "support/shuffle.h"
@@ -22,15 +23,9 @@ enum { WIDTH = 160, HEIGHT = 120 };
 
 /* ---------------------------------------------- reals (mantissa, exponent) */
 
-static double convert_real_to_double(struct glint_real x)
-{
-    return ldexp(x.mantissa, x.exponent);
-}
-
 static void assert_relatively_near(struct glint_real got, double want)
 {
-    assert_true(fabs(convert_real_to_double(got) - want) <=
-                fabs(want) * 0x1p-28);
+    assert_true(fabs(glint_real_value(got) - want) <= fabs(want) * 0x1p-28);
     assert_true(got.mantissa == 0 || llabs(got.mantissa) >= 1 << 30);
 }
 
@@ -58,8 +53,8 @@ TEST(sums_of_reals_are_right)
             assert_relatively_near(real_times(x, y), -p * q);
             assert_relatively_near(real_over(x, y), -p / q);
             assert_relatively_near(real_plus(x, z), p + q);
-            assert_true(fabs(convert_real_to_double(x) -
-                             convert_real_to_double(z)) < 0x1p-28 * p ||
+            assert_true(fabs(glint_real_value(x) - glint_real_value(z)) <
+                            0x1p-28 * p ||
                         real_less(x, z) == (p < q));
             assert_true(fabs((double)real_integer(x, 4, INT64_C(1) << 40) -
                              fmin(16 * p, 0x1p40)) <=
@@ -218,13 +213,6 @@ TEST(dropped_ghosts_are_invisible)
     assert_true(n_left_out > 3 && n_kept > 3);
 }
 
-static double encode_srgb(int32_t light_q20)
-{
-    const double x = fmin(1, fmax(0, light_q20 * 0x1p-20));
-
-    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
-}
-
 static void draw_flare_image(struct fixture *f, int32_t *px_q20,
                              struct glint_flare_stats *s)
 {
@@ -263,7 +251,8 @@ TEST(faint_light_gets_fewer_edges)
 
         n_fewer += 2 * fewer.primitives < all.primitives;
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-            const double off = encode_srgb(coded[i]) - encode_srgb(linear[i]);
+            const double off = canvas_encode_srgb_exactly(coded[i] * 0x1p-20) -
+                               canvas_encode_srgb_exactly(linear[i] * 0x1p-20);
 
             sum += off * off;
         }
@@ -343,7 +332,8 @@ TEST(pixel_snapped_edges_keep_the_light)
         fx.rays.snap_codes_q8 = 4 << 8;
         draw_flare_image(&fx, whole, &s);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-            const double off = encode_srgb(whole[i]) - encode_srgb(smooth[i]);
+            const double off = canvas_encode_srgb_exactly(whole[i] * 0x1p-20) -
+                               canvas_encode_srgb_exactly(smooth[i] * 0x1p-20);
 
             n_changed += whole[i] != smooth[i];
             flux[0] += smooth[i];
@@ -540,7 +530,7 @@ static double compare_faint_lights(struct fixture *f, int n)
         glint_flare_draw(f->flare, turn ? &image : &layer);
     }
     for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
-        const double want = encode_srgb(linear[i]);
+        const double want = canvas_encode_srgb_exactly(linear[i] * 0x1p-20);
 
         most = fmax(most, want);
         sum += (codes[i] - want) * (codes[i] - want);

@@ -11,6 +11,7 @@
 
 #include "glint/composite.h"
 #include "glint/kernels.h"
+#include "support/canvas.h"
 #include "support/test.h"
 
 enum { MOST = 150, N_MOST = MOST * MOST };
@@ -55,20 +56,6 @@ static void add_layer_to_image(const struct glint_image *image, unsigned sets)
     free(mem);
 }
 
-static double decode_code(double code)
-{
-    const double x = code / 255;
-
-    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-}
-
-static double encode_light(double x)
-{
-    return x >= 1 ? 255
-                  : 255 * (x <= 0.0031308 ? 12.92 * x
-                                          : 1.055 * pow(x, 1 / 2.4) - 0.055);
-}
-
 TEST(composite_matches_its_definition)
 {
     static uint8_t rgb[3 * N_MOST];
@@ -82,8 +69,9 @@ TEST(composite_matches_its_definition)
         for (int y = 0; y < 77; y++)
             for (int x = 0; x < 131; x++)
                 for (int c = 0; c < 3; c++) {
-                    const double want = encode_light(
-                        decode_code(code) + light[c][y * MOST + x] / 65535.0);
+                    const double want = canvas_encode_srgb_exactly(
+                        canvas_decode_srgb(code) +
+                        light[c][y * MOST + x] / 65535.0);
 
                     assert_true(fabs(rgb[3 * (131 * y + x) + c] - want) < 0.65);
                     if (light[c][y * MOST + x] == 0)

@@ -547,9 +547,7 @@ TEST(sums_of_a_large_region_match_doubles)
                                  rng_int_below(&finder_seed, 2) ? 255 : 40);
         }
         for (int i = 0; i < 320 * 200; i++) {
-            const double v = image.plane[0][i] / 255.0;
-            const double w =
-                v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+            const double w = canvas_decode_srgb(image.plane[0][i]);
             const double x = i % 320 + 0.5, y = i / 320 + 0.5;
 
             flux += w, x_sum += w * x, y_sum += w * y;

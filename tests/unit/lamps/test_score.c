@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/canvas.h"
 #include "support/rng.h"
 #include "glint/lamps.h"
 #include "lamps/score.h"
@@ -72,14 +73,6 @@ static void fill_box_with_light(const struct settings *s, double x0, double y0,
                 s->light[3 * (j * s->width + i) + c] = light;
 }
 
-static double encode_light(double light)
-{
-    const double held = fmin(fmax(light, 0), 1);
-
-    return 255 * (held <= 0.0031308 ? 12.92 * held
-                                    : 1.055 * pow(held, 1 / 2.4) - 0.055);
-}
-
 static int clamp_code(double code)
 {
     return (int)fmax(0, fmin(255, floor(code + 0.5)));
@@ -136,8 +129,9 @@ static int draw_and_find_lamps(const struct settings *s,
             double rgb[3];
 
             for (int c = 0; c < 3; c++)
-                rgb[c] =
-                    encode_light(s->light[3 * (y * s->width + x) + c]) + noise;
+                rgb[c] = canvas_encode_srgb_exactly(
+                             s->light[3 * (y * s->width + x) + c]) +
+                         noise;
             write_pixel_of_format(&image, x, y, rgb);
         }
     glint_lamp_finder_defaults(&cfg, s->width, s->height);

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/canvas.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 #include "support/test.h"
@@ -117,12 +118,6 @@ TEST(stopped_down_model_equals_a_native_one)
                 is_near);
 }
 
-static double encode_srgb(double x)
-{
-    x = fmin(1, fmax(0, x));
-    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055);
-}
-
 /* Sets MEAN to the means of the green codes over blocks of 8 x 8 pixels. */
 static void compute_block_means(const float *rgb, double exposure, double *mean)
 {
@@ -130,7 +125,9 @@ static void compute_block_means(const float *rgb, double exposure, double *mean)
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++)
             mean[y / 8 * (W / 8) + x / 8] +=
-                encode_srgb(exposure * (double)rgb[3 * (y * W + x) + 1]) / 64;
+                canvas_encode_srgb_exactly(exposure *
+                                           (double)rgb[3 * (y * W + x) + 1]) /
+                64;
 }
 
 /* Checks, while the stop closes and ghosts shrink, the error of each block of

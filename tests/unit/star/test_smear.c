@@ -15,6 +15,7 @@
 #include "engine/star/smear_table.h"
 #include "engine/star/star_tables.h"
 #include "glint/view.h"
+#include "support/canvas.h"
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
@@ -150,14 +151,6 @@ static double sum_pixel_directly(double x, double y, double airy_px)
     return sum / weights;
 }
 
-static double encode_srgb(double light)
-{
-    const double held = fmin(fmax(light, 0), 1);
-
-    return 255 * (held <= 0.0031308 ? 12.92 * held
-                                    : 1.055 * pow(held, 1 / 2.4) - 0.055);
-}
-
 /* Compares stars with direct summation, near the light and further out. */
 TEST(stars_match_direct_summation)
 {
@@ -177,16 +170,17 @@ TEST(stars_match_direct_summation)
         const double light =
             exp2(power_log2) *
             sum_pixel_directly(x + 0.5 - 150.3, y + 0.5 - 150.6, airy_px);
-        const double off =
-            encode_srgb(linear[3 * (y * SIDE + x) + 1] * 0x1p-20) -
-            encode_srgb(light);
+        const double off = canvas_encode_srgb_exactly(
+                               linear[3 * (y * SIDE + x) + 1] * 0x1p-20) -
+                           canvas_encode_srgb_exactly(light);
 
         squares += off * off / n;
         most = fmax(most, fabs(off));
         if (getenv("SHOW"))
             fprintf(stderr, "r %.1f: %.2f, direct %.2f\n", r,
-                    encode_srgb(linear[3 * (y * SIDE + x) + 1] * 0x1p-20),
-                    encode_srgb(light));
+                    canvas_encode_srgb_exactly(linear[3 * (y * SIDE + x) + 1] *
+                                               0x1p-20),
+                    canvas_encode_srgb_exactly(light));
     }
     printf("smear: %.1f dB against direct summation, %.1f codes at most\n",
            10 * log10(255 * 255 / squares), most);

@@ -17,6 +17,7 @@
 #include "glint/flare.h"
 #include "star/starburst.h"
 #include "glint/view.h"
+#include "support/canvas.h"
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
@@ -215,15 +216,6 @@ static void sum_pixel_directly(int n_blades, double rotation_deg,
     }
 }
 
-static uint8_t encode_srgb(double light)
-{
-    const double held = fmin(fmax(light, 0), 1);
-
-    return (uint8_t)lrint(255 * (held <= 0.0031308
-                                     ? 12.92 * held
-                                     : 1.055 * pow(held, 1 / 2.4) - 0.055));
-}
-
 /* Returns whether pixel I is summed directly: every second pixel is, in a
  * chessboard pattern; the others stay 0. */
 static bool is_pixel_summed_directly(int i)
@@ -276,11 +268,12 @@ TEST(images_match_direct_summation)
                                  points, direct);
         star_canvas_draw_light(&c, t, &light, 1, least, GLINT_RGB24, codes);
         for (int i = 0; i < N; i++)
-            square += is_pixel_summed_directly(i / 3)
-                          ? pow(codes[i] - encode_srgb(direct[i / 3][i % 3] *
-                                                       exp2(power_log2[p])),
-                                2)
-                          : 0;
+            square +=
+                is_pixel_summed_directly(i / 3)
+                    ? pow(codes[i] - canvas_encode_srgb(direct[i / 3][i % 3] *
+                                                        exp2(power_log2[p])),
+                          2)
+                    : 0;
         db = 10 * log10(255.0 * 255 * N / 2 / square);
         print_message("%d blades, %g px, 2^%g: %.1f dB\n", n, stop[s].airy_px,
                       power_log2[p], db);

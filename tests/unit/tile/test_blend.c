@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "glint/kernels.h"
+#include "support/canvas.h"
 #include "support/test.h"
 #include "tile/blend.h"
 
@@ -108,24 +109,11 @@ static void draw_stripe_passes(const struct glint_image *image, int half,
         glint_tiles_draw_row(&tiles, pass, n_passes, row, 0, &scratch);
 }
 
-static double decode_srgb(double code)
-{
-    const double x = code / 255;
-
-    return x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
-}
-
-static double encode_srgb(double x)
-{
-    return 255 * (x <= 0.0031308 ? 12.92 * x
-                                 : 1.055 * pow(fmin(1, x), 1 / 2.4) - 0.055);
-}
-
 /* Returns the expected linear light of one channel of pixel (X, Y). */
 static double compute_expected_light(const struct stripes *s, int n_passes,
                                      int half, int x, int y, int channel)
 {
-    double light = decode_srgb(GREY_CODE);
+    double light = canvas_decode_srgb(GREY_CODE);
 
     x >>= half;
     y >>= half;
@@ -150,7 +138,7 @@ static struct glint_image make_grey_image(enum glint_pixel_format format)
     for (int i = 0; i < 4 * N && format == GLINT_YUYV; i++)
         px[i] = i % 2 ? 128 : GREY_CODE;
     for (int i = 0; i < 3 * N && format == GLINT_LINEAR_Q20; i++)
-        light_q20[i] = (int32_t)(decode_srgb(GREY_CODE) * 0x1p20);
+        light_q20[i] = (int32_t)(canvas_decode_srgb(GREY_CODE) * 0x1p20);
     return image;
 }
 
@@ -171,9 +159,9 @@ static void check_codes_of_pixels(enum glint_pixel_format format, int step,
     draw_stripe_passes(&image, half, s, n_passes);
     for (int i = 0; i < N; i++) {
         const int x = i % WIDTH, y = i / WIDTH;
-        const double want =
-            encode_srgb(compute_expected_light(s, n_passes, half, x, y, 0)) -
-            px[y * image.stride_bytes[0] + step * x];
+        const double want = canvas_encode_srgb_exactly(compute_expected_light(
+                                s, n_passes, half, x, y, 0)) -
+                            px[y * image.stride_bytes[0] + step * x];
 
         assert_true(fabs(want) < off);
         sum += want;
