@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "glint/bake.h"
 #include "support/test.h"
@@ -37,6 +38,27 @@ static inline size_t read_file(const char *path, char *text, size_t size)
     bytes = fread(text, 1, size, file);
     fclose(file);
     return bytes;
+}
+
+static inline void parse_lens_text(struct glint_prescription *lens,
+                                   const char *text)
+{
+    struct glint_error error = {""};
+
+    if (glint_prescription_parse(lens, text, strlen(text), "t.lens", &error))
+        fail_msg("%s", error.text);
+}
+
+/* Sets AT to the zoom lens LENS at the position ALONG, 0 .. 1. */
+static inline void set_lens_at_position(struct glint_prescription *at,
+                                        const struct glint_prescription *lens,
+                                        double along)
+{
+    struct glint_error error = {""};
+
+    *at = *lens;
+    if (glint_prescription_zoom(at, along, &error))
+        fail_msg("%s", error.text);
 }
 
 /* Reads lenses/NAME.lens into LENS. */

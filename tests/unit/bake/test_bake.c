@@ -109,25 +109,17 @@ TEST(work_is_limited)
     bake_with_work_limit(5, 1, GLINT_E_UNSUPPORTED);
 }
 
-static void parse_lens(struct glint_prescription *lens, const char *text)
-{
-    struct glint_error error;
-
-    if (glint_prescription_parse(lens, text, strlen(text), "test", &error))
-        fail_msg("%s", error.text);
-}
-
 /* Parses a lens of one element. Its two surfaces are the only pair that
  * reflects a ghost. */
 static void parse_singlet(struct glint_prescription *lens)
 {
-    parse_lens(lens, "name singlet\n"
-                     "source none\n"
-                     "f-number 8\n"
-                     "film 36 24\n"
-                     "surface 51.68 5 12 1.5168 64.17\n"
-                     "surface flat 2 12 air\n"
-                     "stop 94 10\n");
+    parse_lens_text(lens, "name singlet\n"
+                          "source none\n"
+                          "f-number 8\n"
+                          "film 36 24\n"
+                          "surface 51.68 5 12 1.5168 64.17\n"
+                          "surface flat 2 12 air\n"
+                          "stop 94 10\n");
 }
 
 #define FAST_SINGLET                  \
@@ -148,7 +140,7 @@ static void parse_and_bake_lens(struct baked *b,
     struct glint_bake_options o = options;
 
     if (text)
-        parse_lens(lens, text);
+        parse_lens_text(lens, text);
     o.tolerance = tolerance;
     o.max_deg = max_deg;
     bake_and_open_model(b, lens, &o);
@@ -156,14 +148,14 @@ static void parse_and_bake_lens(struct baked *b,
 
 static void parse_doublet(struct glint_prescription *lens)
 {
-    parse_lens(lens, "name doublet\n"
-                     "source none\n"
-                     "f-number 5.6\n"
-                     "film 36 24\n"
-                     "surface 61.47 6 13 1.5168 64.17\n"
-                     "surface -44.64 2.5 13 1.6727 32.21\n"
-                     "surface -129.94 2 13 air\n"
-                     "stop 93 10\n");
+    parse_lens_text(lens, "name doublet\n"
+                          "source none\n"
+                          "f-number 5.6\n"
+                          "film 36 24\n"
+                          "surface 61.47 6 13 1.5168 64.17\n"
+                          "surface -44.64 2.5 13 1.6727 32.21\n"
+                          "surface -129.94 2 13 air\n"
+                          "stop 93 10\n");
 }
 
 /* ------------------------------------------------------ bytes of the model */

@@ -8,8 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "glint/bake.h"
-#include "support/test.h"
+#include "support/lens_check.h"
 
 /* Refractive indices at the d, C and F lines as printed by the manufacturers, 5
  * decimals; not computed from glint's coefficients. */
@@ -205,8 +204,7 @@ TEST(misspelt_names_get_a_suggestion)
     }
     assert_null(strstr(error.text, "did you mean"));
     /* a glass defined in the table takes precedence over the catalogue */
-    assert_ok(
-        glint_prescription_parse(&lens, own, sizeof own - 1, "t", &error));
+    parse_lens_text(&lens, own);
     assert_true(lens.surface[0].nd == 1.6);
     assert_true(lens.surface[0].sellmeier[0] == 0);
 }

@@ -12,7 +12,7 @@
 #include "bake/table/form.h"
 #include "bake/trace/beam.h"
 #include "glint/bake.h"
-#include "support/test.h"
+#include "support/lens_check.h"
 
 #define LINE_D_NM 587.5618
 
@@ -529,8 +529,7 @@ TEST(stop_around_the_glass_gives_the_same_rays)
     char table[300];
 
     snprintf(table, sizeof table, text, "-0.4 3");
-    assert_ok(glint_prescription_parse(&lens, table, strlen(table), "t.lens",
-                                       &error));
+    parse_lens_text(&lens, table);
     glint_optics_of(&lens, &optics);
     assert_true(fabs(optics.entrance_z_mm - 0.4) < 1e-12);
     glint_path_init(&path, &lens, NULL, LINE_D_NM);

@@ -180,12 +180,10 @@ TEST(front_stop_keeps_its_distance_to_the_sensor)
         "surface 61.47 6 12 1.5168 64.17\nsurface -44.64 2.5 12 1.6727 32.2\n"
         "surface -129.94 40 12 air\nend\n"
         "surface 300 3 12 1.5168 64.17\nsurface flat 55 12 air\n";
-    struct glint_error error = {""};
     struct glint_optics optics;
     double before;
 
-    if (glint_prescription_parse(&single, text, strlen(text), "t.lens", &error))
-        fail_msg("%s", error.text);
+    parse_lens_text(&single, text);
     glint_optics_of(&single, &optics);
     before = optics.length_mm + single.stop_thickness_mm;
     focus_lens_at_distance(&single, 3);
@@ -205,12 +203,10 @@ TEST(elements_stay_solid_behind_a_front_stop)
         "surface 100 4 12 1.5 60\nsurface -100 47 12 air\nend\n";
     struct glint_error error = {""};
 
-    assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
-                                       &error));
+    parse_lens_text(&single, text);
     focus_lens_at_distance(&single, 20);
     assert_true(single.surface[1].thickness_mm > 0);
-    assert_ok(glint_prescription_parse(&single, text, strlen(text), "t.lens",
-                                       &error));
+    parse_lens_text(&single, text);
     assert_int_equal(glint_prescription_focus(&single, 3, &error),
                      GLINT_E_ARGUMENT);
     assert_non_null(strstr(error.text, "cannot focus at 3 m"));
@@ -271,8 +267,7 @@ TEST(position_does_not_depend_on_the_previous_one)
     struct glint_error error = {""};
     const double places[] = {0.3, 0.75, 1, 0.2, 0};
 
-    assert_ok(
-        glint_prescription_parse(&once, text, strlen(text), "t.lens", &error));
+    parse_lens_text(&once, text);
     zoom = once;
     for (int i = 0; i < 5; i++) {
         single = once;
@@ -295,9 +290,7 @@ TEST(two_columns_are_interpolated_linearly)
         struct glint_optics optics;
         double along = -1;
 
-        if (glint_prescription_parse(&zoom, texts[k], strlen(texts[k]),
-                                     "t.lens", &error))
-            fail_msg("%s", error.text);
+        parse_lens_text(&zoom, texts[k]);
         single = zoom;
         set_zoom_position(0.3);
         assert_near(zoom.f_number, 13, 1e-9);

@@ -13,7 +13,7 @@
 #include "base/blob.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"
-#include "support/test.h"
+#include "support/lens_check.h"
 
 enum { POSITIONS = 3 };
 
@@ -32,15 +32,6 @@ static unsigned char *file;
 static size_t bytes;
 static struct glint_zoom_lens zoom;
 
-static void set_zoom_position(struct glint_prescription *to, double along)
-{
-    struct glint_error error = {""};
-
-    *to = lens;
-    if (glint_prescription_zoom(to, along, &error) != GLINT_OK)
-        fail_msg("%s", error.text);
-}
-
 TEST_OPEN
 {
     static struct glint_prescription at;
@@ -49,15 +40,13 @@ TEST_OPEN
     struct glint_error error = {""};
     const char *reason = "";
 
-    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
-                                 &error) != GLINT_OK)
-        fail_msg("%s", error.text);
+    parse_lens_text(&lens, table);
     glint_bake_defaults(&options);
     options.max_deg = 8;
     for (int k = 0; k < POSITIONS; k++) {
         unsigned char *data;
 
-        set_zoom_position(&at, 0.5 * k);
+        set_lens_at_position(&at, &lens, 0.5 * k);
         if (glint_bake(&at, &options, &data, &model[k].bytes, &report,
                        &error) != GLINT_OK)
             fail_msg("%s", error.text);
@@ -127,7 +116,7 @@ static struct off measure_error_at_position(double along)
     double sum = 0, energies = 0;
     int n = 0, n_ghosts;
 
-    set_zoom_position(&at, along);
+    set_lens_at_position(&at, &lens, along);
     glint_optics_of(&at, &optics);
     glint_zoom_set(&zoom, (int32_t)lrint(along * 0x1p30));
     n_ghosts = glint_ghost_list(&at, ghost, 8);
@@ -233,7 +222,7 @@ TEST(partly_baked_position_interpolates_its_ghosts)
     glint_bake_defaults(&options);
     options.max_deg = 8;
     options.ghosts = three[1].ghosts = ghosts;
-    set_zoom_position(&at, 0.5);
+    set_lens_at_position(&at, &lens, 0.5);
     assert_ok(glint_bake(&at, &options, &three[1].data, &three[1].bytes,
                          &report, &error));
     assert_ok(glint_lens_open(&alone, three[1].data, three[1].bytes, &reason));

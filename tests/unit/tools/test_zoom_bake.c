@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "support/test.h"
+#include "support/lens_check.h"
 #include "zooms/zoom_bake.h"
 
 static const char table[] = "name t\n"
@@ -19,15 +19,6 @@ static const char table[] = "name t\n"
                             "surface -90   40/38  12  air\n";
 
 static struct glint_prescription lens;
-
-static void set_zoom_position(struct glint_prescription *at, double along)
-{
-    struct glint_error error = {""};
-
-    *at = lens;
-    if (glint_prescription_zoom(at, along, &error) != GLINT_OK)
-        fail_msg("%s", error.text);
-}
 
 /* Bakes both ends of the zoom and the positions needed for a PSNR of
  * HALFWAY_DB half-way between positions. Sets KEY to the keys of the models
@@ -65,8 +56,8 @@ compute_key_of_position(const struct glint_bake_options *options, double along,
     struct glint_prescription at, other;
     struct glint_bake_options with = *options;
 
-    set_zoom_position(&at, along);
-    set_zoom_position(&other, beside < 0 ? 0 : beside);
+    set_lens_at_position(&at, &lens, along);
+    set_lens_at_position(&other, &lens, beside < 0 ? 0 : beside);
     with.beside = &other;
     with.n_beside = beside >= 0;
     return glint_bake_key(&at, &with);
@@ -78,12 +69,9 @@ compute_key_of_position(const struct glint_bake_options *options, double along,
 TEST(ends_are_baked_with_a_finest_step)
 {
     struct glint_bake_options options;
-    struct glint_error error = {""};
     uint64_t key[2];
 
-    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
-                                 &error) != GLINT_OK)
-        fail_msg("%s", error.text);
+    parse_lens_text(&lens, table);
     glint_bake_defaults(&options);
     options.max_deg = 3;
     bake_zoom_positions(&options, 1, key);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #include "glint/view.h"
-#include "support/test.h"
+#include "support/lens_check.h"
 #include "zooms/zoom_error.h"
 
 enum { GHOSTS = 2, MAX_DEG = 3 };
@@ -40,16 +40,10 @@ TEST_OPEN
 
     glint_bake_defaults(&options);
     options.max_deg = MAX_DEG;
-    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
-                                 &error) != GLINT_OK)
-        fail_msg("%s", error.text);
+    parse_lens_text(&lens, table);
     assert_int_equal(glint_ghost_list(&lens, NULL, 0), GHOSTS);
-    for (int k = 0; k < 3; k++) {
-        at[k] = lens;
-        if (glint_prescription_zoom(&at[k], k == 2 ? 0.5 : k, &error) !=
-            GLINT_OK)
-            fail_msg("%s", error.text);
-    }
+    for (int k = 0; k < 3; k++)
+        set_lens_at_position(&at[k], &lens, k == 2 ? 0.5 : k);
     for (int k = 0; k < 2; k++) {
         model[k].along_q30 = k << 30;
         if (glint_bake(&at[k], &options, &model[k].data, &model[k].bytes,

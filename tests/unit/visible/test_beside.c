@@ -14,7 +14,7 @@
 #include "engine/setup/degrees.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"
-#include "support/test.h"
+#include "support/lens_check.h"
 
 enum {
     MAX_DEG = 9,
@@ -47,15 +47,10 @@ TEST_OPEN
     static const double rgb_nm[] = {650, 532, 450};
     struct glint_error error = {""};
 
-    if (glint_prescription_parse(&lens, table, sizeof table - 1, "t.lens",
-                                 &error) != GLINT_OK)
-        fail_msg("%s", error.text);
+    parse_lens_text(&lens, table);
     for (int k = 0; k < 2; k++) {
-        at[k] = lens;
-        if (glint_prescription_zoom(&at[k], 1 - k, &error) != GLINT_OK ||
-            glint_setup_init(&setup[k], &at[k], 0, 0, rgb_nm, 3, &error) !=
-                GLINT_OK)
-            fail_msg("%s", error.text);
+        set_lens_at_position(&at[k], &lens, 1 - k);
+        assert_ok(glint_setup_init(&setup[k], &at[k], 0, 0, rgb_nm, 3, &error));
     }
     assert_int_equal(setup[0].n_ghosts, GHOSTS);
 }
