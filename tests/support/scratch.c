@@ -55,6 +55,18 @@ void scratch_write_file(const char *name, const char *data, size_t bytes)
     assert_int_equal(fclose(f), 0);
 }
 
+void scratch_expect_bytes(const char *path, const char *want, size_t bytes)
+{
+    FILE *const f = fopen(path, "rb");
+    char *const got = malloc(bytes + 1);
+
+    assert_true(f && got);
+    assert_int_equal(fread(got, 1, bytes + 1, f), bytes);
+    fclose(f);
+    assert_memory_equal(got, want, bytes);
+    free(got);
+}
+
 int scratch_count_entries(const char *dir)
 {
     DIR *const d = opendir(dir);

@@ -33,6 +33,9 @@ const char *scratch_make_path(const char *name);
 /* Writes DATA[BYTES] to file NAME in the folder; fails the test on an error. */
 void scratch_write_file(const char *name, const char *data, size_t bytes);
 
+/* Checks that the file PATH has exactly the bytes WANT[BYTES]. */
+void scratch_expect_bytes(const char *path, const char *want, size_t bytes);
+
 /* Returns the number of entries of the folder DIR, including hidden ones. */
 int scratch_count_entries(const char *dir);
 

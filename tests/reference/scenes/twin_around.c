@@ -11,6 +11,7 @@
 
 #include "glint/scene/ward.h"
 #include "glint/view.h"
+#include "support/models/texel.h"
 
 #define LEAST_SPREAD 0x1p-26
 #define LEAST_COSINE .0625
@@ -19,19 +20,6 @@
 #define LEAST_POLE   0x1p-24
 
 /* ------------------------------------------------------------------ lookups */
-
-static double decode_rgb9e5(const struct glint_environment *e, uint32_t word,
-                            int c)
-{
-    return ldexp(word >> (9 * c) & 511,
-                 (int)(word >> 27) - 12 + e->header->unit_log2);
-}
-
-static double decode_texel(const struct glint_environment *e, int level, int i,
-                           int c)
-{
-    return decode_rgb9e5(e, ((const uint32_t *)e->texel[level])[i], c);
-}
 
 /* Sets PLACE to the position of direction TOWARD in the octahedron map, each
  * coordinate 0 .. 1. */
@@ -88,7 +76,7 @@ static void interpolate_within_mipmap_level(const struct glint_environment *e,
         for (int c = 0; c < 3; c++)
             rgb[c] +=
                 share * (level < 0 ? decode_rgb9e5(e, e->irradiance[at], c)
-                                   : decode_texel(e, level, at, c));
+                                   : decode_texel(e, level, (size_t)at, c));
     }
 }
 

@@ -10,6 +10,18 @@
 
 enum { ONE_Q30 = 1 << 30 };
 
+enum glint_status scene_read_mesh_text(void *text, const char *name,
+                                       uint8_t **data, size_t *bytes,
+                                       struct glint_error *error)
+{
+    (void)name;
+    (void)error;
+    *data = (uint8_t *)strdup(*(const char *const *)text);
+    assert_non_null(*data);
+    *bytes = strlen((char *)*data);
+    return GLINT_OK;
+}
+
 void scene_begin_header(struct scene_file *s)
 {
     memset(s, 0, sizeof *s - sizeof s->data);

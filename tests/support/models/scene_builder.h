@@ -34,6 +34,12 @@ struct scene_file {
     uint32_t data[SCENE_BYTES / 4];
 };
 
+/* Returns an allocated copy of the mesh text *TEXT, a const char *, whatever
+ * the NAME: a function of struct glint_description_files. */
+enum glint_status scene_read_mesh_text(void *text, const char *name,
+                                       uint8_t **data, size_t *bytes,
+                                       struct glint_error *error);
+
 /* Makes an empty scene, to be drawn onto an image. The camera is at the origin,
  * looks along z, and has a field of view of 90 degrees. A scene unit is 2^16
  * steps; a step is the resolution of baked coordinates. */

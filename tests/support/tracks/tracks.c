@@ -37,9 +37,8 @@ static void set_rotation_quaternion(double x, double y, double z, double angle,
     q[3] = s * z;
 }
 
-/* Sets TO to V rotated by Q if FORTH, otherwise by the inverse of Q. */
-static void rotate_vector(const double q[4], const double v[3], bool forth,
-                          double to[3])
+void track_rotate_vector(const double q[4], const double v[3], bool forth,
+                         double to[3])
 {
     const double s = forth ? 1 : -1;
     const double p[4] = {q[0], s * q[1], s * q[2], s * q[3]};
@@ -159,7 +158,7 @@ static void observe_food_positions(struct track *t, struct track_frame *f)
             square += off[k] * off[k];
         }
         f->food_distance += sqrt(square) / t->options.n_foods;
-        rotate_vector(t->turn, off, false, f->seen[i]);
+        track_rotate_vector(t->turn, off, false, f->seen[i]);
         for (int k = 0; k < 3; k++)
             f->seen[i][k] = round_to_digits(f->seen[i][k], t->options.digits);
     }
@@ -201,14 +200,14 @@ static void compute_true_body_pose(const struct track *t,
 
     for (int k = 0; k < 3; k++)
         off[k] = t->at[k] - t->first_at[k];
-    rotate_vector(t->first_turn, off, false, pose->at);
+    track_rotate_vector(t->first_turn, off, false, pose->at);
     multiply_quaternions(back, t->turn, q);
     for (int k = 0; k < 4; k++)
         pose->turn[k] = q[0] < 0 ? -q[k] : q[k];
     for (int i = 0; i < 3; i++) {
         const double unit[3] = {i == 0, i == 1, i == 2};
 
-        rotate_vector(q, unit, true, axis);
+        track_rotate_vector(q, unit, true, axis);
         for (int k = 0; k < 3; k++)
             pose->row[k][i] = axis[k];
     }
@@ -226,7 +225,7 @@ void track_next_frame(struct track *track, struct track_frame *frame)
         move[t->options.motion](t);
     for (int k = 0; k < 3; k++)
         off[k] = t->at[k] - before_at[k];
-    rotate_vector(before_turn, off, false, frame->step);
+    track_rotate_vector(before_turn, off, false, frame->step);
     for (int k = 1; k < 4; k++)
         before_turn[k] = -before_turn[k];
     multiply_quaternions(before_turn, t->turn, spin);

@@ -60,6 +60,10 @@ void track_begin_motion(struct track *track,
                         const struct track_options *options);
 void track_next_frame(struct track *track, struct track_frame *frame);
 
+/* Sets TO to V rotated by Q if FORTH, otherwise by the inverse of Q. */
+void track_rotate_vector(const double q[4], const double v[3], bool forth,
+                         double to[3]);
+
 /* Writes the whole track as a recording of a body with N_SENSORS sensors of
  * ANGLE_DEG degrees. IS_SECOND: uses the alternative key names. */
 void track_write_recording(const struct track_options *options, bool is_second,

@@ -11,24 +11,12 @@
 
 #include "glint/scene/bake.h"
 #include "glint/scene/model.h"
+#include "support/models/scene_builder.h"
 #include "support/rng.h"
 #include "support/test.h"
 
 static char mesh_text[1 << 18];
-
-static enum glint_status read_mesh_from_text(void *ctx, const char *name,
-                                             uint8_t **data, size_t *bytes,
-                                             struct glint_error *error)
-{
-    (void)ctx;
-    (void)name;
-    (void)error;
-    *bytes = strlen(mesh_text);
-    *data = malloc(*bytes + 1);
-    assert_non_null(*data);
-    memcpy(*data, mesh_text, *bytes);
-    return GLINT_OK;
-}
+static const char *mesh = mesh_text;
 
 static enum glint_status make_texture_picture(void *ctx, const char *name,
                                               struct glint_image *image,
@@ -58,7 +46,7 @@ static enum glint_status bake_scene_text(struct baked *b, const char *text,
                                          struct glint_error *error)
 {
     const struct glint_description_files files = {
-        NULL, read_mesh_from_text, make_texture_picture, NULL, NULL, NULL};
+        &mesh, scene_read_mesh_text, make_texture_picture, NULL, NULL, NULL};
     struct glint_description *scene = malloc(sizeof *scene);
     enum glint_status status;
     const char *reason = "";

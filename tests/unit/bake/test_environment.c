@@ -14,6 +14,7 @@
 #include "bake/environment/sphere.h"
 #include "base/blob.h"
 #include "glint/view.h"
+#include "support/models/texel.h"
 #include "support/rng.h"
 #include "support/test.h"
 
@@ -142,20 +143,6 @@ static struct glint_environment_options make_environment_options(void)
     glint_environment_defaults(&o);
     o.side_log2 = SIDE_LOG2;
     return o;
-}
-
-static double decode_rgb9e5(const struct glint_environment *e, uint32_t word,
-                            int c)
-{
-    return ldexp(word >> (9 * c) & 511,
-                 (int)(word >> 27) - 12 + e->header->unit_log2);
-}
-
-/* Returns channel C of texel I of mipmap level K. */
-static double decode_texel(const struct glint_environment *e, int k, size_t i,
-                           int c)
-{
-    return decode_rgb9e5(e, ((const uint32_t *)e->texel[k])[i], c);
 }
 
 static double compute_uniform_light(const double d[3])

@@ -18,6 +18,7 @@
 #include "support/rng.h"
 #include "support/test.h"
 #include "support/tracks/moving.h"
+#include "support/tracks/tracks.h"
 
 enum {
     WIDTH = MOVING_WIDTH,
@@ -85,17 +86,6 @@ TEST(row_d8_seeking_equals_playing)
 
 /* ------------------------------------------------ detection by brute force */
 
-/* Sets AT to vector V rotated by the unit quaternion Q. */
-static void rotate_vector(const double q[4], const double v[3], double at[3])
-{
-    const double c[3] = {q[2] * v[2] - q[3] * v[1], q[3] * v[0] - q[1] * v[2],
-                         q[1] * v[1] - q[2] * v[0]};
-
-    at[0] = v[0] + 2 * (q[0] * c[0] + q[2] * c[2] - q[3] * c[1]);
-    at[1] = v[1] + 2 * (q[0] * c[1] + q[3] * c[0] - q[1] * c[2]);
-    at[2] = v[2] + 2 * (q[0] * c[2] + q[1] * c[1] - q[2] * c[0]);
-}
-
 /* Returns by which angle, radians, food F (a landmark) of FRAME is inside the
  * detection angle of sensor S. Negative: F is outside. */
 static double compute_detection_margin(const struct glint_motion_frame *frame,
@@ -110,7 +100,7 @@ static double compute_detection_margin(const struct glint_motion_frame *frame,
         length += pow(frame->pose.turn_q14[k], 2);
     for (int k = 0; k < 4; k++)
         q[k] = frame->pose.turn_q14[k] / sqrt(length);
-    rotate_vector(q, axis, to);
+    track_rotate_vector(q, axis, true, to);
     for (int k = 0; k < 3; k++) {
         const double d = ldexp(frame->food[f][k], -24) -
                          ldexp(frame->pose.at[k], -24) - size * to[k];
@@ -483,7 +473,7 @@ TEST(lamps_move_with_the_body)
         moving_draw_frame(d);
         for (int i = 0; i < 4; i++)
             q[i] = ldexp(m->frame.pose.turn_q14[i], -14);
-        rotate_vector(q, y, up);
+        track_rotate_vector(q, y, true, up);
         for (int i = 0; i < 3; i++)
             at[i] = ldexp(m->frame.pose.at[i], -24) + up[i];
         assert_int_equal(glint_scene_lights(d->frame.scene, lamp), 1);

@@ -18,15 +18,8 @@ static struct glint_error error;
 
 static void expect_file_bytes(const char *name, const char *data, size_t bytes)
 {
-    char got[400];
-    FILE *const f = fopen(scratch_make_path(name), "rb");
-    const size_t n = f ? fread(got, 1, sizeof got, f) : 0;
-
-    assert_non_null(f);
-    fclose(f);
+    scratch_expect_bytes(scratch_make_path(name), data, bytes);
     unlink(scratch_make_path(name));
-    assert_int_equal(n, bytes);
-    assert_memory_equal(got, data, bytes);
 }
 
 /* Opens image NAME, adds LIGHT (1 = white) to all pixels, and writes the result

@@ -175,17 +175,6 @@ TEST(converts_rgb_to_ycc)
 
 /* --------------------------------------------------------------------- Y4M */
 
-static void expect_file_bytes(const char *want, size_t bytes)
-{
-    char got[512];
-    const int fd = open(scratch_file, O_RDONLY);
-    const ssize_t n = read(fd, got, sizeof got);
-
-    close(fd);
-    assert_int_equal(n, bytes);
-    assert_memory_equal(got, want, bytes);
-}
-
 TEST(writes_y4m)
 {
     static const char want[] =
@@ -205,7 +194,7 @@ TEST(writes_y4m)
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
     assert_ok(glint_y4m_sink_finish(&y4m, &error));
     assert_ok(glint_y4m_sink_finish(&y4m, &error));
-    expect_file_bytes(want, sizeof want - 1);
+    scratch_expect_bytes(scratch_file, want, sizeof want - 1);
 }
 
 /* Checks that images in a format that Y4M supports are written without a copy,
@@ -226,13 +215,13 @@ TEST(y4m_writes_supported_formats_without_copy)
     assert_null(y4m.mem);
     y4m.sink.close(&y4m.sink);
     y4m.sink.close(&y4m.sink);
-    expect_file_bytes(planes, sizeof planes - 1);
+    scratch_expect_bytes(scratch_file, planes, sizeof planes - 1);
     image = make_image_over_memory(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 30, 1);
     assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
     y4m.sink.close(&y4m.sink);
-    expect_file_bytes(white, sizeof white - 1);
+    scratch_expect_bytes(scratch_file, white, sizeof white - 1);
 }
 
 /* Checks a pipe of 64 KiB from which no program reads: frames are dropped, and
@@ -402,7 +391,7 @@ TEST(v4l2_writes_an_image)
     assert_int_equal(node.set.fmt.pix.priv, V4L2_PIX_FMT_PRIV_MAGIC);
     assert_int_equal(node.parm.parm.output.timeperframe.denominator, 30);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file_bytes("aAb1cBd2", 8);
+    scratch_expect_bytes(scratch_file, "aAb1cBd2", 8);
     assert_int_equal(out.n_frames, 1);
     assert_int_equal(node.n_streaming, 1);
     out.sink.close(&out.sink);
@@ -429,7 +418,7 @@ TEST(v4l2_writes_padded_rows)
     node.size = 100;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file_bytes(want, 18);
+    scratch_expect_bytes(scratch_file, want, 18);
     out.sink.close(&out.sink);
 
     reset_fake_v4l2_node();
@@ -437,7 +426,7 @@ TEST(v4l2_writes_padded_rows)
     image.stride_bytes[0] = 6;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file_bytes("aAb1cBd2", 8);
+    scratch_expect_bytes(scratch_file, "aAb1cBd2", 8);
     out.sink.close(&out.sink);
 
     reset_fake_v4l2_node();
@@ -445,7 +434,7 @@ TEST(v4l2_writes_padded_rows)
     node.stride = 3;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file_bytes("ab\0cd\0A1", 9);
+    scratch_expect_bytes(scratch_file, "ab\0cd\0A1", 9);
     out.sink.close(&out.sink);
 
     reset_fake_v4l2_node(); /* an image whose planes are not contiguous */
@@ -453,7 +442,7 @@ TEST(v4l2_writes_padded_rows)
     image.plane[1] += 2;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
-    expect_file_bytes("abcdA1", 6);
+    scratch_expect_bytes(scratch_file, "abcdA1", 6);
     out.sink.close(&out.sink);
 }
 

@@ -352,18 +352,6 @@ TEST(rejects_invalid_frames)
 
 /* -------------------------------------------------------------- round trips */
 
-static void expect_file_bytes(const char *want, size_t want_bytes)
-{
-    uint8_t *data;
-    size_t bytes;
-
-    assert_ok(glint_input_read_whole_file(&data, &bytes, scratch_file, 1 << 24,
-                                          &error));
-    assert_int_equal(bytes, want_bytes);
-    assert_memory_equal(data, want, bytes);
-    free(data);
-}
-
 /* Checks that copying DATA frame by frame to a file preserves every byte. */
 static void check_copied_stream_is_identical(const char *data, size_t bytes)
 {
@@ -382,7 +370,7 @@ static void check_copied_stream_is_identical(const char *data, size_t bytes)
     assert_int_equal(writer.n_frames, reader.n_frames);
     assert_ok(glint_y4m_writer_commit(&writer, &error));
     glint_y4m_reader_close(&reader);
-    expect_file_bytes(data, bytes);
+    scratch_expect_bytes(scratch_file, data, bytes);
 }
 
 TEST(copies_streams_unchanged)
@@ -722,8 +710,9 @@ TEST(writes_images_without_padding)
     assert_ok(glint_y4m_writer_open(&writer, scratch_file, &header, &error));
     assert_ok(glint_y4m_writer_put(&writer, &frame, "", &error));
     assert_ok(glint_y4m_writer_commit(&writer, &error));
-    expect_file_bytes(BYTES("YUV4MPEG2 W2 H3 F1:1 Ip A1:1 C420jpeg\n"
-                            "FRAME\nefcdabyzYZ"));
+    scratch_expect_bytes(scratch_file,
+                         BYTES("YUV4MPEG2 W2 H3 F1:1 Ip A1:1 C420jpeg\n"
+                               "FRAME\nefcdabyzYZ"));
 }
 
 TEST(full_device_is_an_error)

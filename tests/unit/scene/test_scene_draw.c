@@ -598,11 +598,6 @@ static void set_sun_direction(double x, double y)
         file.light[0].toward_q30[k] = (int32_t)lround(ldexp(to[k], 30));
 }
 
-static double convert_real_to_double(struct glint_real x)
-{
-    return glint_real_value(x);
-}
-
 /* Checks position and power of the lights that the scene passes to the flare
  * against those seen through a pinhole, in double precision. */
 TEST(lights_for_the_lens_match_double_precision)
@@ -633,12 +628,10 @@ TEST(lights_for_the_lens_match_double_precision)
             assert_true(fabs(lamp[k].x_q8 / 256. - WIDTH / 2. - f * x) < .02);
             assert_true(fabs(lamp[k].y_q8 / 256. - HEIGHT / 2. + f * y) < .02);
         }
-        assert_true(fabs(convert_real_to_double(lamp[0].rgb[1]) / power - 1) <
-                    1e-6);
+        assert_true(fabs(glint_real_value(lamp[0].rgb[1]) / power - 1) < 1e-6);
         /* a lamp of power 1 at a distance of 4 units */
         power *= 16 * cosine * cosine / 64;
-        assert_true(fabs(convert_real_to_double(lamp[1].rgb[1]) / power - 1) <
-                    1e-4);
+        assert_true(fabs(glint_real_value(lamp[1].rgb[1]) / power - 1) < 1e-4);
         assert_true(abs(lamp[0].radius_q8 - (int)(256 * f * .05 / cosine)) <=
                     1);
     }

@@ -15,6 +15,7 @@
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
 #include "support/models/drawn_scene.h"
+#include "support/models/scene_builder.h"
 #include "support/models/stone_builder.h"
 #include "support/shuffle.h"
 #include "reference/scenes/twin.h"
@@ -22,8 +23,8 @@
 
 enum { WIDTH = 160, HEIGHT = 90, PIXELS = WIDTH * HEIGHT };
 
-/* Parameters of the medium that build_medium_by_name() builds, and the mesh
- * that read_mesh_of_test() returns. */
+/* Parameters of the medium that build_medium_by_name() builds, and the mesh of
+ * the scene. */
 static int side = 64, kernel = 15;
 static double albedo = .9;
 static const char *mesh_text;
@@ -44,20 +45,6 @@ static const char cube_text[] =
 static const char quad_text[] = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n"
                                 "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
                                 "f 1/1 2/2 3/3 4/4\n";
-
-static enum glint_status read_mesh_of_test(void *ctx, const char *name,
-                                           uint8_t **data, size_t *bytes,
-                                           struct glint_error *error)
-{
-    (void)ctx;
-    (void)name;
-    (void)error;
-    *bytes = strlen(mesh_text);
-    *data = malloc(*bytes + 1);
-    assert_non_null(*data);
-    memcpy(*data, mesh_text, *bytes);
-    return GLINT_OK;
-}
 
 /* Builds the translucent medium of a scene text, with the parameters above.
  * NAME is the file name in the scene text. */
@@ -105,7 +92,8 @@ static enum glint_status bake_sky(void *ctx, const char *name, uint8_t **data,
 }
 
 static const struct glint_description_files files = {
-    NULL, read_mesh_of_test, NULL, bake_sky, NULL, build_medium_by_name};
+    &mesh_text, scene_read_mesh_text, NULL, bake_sky,
+    NULL,       build_medium_by_name};
 
 static enum glint_status parse_scene_text(const char *text,
                                           struct glint_description *s,

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "glint/view.h"
+#include "support/models/texel.h"
 #include "support/models/ward_ball.h"
 #include "support/test.h"
 
@@ -125,15 +126,6 @@ TEST(furnace_albedo_is_1)
 }
 
 /* --------------------------------------------- lookups in double precision */
-
-static double decode_texel(const struct glint_environment *e, int k, size_t i,
-                           int c)
-{
-    const uint32_t word = ((const uint32_t *)e->texel[k])[i];
-
-    return ldexp(word >> (9 * c) & 511,
-                 (int)(word >> 27) - 12 + e->header->unit_log2);
-}
 
 static double look_up_level_in_double(const struct glint_environment *e, int k,
                                       const double toward[3], int c)
