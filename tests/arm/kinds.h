@@ -14,26 +14,15 @@
 #include "glint/image.h"
 #include "glint/kernels.h"
 #include "linux/sets.h"
+#include "support/hash.h"
 #include "support/rng.h"
-
-#define KINDS_HASH_START UINT64_C(14695981039346656037)
-
-static inline uint64_t kinds_hash_bytes(uint64_t h, const void *data,
-                                        size_t bytes)
-{
-    const uint8_t *p = data;
-
-    for (size_t i = 0; i < bytes; i++) /* FNV-1a */
-        h = (h ^ p[i]) * UINT64_C(1099511628211);
-    return h;
-}
 
 static inline uint64_t kinds_hash_number(uint64_t h, int64_t x)
 {
     for (int i = 0; i < 8; i++) {
         const uint8_t byte = (uint8_t)((uint64_t)x >> 8 * i);
 
-        h = kinds_hash_bytes(h, &byte, 1);
+        h = hash_bytes(h, &byte, 1);
     }
     return h;
 }

@@ -223,9 +223,9 @@ static int hash_random_frame(uint64_t *h)
     if (!mem)
         exit(1);
     kinds_fill_image(&image, mem, bytes, &seed);
-    before = kinds_hash_bytes(KINDS_HASH_START, mem, bytes);
+    before = hash_bytes(HASH_START, mem, bytes);
     draw_random_flare(&c, &image);
-    after = kinds_hash_bytes(KINDS_HASH_START, mem, bytes);
+    after = hash_bytes(HASH_START, mem, bytes);
     *h = hash_light_image(kinds_hash_number(*h, (int64_t)(after >> 1)), &image);
     free(mem);
     return before != after;
@@ -252,7 +252,7 @@ static void open_model(const char *path)
 int main(int argc, char **argv)
 {
     const int n = argc > 3 ? atoi(argv[2]) : 0;
-    uint64_t h = KINDS_HASH_START;
+    uint64_t h = HASH_START;
     int lit = 0;
 
     if (n < 1 || argc - 3 > MAX_MODELS) {

@@ -138,11 +138,11 @@ static int draw_and_hash_image(uint64_t *h)
         glint_scene_init(&scene, &c, m, mem, room) != GLINT_OK)
         exit(1);
     kinds_fill_image(&image, pixels, bytes, &seed);
-    before = kinds_hash_bytes(KINDS_HASH_START, pixels, bytes);
+    before = hash_bytes(HASH_START, pixels, bytes);
     move_objects(scene, m);
     glint_scene_begin(scene, &stats);
     glint_scene_draw(scene, &image);
-    after = kinds_hash_bytes(KINDS_HASH_START, pixels, bytes);
+    after = hash_bytes(HASH_START, pixels, bytes);
     *h = hash_scene_lights(kinds_hash_number(*h, (int64_t)(after >> 1)), scene,
                            c.width);
     *h = kinds_hash_number(*h, stats.need_refs);
@@ -170,7 +170,7 @@ static void open_scene(const char *path)
 int main(int argc, char **argv)
 {
     const int n = argc > 3 ? atoi(argv[2]) : 0;
-    uint64_t h = KINDS_HASH_START;
+    uint64_t h = HASH_START;
     int changed = 0;
 
     if (n < 1 || argc - 3 > MAX_SCENES) {

@@ -13,6 +13,7 @@
 #include "glint/pool.h"
 #include "linux/sets.h"
 #include "support/ghosts.h"
+#include "support/hash.h"
 #include "support/shuffle.h"
 #include "support/test.h"
 
@@ -246,16 +247,6 @@ TEST(drawing_into_null_does_all_work)
 
 /* ------------------------------------------------------------------ golden */
 
-static uint64_t hash_bytes(const void *data, size_t bytes)
-{
-    const uint8_t *p = data;
-    uint64_t h = UINT64_C(14695981039346656037); /* FNV-1a */
-
-    for (size_t i = 0; i < bytes; i++)
-        h = (h ^ p[i]) * UINT64_C(1099511628211);
-    return h;
-}
-
 static void check_golden_hash(FILE *file, bool update, const char *name,
                               struct glint_flare_config c)
 {
@@ -263,7 +254,7 @@ static void check_golden_hash(FILE *file, bool update, const char *name,
     uint64_t h;
 
     draw_scene(c, pixels);
-    h = hash_bytes(pixels, sizeof pixels);
+    h = hash_bytes(HASH_START, pixels, sizeof pixels);
     snprintf(expected, sizeof expected, "%s %08lx%08lx\n", name,
              (unsigned long)(h >> 32), (unsigned long)(h & 0xffffffff));
     if (update) {

@@ -12,21 +12,13 @@
 #include <unistd.h>
 
 #include "support/extreme.h"
+#include "support/hash.h"
 #include "support/stage.h"
 #include "support/test.h"
 
 enum { W = 80, H = 54, N = 3 * W * H, ROUND = 200 };
 
 static struct stage heliar;
-
-static uint64_t hash_image(const uint8_t *codes)
-{
-    uint64_t hash = UINT64_C(0xcbf29ce484222325);
-
-    for (int i = 0; i < N; i++)
-        hash = (hash ^ codes[i]) * UINT64_C(0x100000001b3);
-    return hash;
-}
 
 /* Returns the resident memory of this process, KiB, or 0 if unknown. */
 static long read_resident_kib(void)
@@ -74,7 +66,7 @@ TEST(repeated_frames_are_identical)
         memset(codes, 30, sizeof codes);
         assert_true(stage_draw_codes(&heliar, lamp, set_lamps_of_frame(k, lamp),
                                      codes));
-        hash = hash_image(codes);
+        hash = hash_bytes(HASH_START, codes, N);
         if (k < ROUND)
             first[k] = hash;
         differ += hash != first[k % ROUND];

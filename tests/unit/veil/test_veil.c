@@ -13,6 +13,7 @@
 
 #include "glint/flare.h"
 #include "glint/kernels.h"
+#include "support/hash.h"
 #include "support/rng.h"
 #include "support/stars/bare_flare.h"
 #include "support/test.h"
@@ -362,7 +363,7 @@ TEST(veil_is_bit_identical)
 {
     const uint64_t want = UINT64_C(0x8c34ca68742ff06b);
     static uint8_t first[12 * 130 * 75], other[12 * 130 * 75];
-    uint64_t h = UINT64_C(14695981039346656037);
+    uint64_t h = HASH_START;
 
     for (int f = GLINT_RGB24; f <= GLINT_RGB565; f++) {
         const enum glint_pixel_format format = (enum glint_pixel_format)f;
@@ -375,8 +376,7 @@ TEST(veil_is_bit_identical)
                                       format, other);
             assert_memory_equal(first, other, bytes);
         }
-        for (size_t i = 0; i < bytes; i++)
-            h = (h ^ first[i]) * UINT64_C(1099511628211); /* FNV-1a */
+        h = hash_bytes(h, first, bytes);
     }
     print_message("hash %08lx%08lx\n", (unsigned long)(h >> 32),
                   (unsigned long)(h & 0xffffffff));
