@@ -62,6 +62,16 @@ finder_config_without_filters(const struct glint_image *image, int low,
         .max_share_q15 = 1 << 15};
 }
 
+struct finder_case finder_open_case(enum glint_pixel_format format, int width,
+                                    int height, int low, int high)
+{
+    const struct glint_image image =
+        canvas_allocate_image(format, width, height);
+
+    return (struct finder_case){
+        image, finder_config_without_filters(&image, low, high)};
+}
+
 struct glint_lamp_finder_config
 finder_default_config(const struct glint_image *image)
 {

@@ -36,6 +36,16 @@ struct glint_lamp_finder_config
 finder_config_without_filters(const struct glint_image *image, int low,
                               int high);
 
+struct finder_case {
+    struct glint_image image;
+    struct glint_lamp_finder_config cfg;
+};
+
+/* Returns a black image of FORMAT and finder_config_without_filters() for it.
+ * The caller frees the image, which starts at plane[0]. */
+struct finder_case finder_open_case(enum glint_pixel_format format, int width,
+                                    int height, int low, int high);
+
 struct glint_lamp_finder_config
 finder_default_config(const struct glint_image *image);
 

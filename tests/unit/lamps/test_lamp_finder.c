@@ -100,13 +100,11 @@ TEST(defaults_are_valid_for_every_size)
 
 TEST(finds_a_lamp_in_an_image_of_one_pixel)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 1, 1);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_RGB24, 1, 1, 200, 250);
 
-    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
-    canvas_set_rgb_pixel(&image, 0, 0, 255, 255, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 0);
+    canvas_set_rgb_pixel(&f.image, 0, 0, 255, 255, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_int_equal(finder_spot[0].x_q8, 128);
     assert_int_equal(finder_spot[0].y_q8, 128);
     assert_int_equal(finder_spot[0].size_q8, 0);
@@ -115,24 +113,22 @@ TEST(finds_a_lamp_in_an_image_of_one_pixel)
     assert_int_equal(finder_spot[0].flux_q16, 65536);
     for (int i = 0; i < 3; i++)
         assert_int_equal(finder_spot[0].rgb_q15[i], 32768);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks the moments of a white pixel and three adjacent pixels of sRGB code
  * 188 (linear 0.5029) against values computed by hand. */
 TEST(moments_match_hand_computation)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 16, 8);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 180, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 16, 8, 180, 250);
 
-    canvas_set_grey_pixel(&image, 10, 5, 188);
-    canvas_set_grey_pixel(&image, 11, 5, 255);
-    canvas_set_grey_pixel(&image, 12, 5, 188);
-    canvas_set_grey_pixel(&image, 11, 6, 188);
+    canvas_set_grey_pixel(&f.image, 10, 5, 188);
+    canvas_set_grey_pixel(&f.image, 11, 5, 255);
+    canvas_set_grey_pixel(&f.image, 12, 5, 188);
+    canvas_set_grey_pixel(&f.image, 11, 6, 188);
     /* a pixel below the upper threshold is not a seed */
-    canvas_set_grey_pixel(&image, 0, 0, 188);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    canvas_set_grey_pixel(&f.image, 0, 0, 188);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_int_equal(finder_spot[0].area, 4);
     assert_int_equal(finder_spot[0].n_clipped, 1);
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 2.5087) < 1e-3);
@@ -142,21 +138,19 @@ TEST(moments_match_hand_computation)
     /* Variance along x: 2 * 0.5029 / 2.5087; along y: 0.2005 - 0.2005^2. */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(0.4009 + 0.1603)) <
                 1.0 / 128);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(finds_discs_within_a_sixteenth_pixel)
 {
     for (int round = 0; round < 100; round++) {
-        struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 48);
-        struct glint_lamp_finder_config cfg =
-            finder_config_without_filters(&image, 2, 250);
+        struct finder_case f = finder_open_case(GLINT_GREY, 64, 48, 2, 250);
         const double radius = 1.5 + rng_int_below(&finder_seed, 600) / 100.0;
         const double cx = 20 + rng_int_below(&finder_seed, 2000) / 100.0;
         const double cy = 20 + rng_int_below(&finder_seed, 1000) / 100.0;
 
-        canvas_draw_disc(&image, cx, cy, radius, 1);
-        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        canvas_draw_disc(&f.image, cx, cy, radius, 1);
+        assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
         assert_true(fabs(finder_centroid_x_of_spot(0) - cx) < 1.0 / 16);
         assert_true(fabs(finder_centroid_y_of_spot(0) - cy) < 1.0 / 16);
         assert_true(fabs(finder_spot[0].size_q8 / 256.0 - radius / sqrt(2)) <
@@ -164,7 +158,7 @@ TEST(finds_discs_within_a_sixteenth_pixel)
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 -
                          3.14159265 * radius * radius) <
                     0.02 * 3.14159265 * radius * radius);
-        free(image.plane[0]);
+        free(f.image.plane[0]);
     }
 }
 
@@ -242,21 +236,19 @@ TEST(noise_does_not_move_a_light)
  * position changes by less than 0.1 pixels. */
 TEST(sparkle_does_not_move_a_light)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 150, 200);
+    struct finder_case f = finder_open_case(GLINT_GREY, 64, 64, 150, 200);
     double furthest = 0;
 
     for (int k = 0; k < 64; k++) {
-        canvas_fill_grey_box(&image, 20, 30, 28, 38, 200);
-        canvas_set_grey_pixel(&image, 20 + k % 8, 30 + k / 8, 255);
-        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        canvas_fill_grey_box(&f.image, 20, 30, 28, 38, 200);
+        canvas_set_grey_pixel(&f.image, 20 + k % 8, 30 + k / 8, 255);
+        assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
         furthest = fmax(furthest, hypot(finder_centroid_x_of_spot(0) - 24,
                                         finder_centroid_y_of_spot(0) - 34));
     }
     print_message("sparkle in 8 x 8: %.3f px at most\n", furthest);
     assert_true(furthest < 0.1);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks the darkest lamp that can be found, in which one hot pixel is 40 times
@@ -264,38 +256,34 @@ TEST(sparkle_does_not_move_a_light)
  * by less than a pixel. */
 TEST(hot_pixel_hardly_moves_a_dim_lamp)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 64, 64);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 40, 43);
+    struct finder_case f = finder_open_case(GLINT_GREY, 64, 64, 40, 43);
 
-    canvas_fill_grey_box(&image, 20, 30, 28, 38, 43); /* linear 0.0242 */
-    canvas_set_grey_pixel(&image, 24, 34, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    canvas_fill_grey_box(&f.image, 20, 30, 28, 38, 43); /* linear 0.0242 */
+    canvas_set_grey_pixel(&f.image, 24, 34, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_true(hypot(finder_centroid_x_of_spot(0) - 24,
                       finder_centroid_y_of_spot(0) - 34) < 1);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(repeated_search_gives_the_same_lamps)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 300, 200);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_RGB24, 300, 200, 200, 250);
     static struct glint_spot first[FINDER_SPOTS];
     int n, dropped;
 
-    cfg.merge_q15 = 300;
+    f.cfg.merge_q15 = 300;
     for (int i = 0; i < 3 * 300 * 200; i++)
-        image.plane[0][i] = (uint8_t)rng_int_below(&finder_seed, 256);
-    n = finder_find_at_most_n_lamps(&cfg, &image, 100, &dropped);
+        f.image.plane[0][i] = (uint8_t)rng_int_below(&finder_seed, 256);
+    n = finder_find_at_most_n_lamps(&f.cfg, &f.image, 100, &dropped);
     memcpy(first, finder_spot, sizeof first);
     for (int round = 0; round < 3; round++) {
         assert_int_equal(
-            finder_find_at_most_n_lamps(&cfg, &image, 100, &dropped), n);
+            finder_find_at_most_n_lamps(&f.cfg, &f.image, 100, &dropped), n);
         assert_memory_equal(finder_spot, first,
                             (size_t)n * sizeof *finder_spot);
     }
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* --------------------------------------------- lamps and other bright areas */
@@ -324,12 +312,10 @@ TEST(black_and_white_images_have_no_lamp)
 TEST(large_white_image_does_not_overflow)
 {
     enum { SIDE = 8192 };
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, SIDE, SIDE);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, SIDE, SIDE, 200, 250);
 
-    memset(image.plane[0], 255, (size_t)SIDE * SIDE);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    memset(f.image.plane[0], 255, (size_t)SIDE * SIDE);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_int_equal(finder_spot[0].x_q8, 4096 * 256);
     assert_int_equal(finder_spot[0].y_q8, 4096 * 256);
     assert_int_equal(finder_spot[0].area, 1 << 26);
@@ -337,7 +323,7 @@ TEST(large_white_image_does_not_overflow)
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - 8192 / sqrt(6)) <
                 1.0 / 128);
     assert_int_equal(finder_spot[0].rgb_q15[2], 32768);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 static struct glint_region make_white_region(int x0, int y0, int x1, int y1)
@@ -420,37 +406,33 @@ TEST(finds_lamps_at_both_ends_of_long_images)
 
 TEST(sky_is_not_a_lamp)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 100);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 100, 100, 200, 250);
 
     /* max area: 32768 / 10 of the image, 999.8 pixels, rounded up */
-    cfg.max_share_q15 = 32768 / 10;
-    canvas_fill_grey_box(&image, 0, 0, 100, 10, 255);
-    canvas_fill_grey_box(&image, 40, 50, 44, 54, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
-    canvas_set_grey_pixel(&image, 7, 10, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    f.cfg.max_share_q15 = 32768 / 10;
+    canvas_fill_grey_box(&f.image, 0, 0, 100, 10, 255);
+    canvas_fill_grey_box(&f.image, 40, 50, 44, 54, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 2);
+    canvas_set_grey_pixel(&f.image, 7, 10, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_int_equal(finder_spot[0].area, 16);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks that a lit surface is not a lamp if fewer than one in 8 of its pixels
  * reach the upper threshold. In the glow of a lamp at least one in 8 does. */
 TEST(surface_with_few_bright_pixels_is_not_a_lamp)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 100);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 100, 100, 200, 250);
 
-    canvas_fill_grey_box(&image, 10, 10, 42, 42, 240); /* 1024 pixels */
+    canvas_fill_grey_box(&f.image, 10, 10, 42, 42, 240); /* 1024 pixels */
     /* Only 128 pixels of the box are bright. */
-    canvas_fill_grey_box(&image, 10, 10, 42, 14, 255);
-    canvas_set_grey_pixel(&image, 41, 13, 240);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
-    canvas_set_grey_pixel(&image, 41, 13, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-    free(image.plane[0]);
+    canvas_fill_grey_box(&f.image, 10, 10, 42, 14, 255);
+    canvas_set_grey_pixel(&f.image, 41, 13, 240);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 0);
+    canvas_set_grey_pixel(&f.image, 41, 13, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
+    free(f.image.plane[0]);
 }
 
 /* Checks a core with three rings around it. The first, bright ring belongs to
@@ -458,9 +440,7 @@ TEST(surface_with_few_bright_pixels_is_not_a_lamp)
  * lamp, as no pixel of it is above the upper threshold. */
 TEST(ring_around_a_core_belongs_to_the_lamp)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 60, 60, 200, 250);
     int area = 0;
 
     for (int y = 0; y < 60; y++)
@@ -468,16 +448,16 @@ TEST(ring_around_a_core_belongs_to_the_lamp)
             const double r = hypot(x + 0.5 - 30, y + 0.5 - 30);
 
             area += r < 10;
-            canvas_set_grey_pixel(&image, x, y,
+            canvas_set_grey_pixel(&f.image, x, y,
                                   r < 5    ? 250
                                   : r < 10 ? 200
                                   : r < 15 ? 199
                                   : r < 20 ? 249
                                            : 0);
         }
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_int_equal(finder_spot[0].area, area);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Requests faint regions, too. Checks that the lamps do not change, and that
@@ -488,26 +468,24 @@ TEST(faint_regions_come_last)
     int most_faint = 0;
 
     for (int round = 0; round < 50; round++) {
-        struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 256);
-        struct glint_lamp_finder_config cfg =
-            finder_config_without_filters(&image, 100, 200);
+        struct finder_case f = finder_open_case(GLINT_GREY, 256, 256, 100, 200);
         int n_lights, n, max = round % 2 ? FINDER_SPOTS : 20, dropped;
 
-        cfg.min_area = 4;
-        cfg.merge_q15 = 6 * 32768 / 256;
+        f.cfg.min_area = 4;
+        f.cfg.merge_q15 = 6 * 32768 / 256;
         for (int i = 0; i < 200; i++) {
             const int x = rng_int_below(&finder_seed, 250),
                       y = rng_int_below(&finder_seed, 250);
 
-            canvas_fill_grey_box(&image, x, y,
+            canvas_fill_grey_box(&f.image, x, y,
                                  x + 1 + rng_int_below(&finder_seed, 4),
                                  y + 1 + rng_int_below(&finder_seed, 4),
                                  100 + rng_int_below(&finder_seed, 156));
         }
-        n_lights = finder_find_at_most_n_lamps(&cfg, &image, max, &dropped);
+        n_lights = finder_find_at_most_n_lamps(&f.cfg, &f.image, max, &dropped);
         memcpy(light, finder_spot, sizeof light);
-        cfg.keep_faint = 1;
-        n = finder_find_at_most_n_lamps(&cfg, &image, max, &dropped);
+        f.cfg.keep_faint = 1;
+        n = finder_find_at_most_n_lamps(&f.cfg, &f.image, max, &dropped);
         assert_in_range(n, n_lights, max);
         assert_memory_equal(light, finder_spot,
                             (size_t)n_lights * sizeof *finder_spot);
@@ -521,7 +499,7 @@ TEST(faint_regions_come_last)
                         finder_spot[i].flux_q16 <= finder_spot[i - 1].flux_q16);
         }
         most_faint = n - n_lights > most_faint ? n - n_lights : most_faint;
-        free(image.plane[0]);
+        free(f.image.plane[0]);
     }
     assert_true(most_faint > 20);
 }
@@ -531,29 +509,27 @@ TEST(faint_regions_come_last)
 TEST(sums_of_a_large_region_match_doubles)
 {
     for (int round = 0; round < 20; round++) {
-        struct glint_image image = canvas_allocate_image(GLINT_GREY, 320, 200);
-        struct glint_lamp_finder_config cfg =
-            finder_config_without_filters(&image, 1, 1);
+        struct finder_case f = finder_open_case(GLINT_GREY, 320, 200, 1, 1);
         double flux = 0, x_sum = 0, y_sum = 0, r2 = 0;
 
         for (int i = 0; i < 320 * 200; i++)
-            image.plane[0][i] =
+            f.image.plane[0][i] =
                 (uint8_t)(100 + rng_int_below(&finder_seed, 156));
         for (int i = 0; i < 30; i++) {
             const int x = rng_int_below(&finder_seed, 250),
                       y = rng_int_below(&finder_seed, 150);
 
-            canvas_fill_grey_box(&image, x, y, x + 70, y + 50,
+            canvas_fill_grey_box(&f.image, x, y, x + 70, y + 50,
                                  rng_int_below(&finder_seed, 2) ? 255 : 40);
         }
         for (int i = 0; i < 320 * 200; i++) {
-            const double w = canvas_decode_srgb(image.plane[0][i]);
+            const double w = canvas_decode_srgb(f.image.plane[0][i]);
             const double x = i % 320 + 0.5, y = i / 320 + 0.5;
 
             flux += w, x_sum += w * x, y_sum += w * y;
             r2 += w * (x * x + y * y);
         }
-        assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+        assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
         assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 / flux - 1) <
                     1e-4);
         assert_true(fabs(finder_centroid_x_of_spot(0) - x_sum / flux) < 0.01);
@@ -561,58 +537,52 @@ TEST(sums_of_a_large_region_match_doubles)
         assert_true(fabs(finder_spot[0].size_q8 / 256.0 -
                          sqrt(r2 / flux - pow(x_sum / flux, 2) -
                               pow(y_sum / flux, 2))) < 0.02);
-        free(image.plane[0]);
+        free(f.image.plane[0]);
     }
 }
 
 TEST(small_regions_are_noise)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 60, 60);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 60, 60, 200, 250);
 
-    cfg.min_area = 5;
-    canvas_fill_grey_box(&image, 10, 10, 12, 12, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 0);
+    f.cfg.min_area = 5;
+    canvas_fill_grey_box(&f.image, 10, 10, 12, 12, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 0);
     /* a fifth pixel at a corner of the square of four */
-    canvas_set_grey_pixel(&image, 12, 12, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
-    free(image.plane[0]);
+    canvas_set_grey_pixel(&f.image, 12, 12, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
+    free(f.image.plane[0]);
 }
 
 /* ----------------------------------------------------------- several lights */
 
 TEST(lamps_are_sorted_by_flux)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 60);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 100, 60, 100, 250);
 
-    canvas_draw_disc(&image, 20.5, 20.5, 4, 1);
-    canvas_draw_disc(&image, 70.5, 40.5, 6, 1);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
+    canvas_draw_disc(&f.image, 20.5, 20.5, 4, 1);
+    canvas_draw_disc(&f.image, 70.5, 40.5, 6, 1);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 2);
     assert_true(hypot(finder_centroid_x_of_spot(0) - 70.5,
                       finder_centroid_y_of_spot(0) - 40.5) < 1.0 / 16);
     assert_true(hypot(finder_centroid_x_of_spot(1) - 20.5,
                       finder_centroid_y_of_spot(1) - 20.5) < 1.0 / 16);
     assert_true(finder_spot[0].flux_q16 > finder_spot[1].flux_q16);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(ties_are_sorted_by_position)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 100, 60);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 100, 60, 100, 250);
 
-    canvas_fill_grey_box(&image, 50, 20, 52, 22, 255);
-    canvas_fill_grey_box(&image, 80, 10, 82, 12, 255);
-    canvas_fill_grey_box(&image, 10, 20, 12, 22, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 3);
+    canvas_fill_grey_box(&f.image, 50, 20, 52, 22, 255);
+    canvas_fill_grey_box(&f.image, 80, 10, 82, 12, 255);
+    canvas_fill_grey_box(&f.image, 10, 20, 12, 22, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 3);
     assert_true(finder_centroid_x_of_spot(0) == 81 &&
                 finder_centroid_x_of_spot(1) == 11 &&
                 finder_centroid_x_of_spot(2) == 51);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks that regions of nine and of three white pixels, 4 pixels apart, are
@@ -620,17 +590,15 @@ TEST(ties_are_sorted_by_position)
  * region. */
 TEST(near_regions_are_merged)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 128, 64);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 128, 64, 100, 250);
 
-    canvas_fill_grey_box(&image, 20, 20, 23, 23, 255);
-    canvas_fill_grey_box(&image, 25, 20, 26, 23, 255);
-    cfg.merge_q15 = 4 * 32768 / 128;
+    canvas_fill_grey_box(&f.image, 20, 20, 23, 23, 255);
+    canvas_fill_grey_box(&f.image, 25, 20, 26, 23, 255);
+    f.cfg.merge_q15 = 4 * 32768 / 128;
     /* a merge distance of less than 4 pixels merges nothing */
-    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
-    cfg.merge_q15 = 5 * 32768 / 128;
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 2);
+    f.cfg.merge_q15 = 5 * 32768 / 128;
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_true(finder_centroid_x_of_spot(0) == 22.5 &&
                 finder_centroid_y_of_spot(0) == 21.5);
     assert_int_equal(finder_spot[0].area, 12);
@@ -639,23 +607,21 @@ TEST(near_regions_are_merged)
      * x, and 2 / 3 along y */
     assert_true(fabs(finder_spot[0].size_q8 / 256.0 - sqrt(3.5 + 0.6667)) <
                 0.01);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(merged_regions_keep_the_merge_distance)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 256);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 256, 256, 100, 250);
     int n, area = 0;
 
-    cfg.merge_q15 = 12 * 32768 / 256;
+    f.cfg.merge_q15 = 12 * 32768 / 256;
     for (int i = 0; i < 1000; i++)
-        canvas_set_grey_pixel(&image, rng_int_below(&finder_seed, 256),
+        canvas_set_grey_pixel(&f.image, rng_int_below(&finder_seed, 256),
                               rng_int_below(&finder_seed, 256), 255);
     for (int i = 0; i < 256 * 256; i++)
-        area += image.plane[0][i] > 0;
-    n = finder_find_lamps(&cfg, &image);
+        area += f.image.plane[0][i] > 0;
+    n = finder_find_lamps(&f.cfg, &f.image);
     for (int i = 0; i < n; i++) {
         area -= finder_spot[i].area;
         for (int j = 0; j < i; j++)
@@ -665,76 +631,72 @@ TEST(merged_regions_keep_the_merge_distance)
                                   finder_centroid_y_of_spot(j)) > 11.99);
     }
     assert_int_equal(area, 0);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks a limit of two lights for an image of four: the third, near the first,
  * is merged with it; the fourth, far from all, is dropped. */
 TEST(limit_keeps_the_brightest)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 64);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 256, 64, 100, 250);
     int dropped;
 
-    cfg.merge_q15 = 4 * 32768 / 256;
-    canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
-    canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
+    f.cfg.merge_q15 = 4 * 32768 / 256;
+    canvas_fill_grey_box(&f.image, 20, 20, 26, 26, 255);   /* 36 px */
+    canvas_fill_grey_box(&f.image, 100, 20, 105, 25, 255); /* 25 px */
     /* This region has 12 pixels and is 13 pixels from the others. */
-    canvas_fill_grey_box(&image, 35, 20, 37, 26, 255);
-    canvas_fill_grey_box(&image, 200, 20, 202, 22, 255); /* 4 px */
-    assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 2, &dropped), 2);
+    canvas_fill_grey_box(&f.image, 35, 20, 37, 26, 255);
+    canvas_fill_grey_box(&f.image, 200, 20, 202, 22, 255); /* 4 px */
+    assert_int_equal(finder_find_at_most_n_lamps(&f.cfg, &f.image, 2, &dropped),
+                     2);
     assert_int_equal(dropped, 1);
     assert_int_equal(finder_spot[0].area, 48);
     assert_true(finder_centroid_x_of_spot(0) == 23 + 13 * 12 / 48.0);
     assert_int_equal(finder_spot[1].area, 25);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(merging_can_change_the_order)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 64);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 256, 64, 100, 250);
     int dropped;
 
-    cfg.merge_q15 = 4 * 32768 / 256;
-    canvas_fill_grey_box(&image, 20, 20, 26, 26, 255);   /* 36 px */
-    canvas_fill_grey_box(&image, 100, 20, 105, 25, 255); /* 25 px */
-    canvas_fill_grey_box(&image, 110, 20, 114, 25, 255); /* 20 px */
-    assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 2, &dropped), 2);
+    f.cfg.merge_q15 = 4 * 32768 / 256;
+    canvas_fill_grey_box(&f.image, 20, 20, 26, 26, 255);   /* 36 px */
+    canvas_fill_grey_box(&f.image, 100, 20, 105, 25, 255); /* 25 px */
+    canvas_fill_grey_box(&f.image, 110, 20, 114, 25, 255); /* 20 px */
+    assert_int_equal(finder_find_at_most_n_lamps(&f.cfg, &f.image, 2, &dropped),
+                     2);
     assert_int_equal(dropped, 0);
     assert_int_equal(finder_spot[0].area, 45);
     assert_int_equal(finder_spot[1].area, 36);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks an image of 4096 lights: the finder stores the 2048 brightest and
  * returns 1024. */
 TEST(stores_the_brightest_of_4096_lights)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 256, 256);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 100, 150);
+    struct finder_case f = finder_open_case(GLINT_GREY, 256, 256, 100, 150);
     int dropped, bright = 0;
 
     for (int y = 0; y < 256; y += 4)
         for (int x = 0; x < 256; x += 4)
-            canvas_set_grey_pixel(&image, x, y,
+            canvas_set_grey_pixel(&f.image, x, y,
                                   150 + rng_int_below(&finder_seed, 106));
-    assert_int_equal(finder_find_at_most_n_lamps(&cfg, &image, 1024, &dropped),
-                     1024);
+    assert_int_equal(
+        finder_find_at_most_n_lamps(&f.cfg, &f.image, 1024, &dropped), 1024);
     assert_int_equal(dropped, 4096 - 1024);
     for (int i = 1; i < 1024; i++)
         assert_true(finder_spot[i].flux_q16 <= finder_spot[i - 1].flux_q16);
     for (int y = 0; y < 256; y += 4)
         for (int x = 0; x < 256; x += 4) {
             const int last =
-                canvas_read_grey_pixel(&image, finder_spot[1023].x_q8 >> 8,
+                canvas_read_grey_pixel(&f.image, finder_spot[1023].x_q8 >> 8,
                                        finder_spot[1023].y_q8 >> 8);
 
-            bright += canvas_read_grey_pixel(&image, x, y) > last;
+            bright += canvas_read_grey_pixel(&f.image, x, y) > last;
         }
     assert_true(bright < 1024);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }

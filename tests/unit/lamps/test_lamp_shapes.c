@@ -125,27 +125,26 @@ static int clear_and_measure_region(const struct glint_image *image, int x,
 
 static void check_regions_by_flood_fill(int width, int height, int percent)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, width, height);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 250, 250);
+    struct finder_case f =
+        finder_open_case(GLINT_GREY, width, height, 250, 250);
     int of_area[64 * 64 + 1] = {0};
     int n, regions = 0;
 
     for (int i = 0; i < width * height; i++)
-        image.plane[0][i] =
+        f.image.plane[0][i] =
             rng_int_below(&finder_seed, 100) < percent ? 255 : 0;
-    n = finder_find_lamps(&cfg, &image);
+    n = finder_find_lamps(&f.cfg, &f.image);
     for (int i = 0; i < n; i++)
         of_area[finder_spot[i].area]--;
     for (int i = 0; i < width * height; i++)
-        if (image.plane[0][i]) {
-            of_area[clear_and_measure_region(&image, i % width, i / width)]++;
+        if (f.image.plane[0][i]) {
+            of_area[clear_and_measure_region(&f.image, i % width, i / width)]++;
             regions++;
         }
     assert_int_equal(regions, n);
     for (int i = 0; i <= 64 * 64; i++)
         assert_int_equal(of_area[i], 0);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(random_regions_match_flood_fill)
@@ -181,49 +180,43 @@ static void fill_rgb_box(const struct glint_image *image, int x0, int y0,
  * are (0.8714, 0.5776, 0.1878) in linear light, luminance 0.6119. */
 TEST(unclipped_lamp_has_its_colour)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 150, 200);
+    struct finder_case f = finder_open_case(GLINT_RGB24, 40, 40, 150, 200);
 
-    fill_rgb_box(&image, 10, 10, 20, 20, 240, 200, 120);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    fill_rgb_box(&f.image, 10, 10, 20, 20, 240, 200, 120);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_true(fabs((double)finder_spot[0].flux_q16 / 65536 - 61.19) < 0.05);
     assert_spot_colour(0, 1.4241, 0.9440, 0.3069);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks that a core clipped to white gets the colour of its rim; without a rim
  * it is white. */
 TEST(clipped_core_gets_the_colour_of_its_rim)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 60, 40);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 150, 200);
+    struct finder_case f = finder_open_case(GLINT_RGB24, 60, 40, 150, 200);
 
-    fill_rgb_box(&image, 9, 9, 21, 21, 240, 200, 120);
-    fill_rgb_box(&image, 10, 10, 20, 20, 255, 255, 255);
-    fill_rgb_box(&image, 30, 10, 39, 19, 255, 255, 255);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 2);
+    fill_rgb_box(&f.image, 9, 9, 21, 21, 240, 200, 120);
+    fill_rgb_box(&f.image, 10, 10, 20, 20, 255, 255, 255);
+    fill_rgb_box(&f.image, 30, 10, 39, 19, 255, 255, 255);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 2);
     /* red of the rim is 1.42 (46531 in Q15) */
     assert_true(finder_spot[0].rgb_q15[0] > 45000);
     /* blue of the rim is 0.31 (10158 in Q15) */
     assert_true(finder_spot[0].rgb_q15[2] < 13000);
     assert_spot_colour(1, 1, 1, 1);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks a lamp with the same clipped channel in all pixels: its colour is the
  * mean of its pixels. */
 TEST(partly_clipped_lamp_has_its_mean_colour)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_RGB24, 40, 40);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 50, 50);
+    struct finder_case f = finder_open_case(GLINT_RGB24, 40, 40, 50, 50);
 
-    fill_rgb_box(&image, 10, 10, 20, 20, 255, 0, 0);
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    fill_rgb_box(&f.image, 10, 10, 20, 20, 255, 0, 0);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_spot_colour(0, 1 / 0.2126, 0, 0);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 /* Checks YCbCr formats in limited range, where white is code 235 and the
@@ -270,38 +263,34 @@ TEST(ycc_formats_in_limited_range)
  * range), which is R'G'B' = 238.8, 162.1, 101.5. */
 TEST(ycc_colour_matches_hand_computation)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_I444, 20, 20);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 150, 170);
+    struct finder_case f = finder_open_case(GLINT_I444, 20, 20, 150, 170);
 
-    image.range = GLINT_RANGE_LIMITED;
+    f.image.range = GLINT_RANGE_LIMITED;
     for (int i = 0; i < 3; i++) {
-        struct glint_image plane = image;
+        struct glint_image plane = f.image;
 
-        plane.plane[0] = image.plane[i];
+        plane.plane[0] = f.image.plane[i];
         canvas_fill_grey_box(&plane, 0, 0, 20, 20, i ? 128 : 16);
         canvas_fill_grey_box(&plane, 5, 5, 10, 10,
                              i == 0   ? 169
                              : i == 1 ? 90
                                       : 166);
     }
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     /* linear R, G, B = 0.8615, 0.3620, 0.1315; luminance 0.4515 */
     assert_spot_colour(0, 1.908, 0.802, 0.291);
-    free(image.plane[0]);
+    free(f.image.plane[0]);
 }
 
 TEST(finds_lamps_with_negative_stride)
 {
-    struct glint_image image = canvas_allocate_image(GLINT_GREY, 40, 30);
-    struct glint_lamp_finder_config cfg =
-        finder_config_without_filters(&image, 200, 250);
+    struct finder_case f = finder_open_case(GLINT_GREY, 40, 30, 200, 250);
 
-    canvas_fill_grey_box(&image, 5, 2, 8, 5, 255);
-    image.plane[0] += 29 * 40;
-    image.stride_bytes[0] = -40;
-    assert_int_equal(finder_find_lamps(&cfg, &image), 1);
+    canvas_fill_grey_box(&f.image, 5, 2, 8, 5, 255);
+    f.image.plane[0] += 29 * 40;
+    f.image.stride_bytes[0] = -40;
+    assert_int_equal(finder_find_lamps(&f.cfg, &f.image), 1);
     assert_true(finder_centroid_x_of_spot(0) == 6.5 &&
                 finder_centroid_y_of_spot(0) == 30 - 3.5);
-    free(image.plane[0] - 29 * 40);
+    free(f.image.plane[0] - 29 * 40);
 }
