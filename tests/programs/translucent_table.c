@@ -238,7 +238,7 @@ static void shift_random_rows(const struct glint_scatter_rows *rows,
                        rows->r + (x * 3 + c) * k2, (k2 - 1) * sizeof *off->r);
 }
 
-/* Prints table C3: errors when rows are shifted by a texel. */
+/* Prints table C3. */
 static void print_shifted_row_errors(struct table *t)
 {
     static const int terms[] = {1, 2, 5, 15};
@@ -266,7 +266,7 @@ static void print_shifted_row_errors(struct table *t)
     free(off.r);
 }
 
-/* Prints table C5: errors by numbers of terms and degrees. */
+/* Prints table C5. */
 static void print_polynomial_errors(struct table *t)
 {
     static const int terms[GRID_TERMS] = {1, 2, 5, 10, 15};
@@ -291,7 +291,7 @@ static void print_polynomial_errors(struct table *t)
     }
 }
 
-/* Prints table C6: errors of models of logarithms. */
+/* Prints table C6. */
 static void print_logarithm_errors(struct table *t)
 {
     static const double as[] = {0.01, 0.1, 1, 10, 100, 1000};

@@ -41,8 +41,8 @@ struct finder_case {
     struct glint_lamp_finder_config cfg;
 };
 
-/* Returns a black image of FORMAT and finder_config_without_filters() for it.
- * The caller frees the image, which starts at plane[0]. */
+/* Returns a black image of FORMAT with finder_config_without_filters(). The
+ * caller frees plane[0]. */
 struct finder_case finder_open_case(enum glint_pixel_format format, int width,
                                     int height, int low, int high);
 

@@ -10,7 +10,7 @@
 
 #define HASH_START UINT64_C(14695981039346656037)
 
-/* Returns the hash of DATA[BYTES] appended to data of hash H. */
+/* Continues the hash H by DATA[BYTES]. */
 static inline uint64_t hash_bytes(uint64_t h, const void *data, size_t bytes)
 {
     const uint8_t *p = data;

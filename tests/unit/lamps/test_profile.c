@@ -314,8 +314,8 @@ TEST(entering_sun_rises_smoothly)
     assert_true(most < 0.1 && least > -0.13);
 }
 
-/* Checks noise of 3 codes: the power must vary by less than 10 % RMS, and its
- * mean must be within a factor of 2^0.5 of the power without noise. */
+/* Checks noise of 3 codes: the power varies by less than 10 % RMS, and its mean
+ * by less than a factor of 2^0.5. */
 TEST(noise_changes_power_little)
 {
     const struct power_lamp lamp = make_default_lamp(POWER_DISC, 4);

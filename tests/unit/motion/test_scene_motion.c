@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tests recorded motion in scenes: frames, detected foods (landmarks) and
- * cameras in sensors.
+ * Tests recorded motion in scenes.
  */
 #include <math.h>
 #include <stdint.h>
