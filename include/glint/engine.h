@@ -495,8 +495,7 @@ void glint_engine_apply_shares(struct glint_engine_lamp *lamps, int n,
 /* Returns the focal length in pixels, for scenes whose camera is the lens. */
 double glint_engine_focal_px(const struct glint_engine *engine);
 
-/* ------------------------------------------------------------ expose and draw
- */
+/* --------------------------------------------------------- expose and draw */
 
 /* Chooses the brightness of the flare of N LAMPS on IMAGE. Dims the ghosts of
  * lamps that appeared while the exposure has not adapted to them yet. WHITE is

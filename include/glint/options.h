@@ -164,8 +164,7 @@ struct glint_quality glint_options_quality(const struct glint_options *options);
 void glint_option_accepts(const struct glint_option *option, char *text,
                           size_t bytes);
 
-/* ------------------------------------------------------- values within texts
- */
+/* ----------------------------------------------------- values within texts */
 
 /* Parses the number at the start of TEXT, with a decimal point in any locale,
  * and sets *END to the first character after the number, or to TEXT if there is

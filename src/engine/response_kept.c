@@ -187,8 +187,7 @@ static bool read_cache_entry(const struct entry *e, uint64_t key,
     return is_response_in_range(r);
 }
 
-/* ---------------------------------------------------------------------- both
- */
+/* -------------------------------------------------------------------- both */
 
 enum glint_status
 glint_response_measure_cached(const struct glint_frame *like, size_t bytes,

@@ -10,8 +10,7 @@
 #define FULL_Q30     (INT32_C(1) << 30)
 #define ONE_Q15      (1 << 15)
 
-/* ---------------------------------------------------------------- one number
- */
+/* -------------------------------------------------------------- one number */
 
 /* Filters one number of a lamp (position, power, colour ...) over time:
  * averages noise, but follows changes at once.

@@ -22,8 +22,7 @@
 /* Default thresholds of brightness, log2 of light / white in 1/256. */
 enum { DEFAULT_HIGH_Q8 = -26, DEFAULT_LOW_Q8 = -38 };
 
-/* --------------------------------------------------------------------- list
- */
+/* -------------------------------------------------------------------- list */
 
 /* Max distance, in merge distances, of a remaining lamp into which a lamp is
  * merged if there are too many. */

@@ -211,8 +211,7 @@ static void seal_blob_header(uint32_t *word, size_t size, uint32_t magic,
     word[3] = glint_model_crc32(word + 4, size - 16);
 }
 
-/* ---------------------------------------------------------------------- zoom
- */
+/* -------------------------------------------------------------------- zoom */
 
 /* Seals the zoom in WORD[SIZE]: sets magic, version, size and checksum of its
  * header, and of each model that lies inside the file, to valid values. */

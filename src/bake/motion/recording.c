@@ -44,8 +44,7 @@ struct recording {
     size_t bytes, capacity;
 };
 
-/* --------------------------------------------------------------------- bytes
- */
+/* ------------------------------------------------------------------- bytes */
 
 static bool set_error_at_byte(struct recording *r, const char *format, ...)
 {
@@ -143,8 +142,7 @@ static bool consume_expected_char(struct recording *r, char c)
     return consume_next_byte(r);
 }
 
-/* --------------------------------------------------------------------- values
- */
+/* ------------------------------------------------------------------ values */
 
 /* Consumes a string. Copies its first bytes to NAME[NAME_BYTES] unless NAME is
  * NULL. */
@@ -244,8 +242,7 @@ static bool set_error_in_piece(const struct recording *r, int line, int column,
     return false;
 }
 
-/* ------------------------------------------------------------------- numbers
- */
+/* ----------------------------------------------------------------- numbers */
 
 /* Returns the member NAME of OBJECT, or else its member OTHER (the Hungarian
  * name); NULL if it has neither. */
@@ -289,8 +286,7 @@ static bool read_vector_member(const struct recording *r, const json_t *object,
     return true;
 }
 
-/* ---------------------------------------------------------------------- body
- */
+/* -------------------------------------------------------------------- body */
 
 static bool read_structure_object(const struct recording *r,
                                   const json_t *object)
@@ -326,8 +322,7 @@ static bool read_structure_object(const struct recording *r,
            set_error_in_piece(r, 1, 1, "%s", cause.text);
 }
 
-/* -------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------ frames */
 
 /* Sets the intensities of food I: none, one number, or one number per
  * sensor. */
@@ -419,8 +414,7 @@ static enum glint_status bake_frame_object(const struct recording *r,
     return status;
 }
 
-/* ---------------------------------------------------------------------- keys
- */
+/* -------------------------------------------------------------------- keys */
 
 /* Reads the value of member KEY, or one frame, with jansson. A value has at
  * most 1 MiB. */

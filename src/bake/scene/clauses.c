@@ -4,8 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ------------------------------------------------------------ mistyped words
- */
+/* ---------------------------------------------------------- mistyped words */
 
 /* NEAR_CHARS: words of this many letters or more get no spelling hint.
  * NEAR_BYTES: size of a hint, bytes. */
@@ -82,8 +81,7 @@ static const char *write_spelling_hint(const struct near *near,
     return text;
 }
 
-/* ------------------------------------------------------------------- clauses
- */
+/* ----------------------------------------------------------------- clauses */
 
 /* Writes the keywords of CLAUSE as a list: "at, radius and material". */
 static void list_clause_words(const struct glint_clause *clause, char *text,
@@ -173,8 +171,7 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
     return true;
 }
 
-/* --------------------------------------------------------------------- lines
- */
+/* ------------------------------------------------------------------- lines */
 
 bool glint_line_read_first_word(struct glint_text *text,
                                 const struct glint_text_line *lines, int n,

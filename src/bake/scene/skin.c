@@ -128,8 +128,7 @@ static void assign_triangle_texels(struct painter *p, uint32_t triangle)
             assign_texel_to_triangle(p, triangle, uv, all, x, y);
 }
 
-/* ------------------------------------------------------------------- gutters
- */
+/* ----------------------------------------------------------------- gutters */
 
 /* If texel (X, Y) has no triangle, assigns it the triangle that one of its
  * neighbours has in BEFORE. */
@@ -165,8 +164,7 @@ static bool dilate_texture_charts(struct painter *p, int rings)
     return before != NULL;
 }
 
-/* -------------------------------------------------------------------- closed
- */
+/* ------------------------------------------------------------------ closed */
 
 /* An edge as a pair of vertex positions, the smaller one first. */
 struct edge {
@@ -225,8 +223,7 @@ static bool find_whether_mesh_is_closed(const struct painter *p,
     return true;
 }
 
-/* --------------------------------------------------------------------- whole
- */
+/* ------------------------------------------------------------------- whole */
 
 static bool check_texel_coverage(const struct painter *p, const char *name,
                                  struct glint_error *error)

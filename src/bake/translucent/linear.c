@@ -281,8 +281,7 @@ void glint_terms_free(struct glint_terms *terms)
     memset(terms, 0, sizeof *terms);
 }
 
-/* ----------------------------------------------------------------- separation
- */
+/* -------------------------------------------------------------- separation */
 
 enum { MOST = GLINT_SCATTER_MAX_KERNEL, FEW_SWEEPS = 30 };
 

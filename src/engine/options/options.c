@@ -74,8 +74,7 @@ const struct glint_option *glint_option_named(const char *name)
     return NULL;
 }
 
-/* ------------------------------------------------------------------- setting
- */
+/* ----------------------------------------------------------------- setting */
 
 static void store_option_value(struct glint_options *options, int i,
                                double value)
@@ -301,8 +300,7 @@ enum glint_status glint_options_set(struct glint_options *options,
     return GLINT_OK;
 }
 
-/* ------------------------------------------------------------------- parsing
- */
+/* ----------------------------------------------------------------- parsing */
 
 /* Parses TEXT as a word that stands for a value of numeric option I, such as
  * "default" for a quality. Returns false if it is not such a word. */
@@ -399,8 +397,7 @@ enum glint_status glint_options_set_text(struct glint_options *options,
     return glint_options_set(options, name, value, error);
 }
 
-/* -------------------------------------------------------------- what follows
- */
+/* ------------------------------------------------------------ what follows */
 
 struct glint_quality glint_options_quality(const struct glint_options *options)
 {

@@ -222,8 +222,7 @@ static void make_shade_table(struct glint_dirt *d)
     }
 }
 
-/* -------------------------------------------------------------------- iris
- */
+/* -------------------------------------------------------------------- iris */
 
 static const char *check_iris_config(const struct glint_iris *i)
 {

@@ -22,8 +22,7 @@ enum {
     LEAST_HALF_Q8 = 96      /* min half width of a line, 1/256 pixel */
 };
 
-/* ---------------------------------------------------------------- projection
- */
+/* -------------------------------------------------------------- projection */
 
 /* A clipping plane: points whose dot product with the normal BY is 0 or more
  * are inside. */
@@ -340,8 +339,7 @@ static int count_overlays_of_kind(const struct glint_scene *s,
     return n;
 }
 
-/* --------------------------------------------------------------------- tiles
- */
+/* ------------------------------------------------------------------- tiles */
 
 static struct glint_box find_overlay_box(const struct glint_scene *s,
                                          struct glint_box tile)

@@ -178,8 +178,7 @@ static int is_valid_event(const struct glint_motion_header *h,
            is_position_in_motion_box(h, e->at);
 }
 
-/* ------------------------------------------------------------------- records
- */
+/* ----------------------------------------------------------------- records */
 
 static enum glint_status read_event(struct glint_motion *m, uint32_t i,
                                     const struct glint_motion_event **event)

@@ -89,8 +89,7 @@ static void mark_all_blocks_visible(struct glint_stone_skin *skin)
         skin->block[i] |= GLINT_BLOCK_SEEN;
 }
 
-/* --------------------------------------------------------------------- balls
- */
+/* ------------------------------------------------------------------- balls */
 
 /* Max angle between a point of a block and the nearest of four tested texels,
  * which lie in the middles of the block's quarters. It is 12.6 degrees if a
@@ -164,8 +163,7 @@ static void mark_visible_ball_blocks(const struct glint_scene *s,
                 skin->block[i] |= GLINT_BLOCK_SEEN;
 }
 
-/* -------------------------------------------------------------------- meshes
- */
+/* ------------------------------------------------------------------ meshes */
 
 /* Returns whether triangle T may be visible: it may overlap the picture and, if
  * the mesh is closed, does not face away from the camera. */
@@ -345,8 +343,7 @@ static void set_exponent_of_map_values(const struct glint_scene *scene,
         skin->shift++;
 }
 
-/* ------------------------------------------------------------------ surfaces
- */
+/* ---------------------------------------------------------------- surfaces */
 
 static void set_ball_texel_surface(const struct glint_scene *s,
                                    const struct glint_stone_skin *skin, int x,
@@ -644,8 +641,7 @@ static enum glint_status open_translucent_media(struct glint_scene *scene)
     return GLINT_OK;
 }
 
-/* ------------------------------------------------------------------ updating
- */
+/* ---------------------------------------------------------------- updating */
 
 /* If objects or lights have changed since the map was computed, clears the
  * states of all blocks and sets the exponent of map values again. */
@@ -802,8 +798,7 @@ static int update_translucency_maps(struct glint_scene *scene)
     return n;
 }
 
-/* ------------------------------------------------------------------- showing
- */
+/* ----------------------------------------------------------------- showing */
 
 /* A position between the middles of two neighbouring texels on one axis. */
 struct between {

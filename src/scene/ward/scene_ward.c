@@ -584,8 +584,7 @@ set_tangent_frame_of_brushed_metal(const struct glint_scene *scene,
     brushed->spread_q30 = -1;
 }
 
-/* ---------------------------------------------------------------- reflecting
- */
+/* -------------------------------------------------------------- reflecting */
 
 static void add_light_times_weight(int32_t *to_q15, int64_t light_q15,
                                    int32_t weight_q15)

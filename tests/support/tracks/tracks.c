@@ -128,8 +128,7 @@ static void move_body_randomly(struct track *t)
     multiply_quaternions(t->turn, q, t->turn);
 }
 
-/* --------------------------------------------------------------------- foods
- */
+/* ------------------------------------------------------------------- foods */
 
 static void place_food_at_random(struct track *t, int slot)
 {
@@ -164,8 +163,7 @@ static void observe_food_positions(struct track *t, struct track_frame *f)
     }
 }
 
-/* -------------------------------------------------------------------- frames
- */
+/* ------------------------------------------------------------------ frames */
 
 static void (*const move[TRACK_MOTIONS])(struct track *) = {
     move_body_straight, move_body_along_spiral, move_body_turning,

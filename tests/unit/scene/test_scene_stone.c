@@ -410,8 +410,7 @@ TEST(light_maps_are_counted_once)
     drawn_close_scene(&d);
 }
 
-/* ------------------------------------------------------------------ extremes
- */
+/* ---------------------------------------------------------------- extremes */
 
 static double find_max_light(const int32_t *light_q20)
 {

@@ -143,8 +143,7 @@ static enum glint_status check_motion_sensor(const struct steer *steer,
                : GLINT_OK;
 }
 
-/* -------------------------------------------------------------------- camera
- */
+/* ------------------------------------------------------------------ camera */
 
 static enum glint_status set_scene_camera(const struct steer *s,
                                           struct glint_scene *scene)
@@ -320,8 +319,7 @@ static void apply_object_type_changes(const struct steer *steer,
 #define LEAST_ALPHA 0.001
 #define MOST_ALPHA  1.0
 
-/* ------------------------------------------------------------------- opening
- */
+/* ----------------------------------------------------------------- opening */
 
 static int count_objects(const struct steer *s)
 {
@@ -485,8 +483,7 @@ enum glint_status steer_check_line(const struct steer *steer,
     return GLINT_OK;
 }
 
-/* -------------------------------------------------------------------- camera
- */
+/* ------------------------------------------------------------------ camera */
 
 static enum glint_status apply_orbit_to_camera(const struct steer *s,
                                                struct glint_scene *scene)
@@ -646,8 +643,7 @@ change_appearance_of_materials(struct steer *s, struct glint_scene *scene,
     return status;
 }
 
-/* -------------------------------------------------------------------- objects
- */
+/* ----------------------------------------------------------------- objects */
 
 /* Returns the index of the first visible object that is not a shadow catcher,
  * or -1 if there is none. */

@@ -25,8 +25,7 @@ static bool is_ghost_muted(const struct ghost_list *l, int ghost)
     return tints && tints[ghost].gain.mantissa == 0;
 }
 
-/* ---------------------------------------------------------------------- file
- */
+/* -------------------------------------------------------------------- file */
 
 enum glint_status ghost_list_write_file(const struct ghost_list *l,
                                         const char *path,
@@ -67,8 +66,7 @@ enum glint_status ghost_list_write_file(const struct ghost_list *l,
     return status;
 }
 
-/* --------------------------------------------------------------------- sheet
- */
+/* ------------------------------------------------------------------- sheet */
 
 /* Averages pixels of the ghost drawn last down to the thumbnail
  * LIGHT[HEIGHT][WIDTH][3]. */

@@ -17,8 +17,7 @@ enum { POINTS = 61, LEAST_PX = 2 };
  * accept 0. */
 static const double least_level = 1e-6;
 
-/* ------------------------------------------------------------------- reading
- */
+/* ----------------------------------------------------------------- reading */
 
 static bool does_file_exist(const char *name)
 {

@@ -9,8 +9,7 @@
 /* PSNR of identical pictures, as in glint/measure.h. */
 #define IDENTICAL_DB 999
 
-/* --------------------------------------------------------------------- JSON
- */
+/* -------------------------------------------------------------------- JSON */
 
 /* Writes the JSON member "errors": an object with the errors of each output. */
 static void write_errors_json(struct json_writer *json,

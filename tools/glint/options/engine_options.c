@@ -26,8 +26,7 @@ int engine_apply_option(const struct tool *tool, struct glint_options *values,
                : tool_report_bad_value(tool, row->name, value);
 }
 
-/* ---------------------------------------------------------------------- help
- */
+/* -------------------------------------------------------------------- help */
 
 enum { ABOUT_COLUMN = 22, LINE = 79 };
 

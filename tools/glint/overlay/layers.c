@@ -110,8 +110,7 @@ int layers_check_outputs(const struct tool *tool, const struct layers *layers,
     return code;
 }
 
-/* ------------------------------------------------------------------- drawing
- */
+/* ----------------------------------------------------------------- drawing */
 
 /* Draws N_LAYERS layers of N samples each into RGB. The first layer is the sum
  * of the others, which are the components of the flare. */
@@ -140,8 +139,7 @@ static enum glint_status draw_all_layers(struct drawing *c, int n_layers,
     return status;
 }
 
-/* ------------------------------------------------------------------- writing
- */
+/* ----------------------------------------------------------------- writing */
 
 static enum glint_status save_layer_file(const char *name,
                                          const struct glint_oiio_layers *layers,

@@ -97,8 +97,7 @@ void over_scene_apply_control(struct over_scene *over, int frame)
                 over->control.bad.text);
 }
 
-/* ------------------------------------------------------------------- opening
- */
+/* ----------------------------------------------------------------- opening */
 
 static int count_scene_objects(const struct over_scene *over)
 {
@@ -202,8 +201,7 @@ void over_scene_close(struct over_scene *over)
     over->is_open = over->is_sized = false;
 }
 
-/* --------------------------------------------------------------------- poses
- */
+/* ------------------------------------------------------------------- poses */
 
 /* Sets AXIS to the camera's own axes rotated by the unit quaternion Q, Q30. */
 static void rotate_axes_by_quaternion(const int32_t q_q30[4],
@@ -323,8 +321,7 @@ static void apply_poses_up_to_frame(struct over_scene *over, int frame)
     over->poses.has_warned = over->poses.file.n_bad > 0;
 }
 
-/* ------------------------------------------------------------------- drawing
- */
+/* ----------------------------------------------------------------- drawing */
 
 static int allocate_scene_frame(struct over_scene *over,
                                 const struct scene_dials *dials)
@@ -411,8 +408,7 @@ void over_scene_draw_time_line(const struct over_scene *over,
         draw_time_line(image, &motion, over->shown);
 }
 
-/* --------------------------------------------------------------------- layer
- */
+/* ------------------------------------------------------------------- layer */
 
 void over_scene_layer_free(struct over_scene_layer *layer)
 {
@@ -464,8 +460,7 @@ enum glint_status over_scene_make_layer(struct over_scene *over,
     return GLINT_OK;
 }
 
-/* --------------------------------------------------------------------- lamps
- */
+/* ------------------------------------------------------------------- lamps */
 
 /* First id of highlights. Lamps with names have larger ids, from LAMP_ID_TEXT
  * on. Other lamps have smaller ids, unless a list sets very large ones. */
@@ -491,8 +486,7 @@ int over_scene_add_highlights(struct over_scene *over, bool follows,
     return n;
 }
 
-/* -------------------------------------------------------------------- report
- */
+/* ------------------------------------------------------------------ report */
 
 size_t over_scene_count_memory_bytes(const struct over_scene *over)
 {

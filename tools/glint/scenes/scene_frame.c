@@ -43,8 +43,7 @@ static void set_frame_config(struct glint_scene_config *cfg,
         cfg->tile_log2 = dials->tile_log2;
 }
 
-/* ------------------------------------------------------------------ memory
- */
+/* ------------------------------------------------------------------ memory */
 
 static enum glint_status allocate_scene_memory(struct scene_frame *frame)
 {
