@@ -57,7 +57,7 @@ static const struct glint_assimp *load_assimp_plugin(struct glint_error *error)
 
 /* Returns the bytes of address space that this process has mapped, or 0 if the
  * number is unknown. */
-static rlim_t read_mapped_bytes(void)
+static rlim_t read_mapped_size(void)
 {
     char text[32] = "";
     const int fd = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -77,7 +77,7 @@ static void run_import_process(const struct glint_assimp *face, int fd,
                                const char *path, unsigned max_triangles)
 {
     const struct rlimit time = {SECONDS, SECONDS}, core = {0, 0};
-    const struct rlimit memory = {read_mapped_bytes() + (rlim_t)MIB * 1048576,
+    const struct rlimit memory = {read_mapped_size() + (rlim_t)MIB * 1048576,
                                   RLIM_INFINITY};
     const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
     sigset_t all;

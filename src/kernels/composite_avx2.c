@@ -101,14 +101,14 @@ static inline __m128i b_pack_chroma(const V c[2])
 
 /* Load eight dither thresholds: for sixteen pixels, or for the chroma of
  * sixteen pixels, where Cb and Cr have thresholds of their own. */
-static inline void v_load_pair_rounding(const int16_t *p, V x[1])
+static inline void v_load_pair_dither(const int16_t *p, V x[1])
 {
     x[0] = v_shuffle(v_load_repeated(p),
                      _mm256_set_epi64x(0x0f0e0b0a07060302, 0x0f0e0b0a07060302,
                                        0x0d0c090805040100, 0x0d0c090805040100));
 }
 
-static inline void v_load_chroma_rounding(const int16_t *p, V c[2])
+static inline void v_load_chroma_dither(const int16_t *p, V c[2])
 {
     c[0] = v_shuffle(v_load_repeated(p),
                      v_bytes(0x0d0c090805040100, 0x0d0c090805040100));

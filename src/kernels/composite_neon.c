@@ -244,7 +244,7 @@ static inline void v_store_packed(uint8_t *p, int luma_at, const V y[2],
 
 /* Loads eight dither thresholds for sixteen pixels: thresholds of even
  * pixels, then of odd pixels; for chroma, thresholds of Cb, then of Cr. */
-static inline void v_load_pair_rounding(const int16_t *p, V x[2])
+static inline void v_load_pair_dither(const int16_t *p, V x[2])
 {
     const int16x8x2_t pairs = vuzpq_s16(vld1q_s16(p), vld1q_s16(p));
 
@@ -252,7 +252,7 @@ static inline void v_load_pair_rounding(const int16_t *p, V x[2])
     x[1] = pairs.val[1];
 }
 
-#define v_load_chroma_rounding v_load_pair_rounding
+#define v_load_chroma_dither v_load_pair_dither
 
 /* Averages each even pixel with the next odd pixel. */
 static inline V v_average_pairs(const V x[2])

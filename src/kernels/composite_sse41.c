@@ -68,7 +68,7 @@ static inline V b_pack_pairs(const V x[2])
 
 /* Loads eight dither thresholds for sixteen pixels: thresholds of even
  * pixels, then of odd pixels; for chroma, thresholds of Cb, then of Cr. */
-static inline void v_load_pair_rounding(const int16_t *p, V x[2])
+static inline void v_load_pair_dither(const int16_t *p, V x[2])
 {
     const V both = separate_even_odd(b_load(p));
 
@@ -76,9 +76,9 @@ static inline void v_load_pair_rounding(const int16_t *p, V x[2])
     x[1] = _mm_unpackhi_epi64(both, both);
 }
 
-#define v_load_chroma_rounding v_load_pair_rounding
-#define v_load_mean            v_load
-#define v_store_mean           v_store
+#define v_load_chroma_dither v_load_pair_dither
+#define v_load_mean          v_load
+#define v_store_mean         v_store
 
 /* Averages each even pixel with the next odd pixel. */
 static inline V v_average_pairs(const V x[2])

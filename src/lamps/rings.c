@@ -20,11 +20,11 @@ enum {
     SECTORS = 8,
     BORDERS = 4,
     SAMPLES = 32, /* max number of samples along the radius of the inner disc */
-    RAYS = 16,
-    RAY_SAMPLES = 64, /* number of steps of a ray along the radius of the core
-                       */
-    RIM_RADIUS = 32,  /* min radius, pixels, of a core whose rim is measured; an
-                         eighth of this radius exceeds the blur of a lens */
+    RADII = 16,
+    RADIUS_STEPS = 64, /* number of steps of a ray along the radius of the core
+                        */
+    RIM_RADIUS = 32, /* min radius, pixels, of a core whose rim is measured; an
+                        eighth of this radius exceeds the blur of a lens */
     RINGS = GLINT_PROFILE_RINGS,
     LEVELS = GLINT_PROFILE_LEVELS,
     NEAR = GLINT_PROFILE_NEAR
@@ -376,15 +376,15 @@ static int32_t read_max_channel(const struct window *w, int32_t x_q8,
 static int32_t measure_light_drop_at_rim(const struct window *w, int i,
                                          int32_t radius_q8)
 {
-    static const int16_t sine_q14[RAYS + RAYS / 4] = {
+    static const int16_t sine_q14[RADII + RADII / 4] = {
         0,      6270,  11585, 15137,  16384,  15137,  11585,
         6270,   0,     -6270, -11585, -15137, -16384, -15137,
         -11585, -6270, 0,     6270,   11585,  15137};
-    const int32_t x_q14 = sine_q14[i + RAYS / 4], y_q14 = sine_q14[i];
+    const int32_t x_q14 = sine_q14[i + RADII / 4], y_q14 = sine_q14[i];
     int32_t at_q8 = 0, light_q20;
 
     do {
-        at_q8 += radius_q8 / RAY_SAMPLES;
+        at_q8 += radius_q8 / RADIUS_STEPS;
         light_q20 = read_max_channel(w, q_mul(at_q8, x_q14, 14),
                                      q_mul(at_q8, y_q14, 14));
     } while (light_q20 >= RIM_LIGHT && at_q8 < 3 * radius_q8);
@@ -416,12 +416,12 @@ compute_median_rim_drop_q15(const struct window *w,
                             const struct glint_profile_sums *sums)
 {
     const int32_t radius_q8 = compute_core_radius_q8(sums);
-    int32_t lost_q20[RAYS];
+    int32_t lost_q20[RADII];
     int n = 0;
 
     if (radius_q8 < RIM_RADIUS << 8)
         return 0;
-    for (int i = 0; i < RAYS; i++) {
+    for (int i = 0; i < RADII; i++) {
         const int32_t lost = measure_light_drop_at_rim(w, i, radius_q8);
         int at = n;
 
@@ -431,7 +431,7 @@ compute_median_rim_drop_q15(const struct window *w,
             lost_q20[at] = lost_q20[at - 1];
         lost_q20[at] = lost;
     }
-    return n < RAYS / 2 ? 0 : lost_q20[n / 2] >> 5;
+    return n < RADII / 2 ? 0 : lost_q20[n / 2] >> 5;
 }
 
 /* -------------------------------------------------------------------- light */

@@ -260,7 +260,7 @@ static int32_t compute_dim_white_evidence_q8(const struct glint_score *s,
 
     if (level->clipped >= BRIGHT_CLIPPED)
         return 0;
-    half = glint_white_find_brightness_of_rank(s->white, 1);
+    half = glint_white_find_top_quantile(s->white, 1);
     return q_clamp_sat(
         glint_compute_light_log2_q8(light_q20[half] + FLOOR_Q20) -
             glint_compute_light_log2_q8(light_q20[level->clipped]) + 5 * 256,
@@ -273,7 +273,7 @@ static int32_t compute_below_white_q8(const struct glint_score *s,
                                       int part_log2)
 {
     const int32_t *light_q20 = s->bright->curve->decode_q20;
-    const int code = glint_white_find_brightness_of_rank(s->white, part_log2);
+    const int code = glint_white_find_top_quantile(s->white, part_log2);
 
     return -glint_compute_light_log2_q8(
         light_q20[code < BRIGHT_CLIPPED ? code : BRIGHT_CLIPPED] + FLOOR_Q20);

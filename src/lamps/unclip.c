@@ -163,8 +163,8 @@ static int32_t compute_area_log2(int64_t area_q8)
 /* Returns the weight of the area of brightness level K: 1 for levels 1 and 2,
  * and for darker ones if the background's spread is at most half of the level's
  * min light. It falls to 0 where the spread equals that light. */
-static int32_t compute_level_weight_q16(const struct glint_profile_channel *of,
-                                        int k)
+static int32_t
+weigh_brightness_level_q16(const struct glint_profile_channel *of, int k)
 {
     const int32_t spread_q16 =
         q_log2_q16((uint64_t)of->spread_q16 + 66) - 16 * ONE_Q16;
@@ -183,10 +183,10 @@ static int64_t compute_shown_flux_q16(const struct glint_profile_channel *of)
 
     for (int k = 1; k <= SHOWN; k++)
         sum_q16 += q_shift((of->area_q8[k] << (8 - k)) *
-                               (compute_level_weight_q16(of, k) >> 8),
+                               (weigh_brightness_level_q16(of, k) >> 8),
                            8);
     return sum_q16 + q_shift((of->area_q8[SHOWN] << (8 - SHOWN)) *
-                                 (compute_level_weight_q16(of, SHOWN) >> 8),
+                                 (weigh_brightness_level_q16(of, SHOWN) >> 8),
                              8);
 }
 

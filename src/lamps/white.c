@@ -85,7 +85,7 @@ void glint_white_measure_picture(struct glint_white *white,
     count_grid_pixels_by_brightness(white, bright, height);
     for (int value = 255; value >= 0; value--)
         white->at_least[value] += white->at_least[value + 1];
-    code = glint_white_find_brightness_of_rank(white, WHITE_PART_LOG2);
+    code = glint_white_find_top_quantile(white, WHITE_PART_LOG2);
     if (code >= BRIGHT_CLIPPED)
         white->light_q20 = LINEAR_WHITE_Q20;
     else
@@ -100,8 +100,8 @@ int glint_white_find_code(const struct glint_bright *bright, int32_t light_q20,
         bright, glint_compute_light_log2_q8(light_q20) + ev_q8);
 }
 
-int glint_white_find_brightness_of_rank(const struct glint_white *white,
-                                        int part_log2)
+int glint_white_find_top_quantile(const struct glint_white *white,
+                                  int part_log2)
 {
     int value = 0;
 

@@ -40,8 +40,8 @@ int glint_white_find_code(const struct glint_bright *bright, int32_t light_q20,
 
 /* Returns the min brightness that no more than 1 / 2^PART_LOG2 of the sampled
  * pixels reach. */
-int glint_white_find_brightness_of_rank(const struct glint_white *white,
-                                        int part_log2);
+int glint_white_find_top_quantile(const struct glint_white *white,
+                                  int part_log2);
 
 /* Returns the fraction of pixels whose brightness is VALUE or more. */
 int32_t glint_white_compute_fraction_q15(const struct glint_white *white,

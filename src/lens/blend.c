@@ -131,8 +131,8 @@ static int is_box_move_small(const struct glint_blend_move *m)
 
 /* If O is the x or y output of the position in the stop, records in STOP where
  * rays pass the stop. */
-static void record_stop_position(struct glint_blend_stop *stop,
-                                 const struct glint_blend_output *o)
+static void record_linear_stop_terms(struct glint_blend_stop *stop,
+                                     const struct glint_blend_output *o)
 {
     if (o->kind == GLINT_OUT_STOP_X) {
         stop->middle = o->row[0][0];
@@ -144,7 +144,7 @@ static void record_stop_position(struct glint_blend_stop *stop,
     }
 }
 
-static struct glint_blend_stop get_stop_position(struct glint_transfer *t)
+static struct glint_blend_stop get_linear_stop_terms(struct glint_transfer *t)
 {
     struct glint_blend_stop stop = {0, 0, 0, 0, 0};
 
@@ -152,7 +152,7 @@ static struct glint_blend_stop get_stop_position(struct glint_transfer *t)
         const struct glint_blend_output o = glint_blend_get_output(t, kind);
 
         if (has_transfer_output(t, kind))
-            record_stop_position(&stop, &o);
+            record_linear_stop_terms(&stop, &o);
     }
     return stop;
 }
@@ -166,7 +166,7 @@ int glint_blend_mix_box(struct glint_zoom_mix *blend, const int32_t box[3],
         (blend->part_q30 < 0 ? BEYOND : 0);
 
     set_box_moves(blend, box, exponent);
-    blend->stop[0] = get_stop_position(t);
+    blend->stop[0] = get_linear_stop_terms(t);
     for (int k = 0; k < 3; k++)
         t->box[k] = mix_coefficient(box[k], exponent, t->box[k],
                                     t->box_exponent, e, blend->part_q30);
@@ -386,7 +386,7 @@ static void preserve_barrel_position_in_stop(const struct glint_zoom_mix *blend,
                                              int side, int kind)
 {
     struct glint_transfer *const t = blend->to;
-    const struct glint_blend_stop stop = get_stop_position(t);
+    const struct glint_blend_stop stop = get_linear_stop_terms(t);
     int32_t moved_row[ROWS][GLINT_TABLE_WIDTH];
     const struct glint_blend_output own = glint_blend_get_output(t, kind);
     struct glint_blend_output kept = own;
@@ -448,7 +448,7 @@ void glint_blend_mix_output(struct glint_zoom_mix *blend,
 {
     struct glint_transfer *const t = blend->to;
 
-    record_stop_position(&blend->stop[1], o);
+    record_linear_stop_terms(&blend->stop[1], o);
     if (o->kind >= BARREL)
         mix_barrel_output(blend, o);
     else if (o->kind == GLINT_OUT_ENERGY)

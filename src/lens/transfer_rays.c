@@ -22,9 +22,10 @@ static int is_odd_in_v(int kind)
 /* Sets OF_U to a polynomial in u for the row of rays at V_Q30. It is the sum of
  * those terms of output KIND that have odd (ODD = 1) or even (ODD = 0) powers
  * of v. */
-static void sum_powers_of_v(const struct glint_transfer *t,
-                            const struct glint_horner *k, int kind, int odd,
-                            int32_t v_q30, int32_t v2_q30, int32_t *of_u)
+static void set_row_polynomial_of_parity(const struct glint_transfer *t,
+                                         const struct glint_horner *k, int kind,
+                                         int odd, int32_t v_q30, int32_t v2_q30,
+                                         int32_t *of_u)
 {
     k->across(of_u, t->table[kind][odd], 2 * GLINT_TABLE_WIDTH,
               (t->degree_v[kind] - odd) / 2, v2_q30,
@@ -42,13 +43,14 @@ static void set_row_polynomial(const struct glint_transfer *t,
     int32_t odd[GLINT_TABLE_WIDTH];
 
     if (!t->whole) {
-        sum_powers_of_v(t, k, kind, is_odd_in_v(kind), v_q30, v2_q30, of_u);
+        set_row_polynomial_of_parity(t, k, kind, is_odd_in_v(kind), v_q30,
+                                     v2_q30, of_u);
         return;
     }
-    sum_powers_of_v(t, k, kind, 0, v_q30, v2_q30, of_u);
+    set_row_polynomial_of_parity(t, k, kind, 0, v_q30, v2_q30, of_u);
     if (t->degree_v[kind] == 0)
         return;
-    sum_powers_of_v(t, k, kind, 1, v_q30, v2_q30, odd);
+    set_row_polynomial_of_parity(t, k, kind, 1, v_q30, v2_q30, odd);
     for (int a = 0; a <= t->degree_u[kind]; a++)
         of_u[a] += odd[a];
 }

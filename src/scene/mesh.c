@@ -589,8 +589,8 @@ static int set_mesh_surface(const struct glint_scene *scene,
     return 1;
 }
 
-static int do_triangles_share_vertex(const struct glint_scene *scene,
-                                     uint32_t a, uint32_t b)
+static int can_triangles_share_shading(const struct glint_scene *scene,
+                                       uint32_t a, uint32_t b)
 {
     const struct glint_scene_mesh *m = glint_mesh_of(scene, a >> 20);
     const struct glint_scene_triangle *t =
@@ -809,7 +809,7 @@ compute_edge_function_of_corners(const struct glint_corner *a,
 /* Assigns samples exactly on an edge to one of its sides, by the sign of the
  * edge function's first nonzero coefficient. Returns 0 if all coefficients are
  * 0. */
-static int assign_edge_samples_to_side(struct line *l)
+static int break_ties_on_edge(struct line *l)
 {
     const int is_out =
         l->across < 0 ||
@@ -844,7 +844,7 @@ compute_edge_functions_of_triangle(const struct glint_scene *s, uint32_t object,
         if (side < 0)
             line[k] =
                 (struct line){-line[k].across, -line[k].down, -line[k].at};
-        if (!assign_edge_samples_to_side(&line[k]))
+        if (!break_ties_on_edge(&line[k]))
             return 0;
     }
     return 1;
@@ -1001,5 +1001,5 @@ const struct glint_scene_meshes glint_scene_meshes = {
     intersect_mesh,
     intersect_triangle,
     set_mesh_surface,
-    do_triangles_share_vertex,
+    can_triangles_share_shading,
     glint_quick_find_mesh_surface};

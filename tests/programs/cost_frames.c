@@ -138,14 +138,14 @@ static void close_lens_stage(struct stage *s)
 
 /* Calls glint_frame_draw(). A separate function, so that
  * tools/measure/cost-fit can count its instructions. */
-enum glint_status cost_frame(struct glint_frame *frame,
-                             const struct glint_lamp *lamp, int n,
-                             const struct glint_image *image,
-                             struct glint_engine_report *report);
-enum glint_status cost_frame(struct glint_frame *frame,
-                             const struct glint_lamp *lamp, int n,
-                             const struct glint_image *image,
-                             struct glint_engine_report *report)
+enum glint_status draw_counted_frame(struct glint_frame *frame,
+                                     const struct glint_lamp *lamp, int n,
+                                     const struct glint_image *image,
+                                     struct glint_engine_report *report);
+enum glint_status draw_counted_frame(struct glint_frame *frame,
+                                     const struct glint_lamp *lamp, int n,
+                                     const struct glint_image *image,
+                                     struct glint_engine_report *report)
 {
     return glint_frame_draw(frame, lamp, n, 1, image, report);
 }
@@ -186,8 +186,8 @@ static void draw_frame_twice(struct stage *s, const struct shape *shape)
                          &s->canvas.image, &report) != GLINT_OK)
         exit_with_error("no memory");
     canvas_restore_background(&s->canvas);
-    if (cost_frame(&s->frame, s->lamp, shape->n_lamps, &s->canvas.image,
-                   &report) != GLINT_OK)
+    if (draw_counted_frame(&s->frame, s->lamp, shape->n_lamps, &s->canvas.image,
+                           &report) != GLINT_OK)
         exit_with_error("no memory");
 }
 

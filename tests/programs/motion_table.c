@@ -91,12 +91,13 @@ static const char *localise_track(const struct method *method, struct result *r,
 
     return method->all
                ? glint_localise_body(&r->all, n, seen, f->is_new, located)
-               : four_localise_body(&r->four, n, seen, f->is_new, located);
+               : four_localise_by_landmarks(&r->four, n, seen, f->is_new,
+                                            located);
 }
 
-static void localise_all_tracks(const struct track_options *options,
-                                const struct method *method, int n,
-                                struct result *result)
+static void localise_by_all_methods(const struct track_options *options,
+                                    const struct method *method, int n,
+                                    struct result *result)
 {
     struct track track;
 
@@ -182,7 +183,7 @@ static void compare_localisers(int reset_every, int digits,
         const struct track_options options = {
             m, n_frames, 5, reset_every, digits, (uint32_t)(SEED + m)};
 
-        localise_all_tracks(&options, method, n, result);
+        localise_by_all_methods(&options, method, n, result);
         printf("| %s | | | | | |\n", motions[m]);
         print_errors_of_method(method, n, n_frames, result);
     }
@@ -201,7 +202,7 @@ static void time_localisers(void)
                                          rounded_input[3], rounded_input[4]};
         const struct track_options options = {0, lengths[i], 5, 0, 0, SEED};
 
-        localise_all_tracks(&options, method, 4, result);
+        localise_by_all_methods(&options, method, 4, result);
         first = i ? first : result[0].seconds;
         printf("| %d |", lengths[i]);
         for (int k = 0; k < 4; k++)

@@ -1105,7 +1105,7 @@ static enum glint_status plan_ray_frame(struct glint_frame *f,
 {
     struct traced *const t = get_traced_state(f);
     const double step =
-        glint_frame_convert_codes_to_light(f, image, GLINT_FRAME_STEP_CODES);
+        glint_frame_get_light_near_black(f, image, GLINT_FRAME_STEP_CODES);
     enum glint_status status = measure_frame_fields(f, lamps, n);
 
     if (status != GLINT_OK)
@@ -1119,7 +1119,7 @@ static enum glint_status plan_ray_frame(struct glint_frame *f,
     list_drawn_fields(f);
     status = skip_faint_ghosts(
         f, scale,
-        glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes));
+        glint_frame_get_light_near_black(f, image, f->dials.cull_codes));
     if (status != GLINT_OK)
         return status;
     for (int i = 0; i < t->n_fields; i++) {

@@ -149,8 +149,8 @@ static WHOLLY_INLINE void find_form_intersections(const struct beam *b, int n,
 }
 
 /* Transforms ray K to the frame of FORM and moves it to FORM. */
-static void move_ray_to_form(struct beam *b, int k,
-                             const struct glint_form *form)
+static void intersect_ray_with_form(struct beam *b, int k,
+                                    const struct glint_form *form)
 {
     double at[3] = {b->x[k], b->y[k], b->z[k]};
     double way[3] = {b->l[k], b->m[k], b->n[k]};
@@ -176,7 +176,7 @@ static void intersect_form_in_light_frame(struct beam *b, int k,
     double way[3] = {before->l[k], before->m[k], before->n[k]};
 
     set_beam_ray(b, k, at, way);
-    move_ray_to_form(b, k, form);
+    intersect_ray_with_form(b, k, form);
     for (int i = 0; i < 3; i++) {
         normal[i] = 0.0;
         for (int j = 0; j < 3; j++)
@@ -240,7 +240,7 @@ void glint_beam_move_to_form(struct beam *b, int n,
 {
     if (!form->level)
         for (int k = 0; k < n; k++)
-            move_ray_to_form(b, k, form);
+            intersect_ray_with_form(b, k, form);
     else if (n == LANES)
         move_rays_to_level_form(b, LANES, form);
     else

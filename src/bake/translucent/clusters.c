@@ -183,8 +183,8 @@ static void assign_texels_to_kernels(const struct clusters *p)
 
 /* Returns the value, 0 .. 1, by which texel X is assigned to an initial
  * cluster. MOST: max sum of a texel's albedos over the channels. */
-static double compute_initial_position(const struct clusters *p, int x,
-                                       double most)
+static double compute_initial_cluster_value(const struct clusters *p, int x,
+                                            double most)
 {
     const int side = p->fit->side, window = 2 * ABOUT + 1;
     const double *a = p->fit->albedo + 3 * (size_t)x;
@@ -215,7 +215,7 @@ static void set_initial_clusters(const struct clusters *p)
         most = fmax(most, a[0] + a[1] + a[2]);
     }
     for (int x = 0; x < texels; x++) {
-        const int j = (int)(compute_initial_position(p, x, most) * k);
+        const int j = (int)(compute_initial_cluster_value(p, x, most) * k);
 
         p->fit->cluster[x] = (uint8_t)(j < k ? j : k - 1);
         for (int c = 0; c < 3; c++) {

@@ -204,7 +204,7 @@ make_flare_frame(struct glint_frame *f, const struct glint_image *image)
     set_frame_waves(f);
     glint_frame_clear_stale_dim_table(f);
     f->lights.sets.step = glint_real_of(
-        glint_frame_convert_codes_to_light(f, image, GLINT_FRAME_STEP_CODES));
+        glint_frame_get_light_near_black(f, image, GLINT_FRAME_STEP_CODES));
     return (struct glint_flare_frame){
         .lens = f->lens,
         .wave = f->lights.wave,
@@ -218,10 +218,10 @@ make_flare_frame(struct glint_frame *f, const struct glint_image *image)
         .only_ghost = f->only_ghost,
         .tints = f->tints,
         .faintest = glint_real_of(
-            glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes)),
+            glint_frame_get_light_near_black(f, image, f->dials.cull_codes)),
         .dim = f->dim.table.log2_q8 ? &f->dim.table : NULL,
         .dimmest = glint_real_of(
-            glint_frame_convert_codes_to_light(f, image, f->dials.dim_codes)),
+            glint_frame_get_light_near_black(f, image, f->dials.dim_codes)),
         .snap_codes_q8 = f->dials.snap_codes_q8,
         .half = glint_dials_half(&f->dials) && f->picture.can_half ? &glint_half
                                                                    : NULL,
@@ -281,7 +281,7 @@ draw_flare_by_model(struct glint_frame *f, const struct glint_lamp *lamps,
     enum glint_status status;
 
     f->picture.can_half = is_planned_for_codes(f, image);
-    f->picture.code_light = glint_frame_convert_codes_to_light(f, image, 1);
+    f->picture.code_light = glint_frame_get_light_near_black(f, image, 1);
     f->plan.scale = scale;
     f->limits.is_held = f->limits.is_full = false;
     f->limits.tight = 0;

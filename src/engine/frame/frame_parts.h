@@ -106,9 +106,9 @@ enum glint_status glint_frame_predict_scale(struct glint_frame *frame,
 
 /* Returns the linear light of CODES codes near black in IMAGE; 0 if IMAGE is
  * NULL, or linear and not planned as 8-bit codes. */
-double glint_frame_convert_codes_to_light(const struct glint_frame *frame,
-                                          const struct glint_image *image,
-                                          double codes);
+double glint_frame_get_light_near_black(const struct glint_frame *frame,
+                                        const struct glint_image *image,
+                                        double codes);
 
 /* Returns whether GHOST comes from the same pair of surfaces as ghost NUMBER.
  * Both are ghosts of SETUP, or single pupil regions (parts) of such ghosts. */

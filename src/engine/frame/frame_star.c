@@ -328,7 +328,7 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
     set_star_lights_within_budget(
         f, n_lights,
         STAR_CULL *
-            glint_frame_convert_codes_to_light(f, image, f->dials.cull_codes));
+            glint_frame_get_light_near_black(f, image, f->dials.cull_codes));
     s->n_lights = n_lights;
     s->is_set = true;
     return GLINT_OK;

@@ -12,9 +12,9 @@ double glint_frame_compute_pixels_per_tangent(const struct glint_frame *f)
                 f->view.sensor_width_mm);
 }
 
-double glint_frame_convert_codes_to_light(const struct glint_frame *f,
-                                          const struct glint_image *image,
-                                          double codes)
+double glint_frame_get_light_near_black(const struct glint_frame *f,
+                                        const struct glint_image *image,
+                                        double codes)
 {
     return !image || !is_planned_for_codes(f, image)
                ? 0

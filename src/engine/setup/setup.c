@@ -123,8 +123,8 @@ static double evaluate_polynomial(const struct glint_real *coef, int n,
 /* Returns the flux of the direct image, mm^2, at wavelength NM, clamped to the
  * model's wavelengths. OPENING is the radius of the stop / the model's
  * radius. */
-static double compute_model_flux(const struct glint_model_header *h,
-                                 double opening, double nm)
+static double compute_direct_flux_of_model(const struct glint_model_header *h,
+                                           double opening, double nm)
 {
     const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
     const double wave = 0x1p24 * 1e6 / (nm * nm);
@@ -174,8 +174,9 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
     glint_setup_init_common(setup, n_blades, blade_rotation_deg, wavelength_nm,
                             n);
     for (int i = 0; i < n; i++)
-        setup->direct_flux[i] = glint_iris_compute_area_fraction(setup) *
-                                compute_model_flux(h, 1, wavelength_nm[i]);
+        setup->direct_flux[i] =
+            glint_iris_compute_area_fraction(setup) *
+            compute_direct_flux_of_model(h, 1, wavelength_nm[i]);
     return glint_setup_set_unit_flux(setup, h->name, error);
 }
 
@@ -203,7 +204,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
     for (int i = 0; i < setup->n_wavelengths; i++)
         setup->direct_flux[i] =
             glint_iris_compute_area_fraction(setup) *
-            compute_model_flux(h, by, setup->wavelength_nm[i]);
+            compute_direct_flux_of_model(h, by, setup->wavelength_nm[i]);
     return glint_setup_set_unit_flux(setup, h->name, error);
 }
 
@@ -264,8 +265,8 @@ void glint_setup_spread(struct glint_setup *setup,
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
                 lens ? glint_iris_compute_area_fraction(setup) *
-                           compute_model_flux(lens->header, setup->opening,
-                                              nm[i])
+                           compute_direct_flux_of_model(lens->header,
+                                                        setup->opening, nm[i])
                      : interpolate_direct_flux(setup, nm[i]);
             mean += share[i] * wave[i].direct_flux;
         }

@@ -163,8 +163,8 @@ void glint_smear_finish(struct glint_smear *smear)
 /* ------------------------------------------------------------------- means */
 
 /* Returns the running integral s->sum at (X, Y), in elements, interpolated. */
-static double interpolate_difference_sum(const struct glint_smear *s, double y,
-                                         double x)
+static double interpolate_difference_integral(const struct glint_smear *s,
+                                              double y, double x)
 {
     const int i = (int)fmin(fmax(y, 0), N - 1),
               k = (int)fmin(fmax(x, 0), N - 1);
@@ -186,10 +186,10 @@ double glint_smear_compute_mean(const struct glint_smear *s, double qx,
 
     if (fmax(fabs(qx), fabs(qy)) + wide > HALF * step_q - 1)
         return s->edge * pow(edge_q / fmax(q, edge_q), 3);
-    return (interpolate_difference_sum(s, y + h, x + h) -
-            interpolate_difference_sum(s, y - h, x + h) -
-            interpolate_difference_sum(s, y + h, x - h) +
-            interpolate_difference_sum(s, y - h, x - h)) /
+    return (interpolate_difference_integral(s, y + h, x + h) -
+            interpolate_difference_integral(s, y - h, x + h) -
+            interpolate_difference_integral(s, y + h, x - h) +
+            interpolate_difference_integral(s, y - h, x - h)) /
            (4 * wide * wide);
 }
 
@@ -205,10 +205,11 @@ double glint_smear_integrate_within(const struct glint_smear *s, double q)
         const double mid = HALF + 0.5, row = i + HALF;
 
         if (x > 0)
-            sum += interpolate_difference_sum(s, row + 1, mid + x / step_q) -
-                   interpolate_difference_sum(s, row, mid + x / step_q) -
-                   interpolate_difference_sum(s, row + 1, mid - x / step_q) +
-                   interpolate_difference_sum(s, row, mid - x / step_q);
+            sum +=
+                interpolate_difference_integral(s, row + 1, mid + x / step_q) -
+                interpolate_difference_integral(s, row, mid + x / step_q) -
+                interpolate_difference_integral(s, row + 1, mid - x / step_q) +
+                interpolate_difference_integral(s, row, mid - x / step_q);
     }
     return sum + 2 * GLINT_PI * s->edge * edge_q * edge_q * edge_q *
                      (1 / held - 1 / far);

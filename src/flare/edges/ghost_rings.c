@@ -73,7 +73,7 @@ static int shrink_stop_outline(struct glint_stop *stop, int32_t by_q16)
                                : stop->apothem_q16 > 0;
 }
 
-void glint_rings_emit_edges(struct glint_ghost_edges *g)
+void glint_ghost_emit_soft_outline(struct glint_ghost_edges *g)
 {
     const struct glint_stop *whole = g->stop;
     const int log2 = whole->shade->soft_q16 ? choose_rings_log2(g) : 0;

@@ -365,7 +365,7 @@ static void dim_cell_corners(const struct glint_shade *shade,
 }
 
 const struct glint_shade_method glint_shade_method = {
-    .emit = glint_rings_emit_edges,
+    .emit = glint_ghost_emit_soft_outline,
     .cell = draw_shaded_cell,
     .patch = add_outline_patch,
     .draw = glint_patch_draw,

@@ -47,7 +47,7 @@ struct glint_shade_method {
 
 /* Converts the ray bundle to edges: once if the stop has a hard outline,
  * otherwise once for each ring of its soft edge. Value of member emit. */
-void glint_rings_emit_edges(struct glint_ghost_edges *g);
+void glint_ghost_emit_soft_outline(struct glint_ghost_edges *g);
 
 /* Returns whether softness and table size of SHADE are in range. */
 static inline int glint_shade_is_valid(const struct glint_shade *shade)

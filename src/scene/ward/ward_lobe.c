@@ -120,8 +120,8 @@ static uint64_t compute_variance_of_slope_blur_q48(const int32_t alpha_q24[2],
 
 /* Returns twice the variance that sampled slopes must have along an axis with
  * ALPHA, divided by alpha^2. B and F: see the top of this file. */
-static int32_t compute_slope_variance_q16(int32_t alpha_q24, uint64_t b_q48,
-                                          int32_t f_q16)
+static int32_t compute_slope_variance_ratio_q16(int32_t alpha_q24,
+                                                uint64_t b_q48, int32_t f_q16)
 {
     const uint64_t square_q48 = (uint64_t)alpha_q24 * (uint64_t)alpha_q24;
     const int32_t matched_q16 =
@@ -229,11 +229,11 @@ int glint_ward_prepare(struct glint_ward_lobe *lobe,
                                  .share_q16 = ((1 << 16) + n / 2) / n};
     compute_sample_slopes(n, slope_q16);
     for (int j = 0; j < 2 && options->rule == GLINT_WARD_CONSTANT; j++)
-        normalise_sample_slopes(
-            n, j,
-            (uint32_t)compute_slope_variance_q16(alpha_q24[j], b_q48, f_q16)
-                << 15,
-            slope_q16);
+        normalise_sample_slopes(n, j,
+                                (uint32_t)compute_slope_variance_ratio_q16(
+                                    alpha_q24[j], b_q48, f_q16)
+                                    << 15,
+                                slope_q16);
     for (int k = 0; k < 3; k++)
         lobe->specular_q15[k] = material->specular_q15[k];
     for (int k = 0; k < n; k++)

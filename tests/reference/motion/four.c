@@ -255,9 +255,10 @@ static const char *compute_body_pose(struct four *l, int n,
     return NULL;
 }
 
-const char *four_localise_body(struct four *four, int n,
-                               const double (*seen)[3], const bool *is_new,
-                               struct glint_located *located)
+const char *four_localise_by_landmarks(struct four *four, int n,
+                                       const double (*seen)[3],
+                                       const bool *is_new,
+                                       struct glint_located *located)
 {
     double rounded[MOST][3] = {{0}};
     const char *wrong = NULL;

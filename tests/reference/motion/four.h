@@ -43,8 +43,9 @@ void four_init_localiser(struct four *four, enum four_fit fit,
                          enum four_arithmetic arithmetic);
 
 /* Like glint_localise_body(), but sets only the pose of LOCATED. */
-const char *four_localise_body(struct four *four, int n,
-                               const double (*seen)[3], const bool *is_new,
-                               struct glint_located *located);
+const char *four_localise_by_landmarks(struct four *four, int n,
+                                       const double (*seen)[3],
+                                       const bool *is_new,
+                                       struct glint_located *located);
 
 #endif

@@ -424,7 +424,7 @@ static void scale_stop_polynomials(struct fixture *f)
 /* Checks that a ghost with the outcome OUTSIDE adds no light to the image, by
  * drawing a larger image around it. Tries all azimuths and increasing
  * distances. */
-static void check_outside_adds_no_light(int small_stop)
+static void check_outside_ghost_adds_no_light(int small_stop)
 {
     enum { WIDE = 4 * WIDTH, HIGH = 4 * HEIGHT };
     static int32_t px_q20[3 * WIDE * HIGH];
@@ -470,6 +470,6 @@ static void check_outside_adds_no_light(int small_stop)
 
 TEST(outside_bundles_add_no_light)
 {
-    check_outside_adds_no_light(0);
-    check_outside_adds_no_light(1);
+    check_outside_ghost_adds_no_light(0);
+    check_outside_ghost_adds_no_light(1);
 }

@@ -194,8 +194,8 @@ static struct coding make_coding_of_image(void)
 
 /* Sets RGB to the measured change of R'G'B' of pixel (X, Y) in a Y'CbCr
  * image. */
-static void measure_rgb_change(const struct coding *c, int x, int y, int cx,
-                               int cy, double rgb[3])
+static void compute_expected_rgb_change(const struct coding *c, int x, int y,
+                                        int cx, int cy, double rgb[3])
 {
     const double luma =
         (read_sample_before_drawing(0, x, y) - c->black) / c->y_steps;
@@ -236,7 +236,7 @@ static void check_chroma_block(int cx, int cy, double within)
              x < cx * nx + nx && x < compute_row_bytes_of_plane(0); x++, n++) {
             double rgb[3];
 
-            measure_rgb_change(&c, x, y, cx, cy, rgb);
+            compute_expected_rgb_change(&c, x, y, cx, cy, rgb);
             for (int i = 0; i < 3; i++)
                 total[i] += rgb[i];
             assert_code_is_near(

@@ -43,8 +43,8 @@ static struct errors measure_pose_errors(const struct track_options *options,
         double square = 0;
 
         track_next_frame(&track, &f);
-        if (four ? four_localise_body(four, options->n_foods, seen, f.is_new,
-                                      &located)
+        if (four ? four_localise_by_landmarks(four, options->n_foods, seen,
+                                              f.is_new, &located)
                  : glint_localise_body(all, options->n_foods, seen, f.is_new,
                                        &located))
             break;
@@ -199,11 +199,12 @@ TEST(two_foods_may_vanish_at_once)
         glint_localise_body(&l, 5, (const double(*)[3])f.seen, three, &located),
         "three food items"));
     four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
-    assert_null(four_localise_body(&four, 5, (const double(*)[3])f.seen,
-                                   f.is_new, &located));
-    assert_non_null(strstr(
-        four_localise_body(&four, 5, (const double(*)[3])f.seen, two, &located),
-        "four foods"));
+    assert_null(four_localise_by_landmarks(&four, 5, (const double(*)[3])f.seen,
+                                           f.is_new, &located));
+    assert_non_null(
+        strstr(four_localise_by_landmarks(&four, 5, (const double(*)[3])f.seen,
+                                          two, &located),
+               "four foods"));
 }
 
 /* Checks that collinear foods (landmarks) are rejected, and with the method of
@@ -224,16 +225,16 @@ TEST(rejects_collinear_and_coplanar_foods)
         strstr(glint_localise_body(&l, 4, line, none, &located), "on a line"));
     for (int k = 0; k < 2; k++) {
         four_init_localiser(&four, FOUR_FIRST, FOUR_DOUBLE);
-        assert_null(four_localise_body(&four, 5, (const double(*)[3])flat, none,
-                                       &located));
+        assert_null(four_localise_by_landmarks(
+            &four, 5, (const double(*)[3])flat, none, &located));
         if (k == 0)
             assert_non_null(
-                strstr(four_localise_body(&four, 5, (const double(*)[3])flat,
-                                          none, &located),
+                strstr(four_localise_by_landmarks(
+                           &four, 5, (const double(*)[3])flat, none, &located),
                        "in a plane"));
         else
-            assert_null(four_localise_body(&four, 5, (const double(*)[3])flat,
-                                           none, &located));
+            assert_null(four_localise_by_landmarks(
+                &four, 5, (const double(*)[3])flat, none, &located));
         flat[3][2] = 1e-4;
     }
 }

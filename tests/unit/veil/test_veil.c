@@ -100,7 +100,7 @@ static struct glint_image make_image_over_memory(const struct canvas *c,
 
 /* Draws the veil onto black in linear light. Returns the sum of CHANNEL over
  * all pixels, white x pixels. */
-static double draw_veil_linear(struct canvas *c, int channel)
+static double draw_and_sum_veil(struct canvas *c, int channel)
 {
     const struct glint_image image =
         make_image_over_memory(c, GLINT_LINEAR_Q20, linear_q20);
@@ -149,9 +149,9 @@ TEST(veil_has_its_fraction_of_the_light)
             glint_veil_spread_light(c.veil, &s, 1);
             /* At the middle of three columns, the interpolation weights are not
              * exact. */
-            assert_true(fabs(draw_veil_linear(&c, 0) / 15 - 1) < 1e-3);
-            assert_true(fabs(draw_veil_linear(&c, 1) / 7.5 - 1) < 1e-3);
-            assert_true(draw_veil_linear(&c, 2) == 0);
+            assert_true(fabs(draw_and_sum_veil(&c, 0) / 15 - 1) < 1e-3);
+            assert_true(fabs(draw_and_sum_veil(&c, 1) / 7.5 - 1) < 1e-3);
+            assert_true(draw_and_sum_veil(&c, 2) == 0);
             close_veil_canvas(&c);
         }
 }
@@ -171,7 +171,7 @@ TEST(veil_of_a_lamp_is_a_gaussian)
     clear_veil_light(&c);
     add_lamp_to_veil(&c, 81.3, 60.2, 4096);
     glint_veil_spread_light(c.veil, &s, 1);
-    draw_veil_linear(&c, 0);
+    draw_and_sum_veil(&c, 0);
     for (int y = 30; y < 90; y++)
         for (int x = 40; x < 120; x++) {
             /* Two interpolations by quadratic splines each add the variance of
@@ -220,7 +220,7 @@ TEST(black_spot_has_the_veiling_glare_index)
         s = make_gaussian_spread(&c, 20, 0.05 / 0.95);
         glint_veil_read_picture(c.veil, &image, one, &c.bare.shuffle.workers);
         glint_veil_spread_light(c.veil, &s, 1);
-        draw_veil_linear(&c, 1);
+        draw_and_sum_veil(&c, 1);
         for (int i = 0; i < 162 * 121; i++) {
             least = fmin(least, linear_q20[3 * i + 1] * 0x1p-20);
             most = fmax(most, linear_q20[3 * i + 1] * 0x1p-20);
@@ -253,7 +253,7 @@ TEST(veil_of_an_image_has_its_colours)
     glint_veil_read_picture(c.veil, &image, glint_real_of(2),
                             &c.bare.shuffle.workers);
     glint_veil_spread_light(c.veil, &s, 1);
-    draw_veil_linear(&c, 0);
+    draw_and_sum_veil(&c, 0);
     for (int i = 0; i < 161 * 121; i++) {
         for (int k = 0; k < 3; k++)
             sum[k] += linear_q20[3 * i + k] * 0x1p-20;
@@ -289,7 +289,7 @@ TEST(moving_lamp_keeps_the_veil_steady)
         clear_veil_light(&c);
         add_lamp_to_veil(&c, 60 + 0.05 * i, 40 + 0.02 * i, 3000);
         glint_veil_spread_light(c.veil, &s, 1);
-        sum = draw_veil_linear(&c, 0);
+        sum = draw_and_sum_veil(&c, 0);
         least = fmin(least, sum);
         most = fmax(most, sum);
         for (int k = 0; k < 3 * 160 * 90; k++) {
@@ -405,7 +405,7 @@ TEST(extreme_lamps_give_valid_veils)
             clear_veil_light(&c);
             add_lamp_to_veil(&c, place[k][0], place[k][1], ldexp(1, p));
             glint_veil_spread_light(c.veil, &s, 1);
-            sum = draw_veil_linear(&c, 0);
+            sum = draw_and_sum_veil(&c, 0);
             assert_true(sum >= before);
             assert_true(k < 3 || sum == 0);
             assert_true(p < 10 || k >= 3 || sum > 0);
