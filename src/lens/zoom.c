@@ -61,7 +61,9 @@ static const char *list_all_ghosts(struct glint_zoom_lens *z)
     int end = n;
 
     if (n >= GLINT_MAX_ZOOM_GHOSTS)
-        return "the zoom model has too many ghosts";
+        return "the zoom model has more than 2047 ghosts: use a lens with "
+               "fewer "
+               "surfaces";
     for (int k = 0; k < z->n_models; k++)
         next[k] = (uint32_t)n;
     for (int g = 0; g < n; g++) {
@@ -84,7 +86,8 @@ static const char *list_all_ghosts(struct glint_zoom_lens *z)
         }
     }
     if (end >= GLINT_MAX_ZOOM_GHOSTS)
-        return "the zoom model has too many pupil regions of ghosts";
+        return "the zoom model has more than 2047 ghosts and pupil regions of "
+               "ghosts: use a lens with fewer surfaces";
     z->part_from[n] = (int16_t)end;
     for (int k = 0; k < z->n_models; k++)
         if (next[k] != z->model[k].header->n_ghosts)
@@ -242,8 +245,8 @@ get_neighbour_model(const struct glint_zoom_lens *z, int e, int side)
     return &z->model[z->side[side][z->whole[e]]];
 }
 
-/* Returns the zoom position between the two nearest models that contain GHOST,
- * 0 .. 1. */
+/* Returns the current zoom position as a fraction of the way between the two
+ * nearest models that contain GHOST: 0 at the lower one, 1 at the upper one. */
 static int32_t compute_mix_fraction_q30(const struct glint_zoom_lens *z,
                                         int ghost)
 {

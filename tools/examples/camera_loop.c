@@ -3,8 +3,7 @@
  * camera_loop MODEL DEVICE FRAMES >FRAMES.yuyv - draws the flare of the lamps
  * in each frame of a camera, with one thread per processor. Frames have 640x480
  * pixels. They are read by read(), which the simplest cameras support. DEVICE
- * may also be a file of such frames.
- */
+ * may also be a file of such frames. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,8 +44,9 @@ int main(int argc, char **argv)
     static struct glint_image image;
     struct glint_engine_config cfg;
     struct glint_engine_report report;
-    struct glint_error error = {
-        "cannot open the model or the camera, or its frames are not 640x480"};
+    struct glint_error error = {"cannot open the model or the camera, or the "
+                                "camera lacks 640x480 YUYV; "
+                                "usage: camera_loop MODEL DEVICE FRAMES;"};
     struct glint_engine *engine = NULL;
     struct glint_lens lens;
     struct glint_engine_lamp lamps[16];

@@ -58,8 +58,9 @@ static bool reject_or_note_keyword(struct oslo *o)
         if (lines_first_word_is(l, shaping[i]))
             return imported_report_error(
                 o->lens, l->number,
-                "'%s': surfaces that are tilted, decentred, not rotationally "
-                "symmetric, or of other types are not supported",
+                "'%s' is not supported: surfaces must be centred, not tilted, "
+                "spheres, conics (CC) or aspheres (AD .. AH), and without "
+                "pickups and solves",
                 l->word[0]);
     return imported_note_unread_word(o->lens, l->number, l->word[0]);
 }

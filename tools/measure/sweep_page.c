@@ -15,7 +15,9 @@ static const char head[] =
     "picture, which traces every ray in double precision. PSNR, SSIM and the "
     "99th percentile of differences are those of 8-bit sRGB codes, exposed so "
     "that the exact picture's 99.9th percentile is white. Flux is compared in "
-    "linear light. The line is the Pareto front: no measured setting is both "
+    "linear light. The memory floor is the time of adding a small constant "
+    "layer to the pixels. The line is the Pareto front: no measured setting is "
+    "both "
     "faster and more accurate. Settings whose flux is off by more than 2 "
     "percent are not shown in it. Point at a mark to see its setting.</p>\n";
 
@@ -26,7 +28,7 @@ static void write_quality_names_table(const struct sweep *s, FILE *file)
     fputs("<h2>Named qualities</h2>\n<table>", file);
     html_write_table_row(
         file, "th",
-        "lens|size|quality|times floor|PSNR dB|SSIM|p99 codes|flux %%|"
+        "lens|size|quality|time / memory floor|PSNR dB|SSIM|p99 codes|flux %%|"
         "arena KiB|model KiB");
     for (int i = 0; i < s->n_points; i++) {
         const struct sweep_point *p = &s->point[i];

@@ -12,6 +12,7 @@ enum glint_status synth_item_parse_json(struct synth_item *item,
     (void)item;
     (void)line;
     return glint_error_report(error, GLINT_E_UNSUPPORTED, "item",
-                              "glint was built without jansson "
-                              "(libjansson-dev), which reads it");
+                              "--item needs jansson, but glint was built "
+                              "without jansson; install libjansson-dev and "
+                              "build glint again");
 }

@@ -155,7 +155,8 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
         return status;
     if (h->n_ghosts > GLINT_MAX_GHOSTS) {
         snprintf(error->text, sizeof error->text,
-                 "model %s has %lu ghosts, but glint can draw %d at most",
+                 "model %s has %lu ghosts, but glint can draw %d at most: "
+                 "bake the lens again with this version of glint",
                  h->name, (unsigned long)h->n_ghosts, GLINT_MAX_GHOSTS);
         return GLINT_E_LENS;
     }
