@@ -139,11 +139,12 @@ int32_t glint_transfer_v(const struct glint_transfer *transfer, int j, int n);
 
 /* Sets VERTICES to a grid of N_CELLS cells per side over the window, row by
  * row, [n_cells + 1][n_cells + 1]. v rises from row to row, u rises within a
- * row. The energy 65536 of a vertex stands for 2^(exponent[GLINT_OUT_ENERGY] +
- * 29 - energy_up); larger energies are clamped. A ray with a value that does
- * not fit a vertex becomes invalid. For an annular box N_CELLS must be even and
- * at least 4. The rays of the middle row are then invalid, the rows next to it
- * lie on the inner rim, and n_cells - 2 rows of cells cover the box. */
+ * row. The energy of a vertex, _q16, is 2^(energy_up - 29) times the integer
+ * output GLINT_OUT_ENERGY, clamped to 0 .. 1. A ray with a value that does not
+ * fit a vertex becomes invalid. For an annular box N_CELLS must be even and at
+ * least 4. The middle row of rays is then invalid and separates the two halves
+ * of the ring: the rows before and after it lie on the inner rim, so n_cells -
+ * 2 rows of cells cover the box. */
 void glint_transfer_grid(struct glint_transfer *transfer,
                          const struct glint_place *place, int n_cells,
                          struct glint_vertex *vertices);

@@ -66,10 +66,10 @@ inline std::string make_printable(const std::string &text)
 }
 
 /* Returns CAUSE, a message of OpenImageIO, with NAME replaced by "the file",
- * because glint prints NAME before the message. Returns the text UNLESS if
- * CAUSE is empty. */
+ * because glint prints NAME before the message. Returns FALLBACK if CAUSE is
+ * empty. */
 inline std::string remove_file_name(std::string cause, const std::string &name,
-                                    const char *unless)
+                                    const char *fallback)
 {
     const std::string quoted = '"' + name + '"';
 
@@ -77,7 +77,7 @@ inline std::string remove_file_name(std::string cause, const std::string &name,
         for (size_t at = 0; (at = cause.find(own, at)) != std::string::npos;
              at += 8)
             cause.replace(at, own.size(), "the file");
-    return cause.empty() ? unless : cause;
+    return cause.empty() ? fallback : cause;
 }
 
 struct failure {

@@ -40,13 +40,17 @@ struct glint_ground {
     uint8_t rgb[GLINT_GROUND_ROWS][GLINT_GROUND_COLUMNS][3];
 };
 
-/* few, many: (added light / min visible light) that one pixel in
- * GLINT_SEEN_FEW, or one in GLINT_SEEN_MANY, reaches, to an eighth of a stop; 0
- * if fewer pixels have light. So a flare scaled by 1 / few is just visible in
- * few pixels. white: (added light / light that turns all channels white) that
- * one pixel in GLINT_SEEN_DISC reaches; 0 below GLINT_SEEN_BRIGHT. */
+/* Max ratios of light that more than a given fraction of the pixels reach,
+ * rounded down to an eighth of a stop; 0: fewer pixels have a ratio above 0. */
 struct glint_seen {
-    double few, many, white;
+    /* Light that the flare adds / min visible light. few: in 1/GLINT_SEEN_FEW
+     * of the pixels; a flare scaled by 1 / few is just visible. many: in
+     * 1/GLINT_SEEN_MANY of them. */
+    double few, many;
+    /* Light that the flare adds / light that turns all channels white, in
+     * 1/GLINT_SEEN_DISC of the pixels. The ratio of a pixel with a channel
+     * below GLINT_SEEN_BRIGHT is 0. */
+    double white;
 };
 
 void glint_ground_sample_picture(struct glint_ground *ground,

@@ -117,10 +117,10 @@ static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
 
 /* Returns whether set SET has enough wavelengths for a ghost of total light
  * LIGHT: the steps of brightness from wavelength to wavelength are invisible.
- * From one of n wavelengths to the next, light changes by about 5 LIGHT / n.
- * The step is invisible if a tenth of that is below s->step, or if the outlines
- * of neighbouring wavelengths are closer than s->apart_q8. APART: distance
- * between the outermost outlines of the first set, pixels _q8. */
+ * With n wavelengths, steps are invisible if LIGHT / (2 n) is below s->step, or
+ * if the outlines of neighbouring wavelengths are at most s->apart_q8 apart.
+ * APART: distance between the outermost outlines of the first set, pixels
+ * _q8. */
 static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
                                     int64_t apart, struct glint_real light)
 {

@@ -82,11 +82,11 @@ struct glint_record_step {
                      fade */
 };
 
-/* Returns the flux of SPOT, clamped to 0 .. 2^42. The limit is the flux of an
- * all-white picture of the max size. */
+/* Returns the flux of SPOT, clamped to 0 .. 2^42, the flux of 2^26 white
+ * pixels. */
 int64_t glint_record_clamp_flux_q16(const struct glint_spot *spot);
 
-/* Returns the power of a spot, clamped to 0 .. 2^42. */
+/* Returns the power of SPOT, clamped to the same range. */
 int64_t glint_record_clamp_power_q16(const struct glint_spot *spot);
 
 void glint_record_begin_track(struct glint_record *r, uint32_t id,

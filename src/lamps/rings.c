@@ -20,9 +20,8 @@ enum {
     SECTORS = 8,
     BORDERS = 4,
     SAMPLES = 32, /* max number of samples along the radius of the inner disc */
-    RADII = 16,
-    RADIUS_STEPS = 64, /* number of steps of a ray along the radius of the core
-                        */
+    RADII = 16,   /* number of lines from the middle of a core across its rim */
+    RADIUS_STEPS = 64, /* number of samples of such a line per core radius */
     RIM_RADIUS = 32, /* min radius, pixels, of a core whose rim is measured; an
                         eighth of this radius exceeds the blur of a lens */
     RINGS = GLINT_PROFILE_RINGS,
@@ -370,7 +369,7 @@ static int32_t read_max_channel(const struct window *w, int32_t x_q8,
     return q_larger(q_larger(rgb_q20[0], rgb_q20[1]), rgb_q20[2]);
 }
 
-/* Returns the drop of light along ray I at the rim of a core of radius RADIUS,
+/* Returns the drop of light along line I at the rim of a core of radius RADIUS,
  * as a fraction of white. Returns 0 if the rim is near the middle, as in a core
  * that is a ring, or -1 if the drop cannot be measured. */
 static int32_t measure_light_drop_at_rim(const struct window *w, int i,

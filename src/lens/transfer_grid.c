@@ -41,7 +41,7 @@ static void scale_ray_values(const int32_t *x, int shift, int32_t limit,
             scaled[i] = q_scaled(x[i], shift, limit, &invalid[i]);
         return;
     }
-    /* the sum is below 2^30 + 61 + 2^29: no overflow */
+    /* X is about 2^30 at most, the added half 2^29: no overflow */
     for (int i = 0; i < RAYS; i++)
         scaled[i] = (x[i] + (INT32_C(1) << (shift - 1))) >> shift;
 }

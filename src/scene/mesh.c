@@ -514,7 +514,7 @@ static void get_vertex_rows(const struct glint_scene *s,
                  (size_t)n * t->vertex[k];
 }
 
-/* Returns log2 of the length of V, _q16, or -2^24 if V is 0. */
+/* Returns log2 (_q16) of the length of V, or -2^24 if V is 0. */
 static int32_t compute_log2_length_q16(const int64_t v[3])
 {
     const uint64_t any =

@@ -273,7 +273,7 @@ void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
 }
 
 /* By Snell's law, the sine of the angle between ray and normal is multiplied by
- * ETA. The result is below 16. */
+ * ETA, which is below 16. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {

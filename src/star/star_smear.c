@@ -12,8 +12,8 @@ enum {
     HALF = GLINT_STAR_SMEAR_HALF,
     RINGS = GLINT_STAR_SMEAR_RINGS,
     /* STEPS_LOG2: log2 of the number of table steps per pixel in the first
-     * square. FIRST_LOG2: log2 of half the side of the first square in pixels,
-     * _q8. */
+     * square. FIRST_LOG2: half the side of the first square is 2^FIRST_LOG2
+     * pixels _q8, or 8 pixels. */
     STEPS_LOG2 = 2,
     FIRST_LOG2 = 11
 };

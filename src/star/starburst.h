@@ -69,7 +69,8 @@ struct glint_star_line {
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
 
-/* One row of a halo table, [column][channel]: log2 of light times r^2, _q11. */
+/* One row of a halo table, [column][channel]: log2 (_q11) of light times r^2.
+ */
 typedef uint16_t glint_star_halo_row[GLINT_STAR_HALO_COLUMNS][3];
 
 /* Tables of the starburst of a light of power 1, for one stop, f-number and

@@ -44,7 +44,7 @@ static void attenuate_picture_row(const struct visit *v, enum glint_given given,
         v->tiles->blend->hide(v->tiles, v->tile, y, v->scratch);
 }
 
-/* ------------------------------------------------------------------ linear */
+/* --------------------------------------------------------- linear pictures */
 
 /* Expands N values to 2 N in place by repeating each value. Iterates backwards,
  * so that no value is overwritten before it is read. */

@@ -128,8 +128,8 @@ static int draw_and_hash_image(uint64_t *h)
     uint64_t before, after;
     void *mem;
 
-    /* this image shape has too many triangles: the arena rejects it on every
-     * machine */
+    /* 0: the configuration is out of range or lacks a module that the model
+     * needs, on every machine alike */
     if (!room) {
         free(pixels);
         return 0;

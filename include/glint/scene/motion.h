@@ -131,7 +131,7 @@ struct glint_motion {
     uint32_t held; /* number of the block that BUFFER holds; 0: none */
 };
 
-/* State of the body and the food items in one frame. */
+/* State of the body and the landmarks (food items) in one frame. */
 struct glint_motion_frame {
     struct glint_motion_pose pose;
     int32_t food[GLINT_MOTION_MAX_FOODS][3]; /* positions of the food items,

@@ -223,7 +223,7 @@ static bool find_whether_mesh_is_closed(const struct painter *p,
     return true;
 }
 
-/* ------------------------------------------------------------------- whole */
+/* --------------------------------------------------------------- whole map */
 
 static bool check_texel_coverage(const struct painter *p, const char *name,
                                  struct glint_error *error)

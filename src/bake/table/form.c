@@ -268,9 +268,10 @@ static double compute_profile_end(const struct glint_form *f)
     return a * end2 < 0.5 * (1.0 + a * semi2) ? end2 : 0.5 * (1.0 / a + semi2);
 }
 
-/* Sets the transform from the light's frame to the surface's own frame. The
- * transform rotates the light's plane to x-z, shifts by the decentre, and tilts
- * about x and then y around the pivot. */
+/* Sets the transform from the light's frame, in which light lies in the x-z
+ * plane, to the surface's own frame. The transform rotates by the azimuth
+ * PHI_DEG of the light to the lens's frame, then undoes the decentre of the
+ * surface and its tilts around the pivot. */
 static void set_light_to_form_transform(struct glint_form *f,
                                         const struct glint_shape *s,
                                         double phi_deg)

@@ -70,8 +70,8 @@ static bool are_star_optics_equal(const struct glint_star_optics *a,
            a->f_number == b->f_number && a->pixel_um == b->pixel_um;
 }
 
-/* Computes the smear, the diffraction by dirt in the stop, again if the dirt
- * has changed. Sets IS_NEW to whether the dirt has changed. */
+/* Recomputes the smear, the diffraction by dirt in the stop, if the dirt has
+ * changed. Sets IS_NEW to whether the dirt has changed. */
 static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
 {
     struct glint_frame_star *s = &f->star;

@@ -47,16 +47,16 @@ struct glint_frame_star {
 
 /* Sets the starbursts of LAMPS for pictures of the format of IMAGE. SCALE is a
  * factor on the powers of the lamps. Makes the tables if there are none for the
- * frame's stop. Does nothing if share is 0. Returns GLINT_E_MEMORY on
- * failure. */
+ * frame's stop. Does nothing if frame->star.share is 0. Returns GLINT_E_MEMORY
+ * on failure. */
 enum glint_status glint_frame_star_set_lamps(struct glint_frame *frame,
                                              const struct glint_lamp *lamps,
                                              int n, double scale,
                                              const struct glint_image *image);
 
 /* Allocates memory for the starbursts of N lamps and makes the tables, so that
- * drawing frames allocates nothing. Does nothing if share is 0. Returns
- * GLINT_E_MEMORY on failure. */
+ * drawing frames allocates nothing. Does nothing if frame->star.share is 0.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_star_allocate(struct glint_frame *frame, int n);
 
 /* Returns the bytes that are allocated for the starburst of FRAME and for its

@@ -162,7 +162,8 @@ void glint_smear_finish(struct glint_smear *smear)
 
 /* ------------------------------------------------------------------- means */
 
-/* Returns the running integral s->sum at (X, Y), in elements, interpolated. */
+/* Returns the running integral of D (s->sum) at row Y and column X,
+ * interpolated between elements. */
 static double interpolate_difference_integral(const struct glint_smear *s,
                                               double y, double x)
 {

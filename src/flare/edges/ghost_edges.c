@@ -8,7 +8,7 @@
 
 enum {
     OCTAVES = GLINT_LIGHT_OCTAVES,
-    WHITE_LOG2 = 20 /* log2 of display white in _q20 */
+    WHITE_LOG2 = 20 /* display white is 2^WHITE_LOG2, _q20 */
 };
 
 typedef int32_t point_q8[2];

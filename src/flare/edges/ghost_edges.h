@@ -88,8 +88,7 @@ struct glint_ghost_edges {
     int snap_codes_q8; /* change of light, codes, below which edges are
                           pixel-snapped; 0: none is */
     struct glint_ghost_rows *rows;
-    /* patch that dims the cell being drawn by dust or masks (patch.h), or
-     * NULL */
+    /* patch (patch.h) by which dust or masks dim the current cell, or NULL */
     struct glint_patch *patch;
     struct glint_edge *edge; /* [max_edges] */
     int max_edges;

@@ -8,7 +8,7 @@
 #include "base/real.h"
 #include "flare/edges/patch.h"
 
-enum { WHITE_LOG2 = 20 }; /* log2 of display white in _q20 */
+enum { WHITE_LOG2 = 20 }; /* display white is 2^WHITE_LOG2, _q20 */
 
 /* ------------------------------------------------------------------ tables */
 

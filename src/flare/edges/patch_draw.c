@@ -54,8 +54,8 @@ struct draw {
     uint32_t once_q24[2], twice_q24[2]; /* change of the position in the stop
                                            per pixel (once) and per two pixels
                                            (twice) */
-    int nodes, shift;     /* number of nodes per side of the level; log2 of
-                             their distance, _q24 */
+    int nodes, shift;     /* number of nodes per side of the level; 2^shift is
+                             their distance in the stop, _q24 */
     struct glint_box box; /* pixels of the patch's box within the tile */
     /* The current row. part: the sides of the patch that cut its pixels. area:
      * for each pixel, the transmission minus that which edges draw (1 or 0),

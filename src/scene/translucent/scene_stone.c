@@ -657,8 +657,9 @@ static void clear_stale_blocks(const struct glint_scene *s,
     set_exponent_of_map_values(s, skin);
 }
 
-/* Requests the computation of the light that enters at block (X, Y), once. On
- * balls, blocks outside the map are wrapped; on meshes, they are ignored. */
+/* Requests the computation of the light that enters at block (X, Y), unless
+ * it is already requested or computed. On balls, blocks outside the map are
+ * wrapped; on meshes, they are ignored. */
 static void request_block_light(struct glint_stone_skin *skin, int x, int y)
 {
     int i;

@@ -163,8 +163,9 @@ static bool choose_four_food_items(const struct four *l, int n,
     return true;
 }
 
-/* Appends MAP, the motion from this frame to the previous one, to the product
- * of all motions. */
+/* Multiplies l->chain, the product of the motions of earlier frames, by MAP,
+ * the motion from this frame to the previous one. Sets MAP to the new product.
+ */
 static void extend_motion_chain(struct four *l, double map[4][3])
 {
     double next[4][3];

@@ -84,7 +84,7 @@ struct golden {
 };
 
 /* Loads the picture NAME, rendered by an independent program, from ../shared or
- * from the folder that GLINT_SHARED names. Returns whether the file exists. */
+ * from the folder that GLINT_SHARED names. Returns whether it was loaded. */
 static bool load_golden_picture(const char *name,
                                 struct glint_float_image *image)
 {

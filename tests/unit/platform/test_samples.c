@@ -292,8 +292,8 @@ TEST(every_exif_orientation_is_upright)
     }
 }
 
-/* Checks an EXR image whose data window is smaller than the display window and
- * extends outside it. */
+/* Checks an EXR image whose data window (2 x 1 pixels) begins left of the
+ * display window (1 x 2 pixels) and does not cover its second row. */
 TEST(exr_data_window_may_differ)
 {
     float mem[] = {1, 1, 1, 0.5F, 0.5F, 0.5F};

@@ -65,10 +65,10 @@ static void find_barrels_of_zone(int ghost, const double deg[2], bool far,
 enum { GRAZED = 61 };
 static const double grazed_deg[2] = {82.85, 83.25};
 
-/* Checks a ghost whose rays pass the second surface, almost a hemisphere,
- * within 0.003 semi-diameters of its rim. Rays outside the rim are invalid. The
- * barrel aperture there must be found, as it blocks a part of the light,
- * although no ray passes more than 1e-3 semi-diameters outside. */
+/* Checks a ghost whose rays strike the second surface, almost a hemisphere, up
+ * to 0.003 semi-diameters inside its rim. Rays that miss it are invalid.
+ * The barrel aperture there must be found, as it blocks a part of the light,
+ * although no ray strikes the surface 1e-3 semi-diameters outside the rim. */
 TEST(grazed_barrel_is_found)
 {
     static struct glint_zone_rays rays;

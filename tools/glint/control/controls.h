@@ -191,12 +191,13 @@ enum glint_status controls_open(struct controls *input, const char *path,
 const struct control_line *controls_next_line(struct controls *input,
                                               int picture);
 
-/* Returns line I of a file, or NULL if there are fewer. */
+/* Returns line I, from 0, of the lines that INPUT has read, or NULL if there
+ * are fewer. */
 const struct control_line *controls_get_line(const struct controls *input,
                                              int i);
 
-/* Writes "FILE:LINE" of line I of a file (I < 0: of the line returned last)
- * to WHERE[CONTROL_WHERE]. */
+/* Writes "FILE:LINE" of line I, from 0, of INPUT (I < 0: of the line
+ * returned last) to WHERE[CONTROL_WHERE]. */
 void controls_format_location(const struct controls *input, int i, char *where);
 
 /* Counts the line returned last as skipped because of ERROR. */

@@ -58,8 +58,9 @@ int row_parse(struct figure_row *row, struct tool *tool, int n,
 int row_measure(struct figure_row *row);
 
 /* row_measure_ray_errors() (rays.c) writes the errors of the model against
- * exact rays. row_measure_ghost_positions() (places.c) writes the positions of
- * lights and ghosts by the lens's projection. Both return an exit code. */
+ * exact rays. row_measure_ghost_positions() (places.c) writes how far lights
+ * and ghosts shift if the lens's projection replaces that of a pinhole. Both
+ * return an exit code. */
 #define ROW_RAYS                                                             \
     "rays,sensor_p99,sensor_p99_ghosts,stop_rms,stop_rms_ghosts,energy_p99," \
     "energy_p99_ghosts,lost,lost_light,ghosts_seen,ghosts_miss,angles_seen," \
