@@ -175,9 +175,8 @@ static void fit_flux_polynomial(const double *w, const double *flux,
 {
     static const double zero[FLUX_NODES];
     double one[FLUX_NODES];
-    double scratch[GLINT_REGRESS_DOUBLES(FLUX_NODES, GLINT_FLUX_TERMS,
-                                         GLINT_FLUX_TERMS,
-                                         2 * GLINT_FLUX_TERMS - 1)];
+    double scratch[GLINT_REGRESS_DOUBLES(FLUX_NODES, FLUX_NODES, 1,
+                                         GLINT_FLUX_TERMS)];
     const struct glint_regress_samples samples = {
         FLUX_NODES, {zero, zero, zero, w}, one};
     const struct glint_degrees degrees = {

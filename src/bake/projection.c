@@ -83,9 +83,8 @@ static void fit_projection(struct glint_projection *p, const double *rho, int n,
                            double step_deg)
 {
     static const double zero[ANGLES];
-    double scratch[GLINT_REGRESS_DOUBLES(ANGLES, GLINT_PROJECTION_TERMS,
-                                         GLINT_PROJECTION_TERMS,
-                                         2 * GLINT_PROJECTION_TERMS - 1)];
+    double scratch[GLINT_REGRESS_DOUBLES(ANGLES, ANGLES, 1,
+                                         GLINT_PROJECTION_TERMS)];
     double r2[ANGLES], bend[ANGLES], weight[ANGLES], scale = 1;
     const struct glint_regress_samples samples = {
         n, {zero, zero, zero, r2}, weight};

@@ -102,9 +102,8 @@ static void fit_box_polynomial(const struct seen *seen, const double *value,
                                double side[GLINT_BOX_TERMS])
 {
     static const double zero[MAX_BOXES];
-    double scratch[GLINT_REGRESS_DOUBLES(MAX_BOXES, GLINT_BOX_TERMS,
-                                         GLINT_BOX_TERMS,
-                                         3 * (2 * GLINT_BOX_POWERS - 1))];
+    double scratch[GLINT_REGRESS_DOUBLES(MAX_BOXES, MAX_BOXES, 1,
+                                         2 * GLINT_BOX_POWERS)];
     double weight[MAX_BOXES];
     const struct glint_regress_samples samples = {
         seen->n, {zero, zero, seen->s, seen->w}, weight};

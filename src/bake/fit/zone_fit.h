@@ -38,12 +38,10 @@ struct glint_zone_task {
     double settled;
 };
 
-/* Number of doubles of scratch memory for one fit. The number of moments
- * follows from twice the degrees of a skew zone's positions: 18, 16, 10, 8 and
- * 10. */
-#define GLINT_ZONE_SCRATCH                                  \
-    GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, GLINT_MAX_TERMS, \
-                          GLINT_MAX_CANDIDATES, 19 * 17 * 11 * 9 * 11)
+/* Number of doubles of scratch memory for one fit. Skew zones have most planes
+ * and the highest degrees: 9, 8, 5, 4 and 5 for positions. */
+#define GLINT_ZONE_SCRATCH                                                     \
+    GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, 132, 19 * 17, 6 * 5 * 6)
 
 /* Memory for fitting one zone; used by one fit at a time. */
 struct glint_zone_buffers {

@@ -7,10 +7,13 @@
  *
  * Method: greedy growth. Candidates are the neighbours of the chosen terms,
  * with one power more in one variable [Zheng17]. The candidate that reduces the
- * weighted residual most is chosen. Columns are orthogonalised against all
- * chosen ones, so the basis grows together with its QR factors. A candidate
- * that is nearly a combination of chosen terms has a remaining length near 0
- * and is skipped, which makes the factorisation rank revealing.
+ * weighted residual most is chosen (orthogonal matching pursuit). All products
+ * of terms come from tables of sums: consecutive samples that share variables 2
+ * to 4 form a plane, and in a plane a product of two terms is a sum of powers
+ * of variables 0 and 1. The columns of the terms are never computed. Components
+ * along chosen terms follow as in a Cholesky factorisation; a candidate that is
+ * nearly a combination of chosen terms has a remaining length near 0 and is
+ * skipped. The residual is measured on the samples before a fit is accepted.
  */
 #ifndef GLINT_BAKE_REGRESS_REGRESS_H
 #define GLINT_BAKE_REGRESS_REGRESS_H
@@ -54,11 +57,17 @@ struct glint_regress_samples {
     const double *weight;
 };
 
-/* Size of the scratch memory of a fit, in doubles, for N samples and at most
- * TERMS chosen terms out of CANDIDATES. MOMENTS: product of (2 most + 1) over
- * all variables. */
-#define GLINT_REGRESS_DOUBLES(n, terms, candidates, moments) \
-    ((size_t)(moments) + (size_t)(n) * (1 + (terms) + (candidates)))
+enum {
+    GLINT_REGRESS_POWER = 15,  /* max power of variables 0 and 1 */
+    GLINT_REGRESS_PLANES = 544 /* max number of planes */
+};
+
+/* Size of the scratch memory of a fit, in doubles, for N samples in at most
+ * PLANES planes. PLACES: product of (2 most + 1) over variables 0 and 1.
+ * MIXES: product of (most + 1) over the other variables. */
+#define GLINT_REGRESS_DOUBLES(n, planes, places, mixes) \
+    (8 * ((size_t)(n) + 3 * (size_t)(planes)) +         \
+     ((size_t)(planes) + 3) * (3 * (size_t)(places) + (size_t)(mixes)))
 
 /* Fits POLY to Y. Stops when the weighted residual is at most RMS (root mean
  * square) and PEAK (max magnitude), or when no other term reduces it. The

@@ -254,7 +254,7 @@ static void fit_box_polynomial(const struct sides *sides, int degree,
 {
     static const double zero[MOST];
     static const int place[3][3] = {{0, 3, 5}, {1, 4, 0}, {2, 0, 0}};
-    double scratch[GLINT_REGRESS_DOUBLES(MOST, GLINT_BOX_TERMS, 16, 5 * 3 * 5)];
+    double scratch[GLINT_REGRESS_DOUBLES(MOST, MOST, 1, 3 * 2 * 3)];
     double weight[MOST];
     const struct glint_regress_samples samples = {
         sides->n, {zero, zero, sides->x[0], sides->x[1], sides->x[2]}, weight};

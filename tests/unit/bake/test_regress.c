@@ -27,7 +27,7 @@ static double fit_polynomial_on_grid(double (*value)(double u, double v),
     const struct glint_regress_samples samples = {
         RAYS, {u, v, zero, zero}, one};
     double *scratch =
-        malloc(GLINT_REGRESS_DOUBLES(RAYS, 8, 49, 13 * 13) * sizeof *scratch);
+        malloc(GLINT_REGRESS_DOUBLES(RAYS, 1, 13 * 13, 1) * sizeof *scratch);
     double left;
 
     assert_non_null(scratch);
