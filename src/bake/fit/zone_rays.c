@@ -405,6 +405,9 @@ struct sampling {
     /* true: the ray misses a surface, so its position in the stop is unknown */
     bool missed[GLINT_SAMPLING_RAYS];
     double (*radius)[GLINT_MAX_EVENTS + 1];
+    /* how far each ray lies outside the barrel that it exceeds most: its
+     * relative radius - 1, weighted, at most 0.3 */
+    double excess[GLINT_SAMPLING_RAYS];
     /* [events]: range of the relative radii of rays that pass the stop and hit
      * the field */
     double low[GLINT_MAX_EVENTS + 1], high[GLINT_MAX_EVENTS + 1];
@@ -437,8 +440,8 @@ static double mark_missed_surface(double *radius, double (*hits)[2],
 static void extend_radius_ranges(struct sampling *s, const double *radius)
 {
     for (int k = 0; k < s->n_events; k++) {
-        s->low[k] = fmin(s->low[k], radius[k]);
-        s->high[k] = fmax(s->high[k], radius[k]);
+        s->low[k] = radius[k] < s->low[k] ? radius[k] : s->low[k];
+        s->high[k] = radius[k] > s->high[k] ? radius[k] : s->high[k];
     }
 }
 
@@ -456,12 +459,12 @@ static bool sample_barrel_radii(const struct glint_visible *h,
 
     for (int k = 0; k < path->n_events; k++) {
         const struct glint_event *e = &path->event[k];
-        const double r = hypot(hits[k][0], hits[k][1]);
+        const double x = hits[k][0], y = hits[k][1];
 
         radius[k] = e->kind == GLINT_STOP || is_event_unreached(hits[k])
                         ? 0
-                        : r / e->semi_mm;
-        most = fmax(most, radius[k]);
+                        : sqrt(x * x + y * y) / e->semi_mm;
+        most = radius[k] > most ? radius[k] : most;
     }
     sampling->missed[sampling->n] = status != GLINT_RAY_OK;
     if (status == GLINT_RAY_MISSED && h->far)
@@ -473,6 +476,20 @@ static bool sample_barrel_radii(const struct glint_visible *h,
         return false;
     extend_radius_ranges(sampling, radius);
     return most > 1;
+}
+
+static void set_ray_excesses(struct sampling *s)
+{
+    for (int i = 0; i < s->n; i++) {
+        double most = 0;
+
+        for (int k = 0; k < s->n_events; k++) {
+            const double out = s->factor[k] * (s->radius[i][k] - 1);
+
+            most = out > most ? out : most;
+        }
+        s->excess[i] = fmin(most, 0.3);
+    }
 }
 
 /* Samples rays at scattered angles, as a barrel may block rays in a narrow
@@ -519,78 +536,79 @@ static void sample_zone_rays(const struct glint_zone *z,
                                   ? LEAST_RANGE / range
                                   : 1;
     }
+    set_ray_excesses(sampling);
 }
 
-/* Returns how far ray RAY lies outside the barrels that are not among the N
- * barrels CHOSEN: its max relative radius - 1, weighted, at most 0.3; 0 if a
- * chosen barrel blocks the ray. */
-static double compute_unlisted_barrel_excess(const struct sampling *s, int ray,
-                                             const int *chosen, int n)
-{
-    const double *r = s->radius[ray];
-    double most = 0;
+/* rays that no chosen barrel blocks */
+struct open_rays {
+    int n, ray[GLINT_SAMPLING_RAYS];
+};
 
-    for (int k = 0; k < n; k++)
-        if (r[chosen[k]] > 1)
-            return 0;
-    for (int k = 0; k < s->n_events; k++)
-        most = fmax(most, s->factor[k] * (r[k] - 1));
-    return fmin(most, 0.3);
-}
-
-/* Returns the sum of compute_unlisted_barrel_excess() over all rays, for N
- * barrels CHOSEN; *MOST receives the max. MISSED: also counts rays that miss a
- * surface.
- */
-static double sum_unlisted_barrel_excesses(const struct sampling *s,
-                                           bool missed, const int *chosen,
-                                           int n, double *most)
+/* Returns the sum of the excesses of the rays O that barrel BARREL does not
+ * block. */
+static double sum_unblocked_excesses(const struct sampling *s,
+                                     const struct open_rays *o, int barrel)
 {
     double sum = 0;
 
-    *most = 0;
-    for (int i = 0; i < s->n; i++) {
-        const double e = !missed && s->missed[i]
-                             ? 0
-                             : compute_unlisted_barrel_excess(s, i, chosen, n);
-
-        sum += e;
-        *most = fmax(*most, e);
-    }
+    for (int i = 0; i < o->n; i++)
+        if (!(s->radius[o->ray[i]][barrel] > 1))
+            sum += s->excess[o->ray[i]];
     return sum;
 }
 
-/* Adds barrels to the list of RAYS, each time the one that blocks most, until
- * compute_unlisted_barrel_excess() is at most SHOWS for all rays. MISSED: also
- * considers rays that miss a surface. */
+/* Removes the rays that barrel BARREL blocks from O. */
+static void remove_blocked_rays(const struct sampling *s, int barrel,
+                                struct open_rays *o)
+{
+    int kept = 0;
+
+    for (int i = 0; i < o->n; i++)
+        if (!(s->radius[o->ray[i]][barrel] > 1))
+            o->ray[kept++] = o->ray[i];
+    o->n = kept;
+}
+
+static double find_max_excess(const struct sampling *s,
+                              const struct open_rays *o)
+{
+    double most = 0;
+
+    for (int i = 0; i < o->n; i++)
+        most = fmax(most, s->excess[o->ray[i]]);
+    return most;
+}
+
+/* Adds barrels to the list of RAYS, each time the one after which the sum of
+ * excesses of unblocked rays is smallest, until none of these exceeds SHOWS.
+ * MISSED: also considers rays that miss a surface. */
 static void choose_fitted_barrels(const struct sampling *s, bool missed,
                                   double shows, struct glint_zone_rays *rays)
 {
-    double most;
+    struct open_rays open = {.n = 0};
 
-    sum_unlisted_barrel_excesses(s, missed, rays->barrel, rays->n_barrels,
-                                 &most);
-    while (most > shows && rays->n_barrels < GLINT_MAX_BARRELS) {
-        const int n = rays->n_barrels;
+    for (int i = 0; i < s->n; i++)
+        if (missed || !s->missed[i])
+            open.ray[open.n++] = i;
+    for (int k = 0; k < rays->n_barrels; k++)
+        remove_blocked_rays(s, rays->barrel[k], &open);
+    while (find_max_excess(s, &open) > shows &&
+           rays->n_barrels < GLINT_MAX_BARRELS) {
         double least = HUGE_VAL;
         int best = 0;
 
         for (int k = 0; k < s->n_events; k++) {
-            double sum;
+            const double sum = sum_unblocked_excesses(s, &open, k);
 
-            rays->barrel[n] = k;
-            sum = sum_unlisted_barrel_excesses(s, missed, rays->barrel, n + 1,
-                                               &most);
             if (sum < least) {
                 least = sum;
                 best = k;
             }
         }
-        rays->barrel[n] = best;
-        rays->n_barrels++;
-        sum_unlisted_barrel_excesses(s, missed, rays->barrel, n + 1, &most);
+        rays->barrel[rays->n_barrels++] = best;
+        remove_blocked_rays(s, best, &open);
     }
-    rays->missed_cut = most;
+    rays->missed_cut = find_max_excess(s, &open);
 }
 
 void glint_zone_choose_barrels(const struct glint_zone *zone,
