@@ -147,7 +147,7 @@ static enum glint_status fit_zone_outputs(struct fitter *f,
                                        glint_next_has_film_stack(f->visible)};
     enum glint_status status;
 
-    glint_zone_trace_rays(zone, band, &buffers->rays, &buffers->energies);
+    glint_zone_trace_rays(zone, band, &buffers->rays);
     a->errors.worst = 0;
     if ((p->depth > 0 || !is_full_band(p->w0, p->w1)) &&
         glint_zone_rays_are_all_blocked(&buffers->rays))

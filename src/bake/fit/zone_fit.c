@@ -375,6 +375,19 @@ static double set_energy_values(struct fit *f, const struct glint_zone_rays *r,
     return largest;
 }
 
+/* Returns the rays for fitting energies. Traces them if this is the first fit
+ * of the zone that gets as far as its energy. */
+static const struct glint_zone_rays *get_energy_rays(struct fit *f)
+{
+    struct glint_zone_buffers *const b = f->buffers;
+
+    if (!f->task->zone->skew && !b->has_energies)
+        glint_zone_trace_energies(f->task->zone, f->task->visible, &b->rays,
+                                  &b->energies);
+    b->has_energies = true;
+    return !f->task->zone->skew && b->energies.n ? &b->energies : &b->rays;
+}
+
 /* Fits the energy or its fourth root. Towards total reflection the energy grows
  * a thousandfold, while its fourth root is as smooth as a position. If a
  * coating reflects nothing at some wavelength, the root has a cusp there, while
@@ -383,8 +396,7 @@ static enum glint_status fit_energy_output(struct fit *f,
                                            struct glint_fitted_system *system,
                                            double *worst)
 {
-    const struct glint_zone_rays *r =
-        f->buffers->energies.n ? &f->buffers->energies : &f->buffers->rays;
+    const struct glint_zone_rays *const r = get_energy_rays(f);
     struct glint_fitted_output *o = &system->output[system->n_outputs];
     double least = HUGE_VAL, most = 1e-30, left, grain;
     struct glint_poly poly, other;
@@ -579,6 +591,7 @@ enum glint_status glint_zone_fit_outputs(const struct glint_zone_task *task,
     struct fit f = {task, aim, buffers, errors};
     enum glint_status status;
 
+    buffers->has_energies = false;
     set_ray_weights(&f);
     status = fit_all_outputs(&f, system);
     if (status != GLINT_OK || is_next_step_decided(&f))

@@ -5,10 +5,10 @@
  *   in   rays of the zone, tolerances for its ghost
  *   out  a sparse polynomial per output, and its errors
  *
- *     glint_zone_trace_rays(&zone, visible, &buffers->rays,
- * &buffers->energies); aim = glint_zone_aim_compute_tolerances(tolerance,
- * &zone, &buffers->rays); status = glint_zone_fit_outputs(&task, &aim, buffers,
- * &system, &errors);
+ *     glint_zone_trace_rays(&zone, visible, &buffers->rays);
+ *     aim = glint_zone_aim_compute_tolerances(tolerance, &zone,
+ *                                             &buffers->rays);
+ *     status = glint_zone_fit_outputs(&task, &aim, buffers, &system, &errors);
  *
  * Errors count where they are visible: a ray outside the visible region or the
  * field only has to stay outside. Rays that the polynomials transmit although
@@ -46,8 +46,10 @@ struct glint_zone_task {
 /* Memory for fitting one zone; used by one fit at a time. */
 struct glint_zone_buffers {
     double *scratch; /* scratch memory, GLINT_ZONE_SCRATCH doubles */
-    /* rays that are fitted; each fit overwrites them */
+    /* Rays that are fitted; each fit overwrites them. Energies are traced when a
+     * fit first needs them. */
     struct glint_zone_rays rays, energies;
+    bool has_energies;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
     /* brightness weights, see glint_zone_aim_set_ray_brightness() */
     double light[GLINT_ZONE_RAYS];

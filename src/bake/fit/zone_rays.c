@@ -298,40 +298,35 @@ double glint_zone_rays_compute_energy_ratio(const struct glint_zone_rays *rays)
     return spread;
 }
 
-/* Traces rays for fitting energies, which hardly vary over the pupil, but
- * oscillate with the wavelength if coatings have several films. STEEP: energies
- * also vary over the pupil, as near total reflection; the grid is then finer,
- * with five wavelengths per angle. */
-static void trace_rays_for_energies(const struct glint_zone *zone,
-                                    const struct glint_visible *visible,
-                                    bool steep, struct glint_zone_rays *rays)
-{
-    static const int shift[] = {0, 2, 4, 6, 9};
-
-    rays->n = 0;
-    for (int k = 0; k < SINES * GLINT_VISIBLE_WAVES && !steep; k++)
-        trace_pupil_grid(zone, visible, k / GLINT_VISIBLE_WAVES,
-                         k % GLINT_VISIBLE_WAVES, 4, rays);
-    for (int k = 0; k < 5 * SINES && steep; k++)
-        trace_pupil_grid(zone, visible, k / 5,
-                         (k / 5 + shift[k % 5]) % GLINT_VISIBLE_WAVES, 2, rays);
-}
-
 void glint_zone_trace_rays(const struct glint_zone *zone,
                            const struct glint_visible *visible,
-                           struct glint_zone_rays *rays,
-                           struct glint_zone_rays *energies)
+                           struct glint_zone_rays *rays)
 {
-    energies->n_barrels = energies->n = 0;
-    rays->scattered = energies->scattered = zone->skew;
-    if (zone->skew) {
+    rays->scattered = zone->skew;
+    if (zone->skew)
         trace_scattered_rays(zone, visible, rays);
-        return;
-    }
-    trace_rays_for_positions(zone, visible, rays);
-    trace_rays_for_energies(
-        zone, visible, glint_zone_rays_compute_energy_ratio(rays) > GLINT_STEEP,
-        energies);
+    else
+        trace_rays_for_positions(zone, visible, rays);
+}
+
+void glint_zone_trace_energies(const struct glint_zone *zone,
+                               const struct glint_visible *visible,
+                               const struct glint_zone_rays *rays,
+                               struct glint_zone_rays *energies)
+{
+    static const int shift[] = {0, 2, 4, 6, 9};
+    const bool steep =
+        glint_zone_rays_compute_energy_ratio(rays) > GLINT_STEEP;
+
+    energies->n_barrels = energies->n = 0;
+    energies->scattered = false;
+    for (int k = 0; k < SINES * GLINT_VISIBLE_WAVES && !steep; k++)
+        trace_pupil_grid(zone, visible, k / GLINT_VISIBLE_WAVES,
+                         k % GLINT_VISIBLE_WAVES, 4, energies);
+    for (int k = 0; k < 5 * SINES && steep; k++)
+        trace_pupil_grid(zone, visible, k / 5,
+                         (k / 5 + shift[k % 5]) % GLINT_VISIBLE_WAVES, 2,
+                         energies);
 }
 
 /* Adds the rays of T to RAYS in groups of N consecutive ones. Skips groups with

@@ -90,12 +90,20 @@ void glint_zone_choose_barrels(const struct glint_zone *zone,
                                double shows, glint_zone_sampling *sampling,
                                struct glint_zone_rays *rays);
 
-/* Traces RAYS for positions and barrels, and ENERGIES at fewer pupil points but
- * more wavelengths. For skew zones RAYS serve for energies, too. */
+/* Traces RAYS for positions and barrels; for skew zones, also for energies. */
 void glint_zone_trace_rays(const struct glint_zone *zone,
                            const struct glint_visible *visible,
-                           struct glint_zone_rays *rays,
-                           struct glint_zone_rays *energies);
+                           struct glint_zone_rays *rays);
+
+/* Traces ENERGIES of a zone that is not skew, at fewer pupil points but more
+ * wavelengths than RAYS. Energies hardly vary over the pupil, but oscillate with
+ * the wavelength if coatings have several films. If those of RAYS also vary over
+ * the pupil, as near total reflection, the grid is finer, with five wavelengths
+ * per angle. */
+void glint_zone_trace_energies(const struct glint_zone *zone,
+                               const struct glint_visible *visible,
+                               const struct glint_zone_rays *rays,
+                               struct glint_zone_rays *energies);
 
 /* Returns whether errors of rays in ZONE are weighted by the local brightness,
  * which is computed from neighbouring rays. */

@@ -203,7 +203,7 @@ static enum glint_status fit_piece_zone(struct fitter *f,
 
     glint_zone_choose_barrels(&p->zone, band, f->tolerance->escape,
                               &f->sampling, &b->rays);
-    glint_zone_trace_rays(&p->zone, band, &b->rays, &b->energies);
+    glint_zone_trace_rays(&p->zone, band, &b->rays);
     /* If light passes only at the rim of the patch, none of the sampled rays
      * shows it. The halves of the patch are then fitted instead. */
     if (glint_zone_rays_are_all_blocked(&b->rays))

@@ -173,7 +173,7 @@ static double compute_ray_margin(const struct glint_zone_rays *rays, int i)
 TEST(rays_land_as_at_a_single_position)
 {
     static struct glint_visible_profile profile;
-    static struct glint_zone_rays of[3], energies;
+    static struct glint_zone_rays of[3];
     const double range[2] = {0, glint_sin_deg(4)};
     struct glint_zone zone;
     int own = 0, beside = 0;
@@ -182,8 +182,7 @@ TEST(rays_land_as_at_a_single_position)
     glint_visible_find_profile(&both[0], range, &profile);
     glint_zone_init(&zone, &profile, range[0], range[1], false);
     for (int k = 0; k < 3; k++)
-        glint_zone_trace_rays(&zone, k < 2 ? &alone[k] : &both[0], &of[k],
-                              &energies);
+        glint_zone_trace_rays(&zone, k < 2 ? &alone[k] : &both[0], &of[k]);
     for (int i = 0; i < of[2].n; i++) {
         const int a = find_ray_at_position(&of[0], &of[2], i);
         const int b = find_ray_at_position(&of[1], &of[2], i);

@@ -136,7 +136,7 @@ static void fit_zone_of_grazed_barrel(bool far, int stopped,
         brightness.level[k] = 1e-9;
     find_barrels_of_zone(GRAZED, grazed_deg, true, &buffers.rays);
     visible.far = far;
-    glint_zone_trace_rays(&zone, &visible, &buffers.rays, &buffers.energies);
+    glint_zone_trace_rays(&zone, &visible, &buffers.rays);
     for (int i = 0; stopped && i < buffers.rays.n; i += stopped)
         buffers.rays.at[RAY_EXCESS][i] = 2;
     aim = glint_zone_aim_compute_tolerances(&tolerance, &zone, &buffers.rays);
@@ -161,7 +161,7 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
     glint_zone_choose_barrels(&zone, &visible, tolerance.escape,
                               (glint_zone_sampling *)buffers.scratch,
                               &buffers.rays);
-    glint_zone_trace_rays(&zone, &visible, &buffers.rays, &buffers.energies);
+    glint_zone_trace_rays(&zone, &visible, &buffers.rays);
     for (int i = 0; i < buffers.rays.n; i++) {
         const double radius = buffers.rays.radius[0][i];
         double x[GLINT_VARIABLES], off;
