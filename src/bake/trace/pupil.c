@@ -84,8 +84,8 @@ static void add_ray_to_bounds(struct bounds *b, const struct glint_ray *ray)
                          ray->sensor_x_mm, ray->sensor_y_mm};
 
     for (int k = 0; k < 5; k++) {
-        b->low[k] = b->n ? fmin(b->low[k], v[k]) : v[k];
-        b->high[k] = b->n ? fmax(b->high[k], v[k]) : v[k];
+        b->low[k] = b->n && b->low[k] < v[k] ? b->low[k] : v[k];
+        b->high[k] = b->n && b->high[k] > v[k] ? b->high[k] : v[k];
     }
     b->n++;
 }
@@ -93,6 +93,17 @@ static void add_ray_to_bounds(struct bounds *b, const struct glint_ray *ray)
 static double compute_distance_to_zero(double low, double high)
 {
     return low > 0 ? low : high < 0 ? -high : 0;
+}
+
+/* Returns whether the rectangle LOW .. HIGH, (x, y), has a point within RADIUS
+ * of (0, 0). */
+static bool is_circle_reached(const double *low, const double *high,
+                              double radius)
+{
+    const double x = compute_distance_to_zero(low[0], high[0]);
+    const double y = compute_distance_to_zero(low[1], high[1]);
+
+    return x * x + y * y <= radius * radius;
 }
 
 /* Returns whether an unblocked ray may pass within a cell. B: bounds of the
@@ -110,13 +121,8 @@ static bool can_cell_pass_light(const struct search *s, const struct bounds *b)
         low[k] = b->low[k] - grow;
         high[k] = b->high[k] + grow;
     }
-    return low[2] <= 1 &&
-           hypot(compute_distance_to_zero(low[0], high[0]),
-                 compute_distance_to_zero(low[1], high[1])) <=
-               s->openings.stop_mm &&
-           hypot(compute_distance_to_zero(low[3], high[3]),
-                 compute_distance_to_zero(low[4], high[4])) <=
-               s->openings.field_mm;
+    return low[2] <= 1 && is_circle_reached(low, high, s->openings.stop_mm) &&
+           is_circle_reached(low + 3, high + 3, s->openings.field_mm);
 }
 
 /* Marks the corners of cell (I, J) and extends BOX by the cell. CELL: bounds of
