@@ -83,10 +83,12 @@ void glint_visible_narrow_band(struct glint_visible *visible,
 bool glint_visible_is_ray_visible(const struct glint_visible *visible,
                                   const struct glint_ray *ray)
 {
-    return ray->rel_radius <= 1 &&
-           hypot(ray->stop_x_mm, ray->stop_y_mm) <=
-               visible->setup->optics.stop_radius_mm &&
-           hypot(ray->sensor_x_mm, ray->sensor_y_mm) <= visible->field_mm;
+    const double stop = visible->setup->optics.stop_radius_mm;
+    const double x = ray->stop_x_mm, y = ray->stop_y_mm;
+    const double sx = ray->sensor_x_mm, sy = ray->sensor_y_mm;
+
+    return ray->rel_radius <= 1 && x * x + y * y <= stop * stop &&
+           sx * sx + sy * sy <= visible->field_mm * visible->field_mm;
 }
 
 void glint_visible_join_boxes(struct glint_pupil *a,
@@ -494,10 +496,21 @@ enum {
 };
 
 /* Returns whether light passes at one of the first N wavelengths of
- * glint_visible_colour. Sets BOX to the box at that wavelength. */
+ * glint_visible_colour, and sets BOX to the box at that wavelength. NEAR is the
+ * box at a nearby angle, around which light is searched first, or NULL. */
 static bool find_box_at_any_colour(const struct glint_visible *h, double sine,
-                                   int n, struct glint_pupil *box)
+                                   int n, const struct glint_pupil *near,
+                                   struct glint_pupil *box)
 {
+    for (int k = 0; k < n && near; k++) {
+        struct glint_pupil around = enlarge_box_by_margin(near);
+
+        if (shrink_box_to_visible(h, &h->position_path[glint_visible_colour[k]],
+                                  sine, 24, 12, &around)) {
+            *box = around;
+            return true;
+        }
+    }
     for (int k = 0; k < n; k++)
         if (find_visible_box(h, &h->position_path[glint_visible_colour[k]],
                              sine, box))
@@ -505,54 +518,33 @@ static bool find_box_at_any_colour(const struct glint_visible *h, double sine,
     return false;
 }
 
-static bool is_ghost_visible_at_angle(const struct glint_visible *h,
-                                      double sine, int n)
-{
-    struct glint_pupil box;
-
-    return find_box_at_any_colour(h, sine, n, &box);
-}
-
-/* Returns whether light at the middle of the band passes, and sets BOX. If
- * INSIDE, BOX is the box at the previous angle; for non-spherical surfaces,
- * which are slow to trace, the region around it is searched first. */
-static bool is_ghost_visible_at_mid_band(const struct glint_visible *h,
-                                         double sine, bool inside,
-                                         struct glint_pupil *box)
-{
-    if (h->shaped && inside) {
-        struct glint_pupil near = enlarge_box_by_margin(box);
-
-        if (shrink_box_to_visible(h, &h->position_path[glint_visible_colour[0]],
-                                  sine, 24, 12, &near)) {
-            *box = near;
-            return true;
-        }
-    }
-    return find_box_at_any_colour(h, sine, 1, box);
-}
-
 /* Finds the end of an angle range by bisection: the last sine, from WITH
  * towards WITHOUT, at which light of any of the three wavelengths passes. At
- * mid band, light passes at WITH but not at WITHOUT. */
+ * mid band, light passes at WITH, in BOX, but not at WITHOUT. */
 static double find_end_of_angle_range(const struct glint_visible *h,
-                                      double with, double without)
+                                      double with, double without,
+                                      const struct glint_pupil *box)
 {
+    struct glint_pupil last = *box, found;
+
     for (int k = 0; k < FARTHER && without > 0 && without < 1; k++) {
         const double next = without + (without - with);
 
-        if (!is_ghost_visible_at_angle(h, without, 3))
+        if (!find_box_at_any_colour(h, without, 3, &last, &found))
             break;
+        last = found;
         with = without;
         without = fmin(1, fmax(0, next));
     }
     for (int k = 0; k < BISECTIONS; k++) {
         const double middle = 0.5 * (with + without);
 
-        if (is_ghost_visible_at_angle(h, middle, 3))
+        if (find_box_at_any_colour(h, middle, 3, &last, &found)) {
+            last = found;
             with = middle;
-        else
+        } else {
             without = middle;
+        }
     }
     return with;
 }
@@ -577,24 +569,26 @@ static int find_angle_ranges(const struct glint_visible *visible,
                              double max_deg, double (*range)[2])
 {
     const int steps = (int)ceil(max_deg / SCAN_DEG);
-    struct glint_pupil box;
+    struct glint_pupil last = {.y1_mm = 0}, box;
     double before = 0;
     bool inside = false;
     int n = 0;
 
     for (int k = 0; k <= steps; k++) {
         const double sine = glint_sin_deg(fmin(k * SCAN_DEG, max_deg));
-        const bool now =
-            is_ghost_visible_at_mid_band(visible, sine, inside, &box);
+        const bool now = find_box_at_any_colour(visible, sine, 1,
+                                                inside ? &last : NULL, &box);
 
         if (now && !inside && n == GLINT_MAX_RANGES)
             break;
         if (now && !inside)
             range[n++][0] =
-                k ? find_end_of_angle_range(visible, sine, before) : 0;
+                k ? find_end_of_angle_range(visible, sine, before, &box) : 0;
         if (!now && inside)
-            n = end_angle_range(range, n,
-                                find_end_of_angle_range(visible, before, sine));
+            n = end_angle_range(
+                range, n,
+                find_end_of_angle_range(visible, before, sine, &last));
+        last = now ? box : last;
         inside = now;
         before = sine;
     }
