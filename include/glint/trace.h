@@ -143,6 +143,14 @@ void glint_trace_row(const struct glint_path *path, const struct glint_row *row,
                      struct glint_ray *ray, enum glint_ray_status *status,
                      double (*hits)[2]);
 
+/* Traces ROWS rows of a grid: row J like ROW, but at the height Y_MM[J]. RAY and
+ * STATUS have [rows][n] entries. Takes less time than single rows, as rays of
+ * the end of a row are traced together with those of the next. */
+void glint_trace_grid(const struct glint_path *path,
+                      const struct glint_row *row, int rows, const double *y_mm,
+                      struct glint_ray *ray, enum glint_ray_status *status,
+                      double (*hits)[2]);
+
 /* Returns the index of refraction of a glass at WAVELENGTH_NM, by the two-term
  * Cauchy formula from ND and VD. VD <= 0 means no dispersion. */
 double glint_index(double nd, double vd, double wavelength_nm);

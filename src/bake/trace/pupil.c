@@ -37,8 +37,9 @@ struct search {
     struct glint_path places;
     const struct glint_path *path;
     int across, down; /* numbers of cells across and down in this round */
-    struct glint_ray ray[DOWN + 1][ACROSS + 1];
-    enum glint_ray_status status[DOWN + 1][ACROSS + 1];
+    /* rays of the grid, [down + 1][across + 1] */
+    struct glint_ray ray[(DOWN + 1) * (ACROSS + 1)];
+    enum glint_ray_status status[(DOWN + 1) * (ACROSS + 1)];
     /* region that the grid of this round covers */
     struct glint_pupil grid;
     /* true: the ray is a corner of a marked cell, in which light may pass */
@@ -57,18 +58,30 @@ static double compute_grid_row_y(const struct search *s,
     return p->y0_mm + (p->y1_mm - p->y0_mm) * j / s->down;
 }
 
-/* Traces row J of the grid of rays over the pupil region P along PATH. */
-static void trace_grid_row(struct search *s, const struct glint_pupil *p,
-                           const struct glint_path *path, int j)
+/* Returns the index of ray I in row J of the grid. */
+static int get_ray_index(const struct search *s, int i, int j)
+{
+    return j * (s->across + 1) + i;
+}
+
+/* Traces N rows of the grid of rays over the pupil region P along PATH, from
+ * row J on. */
+static void trace_grid_rows(struct search *s, const struct glint_pupil *p,
+                            const struct glint_path *path, int j, int n)
 {
     const double *d = s->openings.direction;
     const struct glint_row row = {s->across + 1,
                                   p->x0_mm,
                                   (p->x1_mm - p->x0_mm) / s->across,
-                                  compute_grid_row_y(s, p, j),
+                                  0,
                                   {d[0], d[1], d[2]}};
+    const int first = get_ray_index(s, 0, j);
+    double y_mm[DOWN + 1];
 
-    glint_trace_row(path, &row, s->ray[j], s->status[j], NULL);
+    for (int k = 0; k < n; k++)
+        y_mm[k] = compute_grid_row_y(s, p, j + k);
+    glint_trace_grid(path, &row, n, y_mm, s->ray + first, s->status + first,
+                     NULL);
 }
 
 struct bounds {
@@ -167,16 +180,17 @@ static bool shrink_to_visible_cells(struct search *s, struct glint_pupil *p)
 
     s->grid = *p;
     memset(s->kept, 0, sizeof s->kept);
-    for (int j = 0; j <= s->down; j++)
-        trace_grid_row(s, p, &s->places, j);
+    trace_grid_rows(s, p, &s->places, 0, s->down + 1);
     for (int j = 0; j < s->down; j++)
         for (int i = 0; i < s->across; i++) {
             struct bounds cell = {.n = 0};
 
-            for (int k = 0; k < 4; k++)
-                if (s->status[j + (k >> 1)][i + (k & 1)] == GLINT_RAY_OK)
-                    add_ray_to_bounds(&cell,
-                                      &s->ray[j + (k >> 1)][i + (k & 1)]);
+            for (int k = 0; k < 4; k++) {
+                const int at = get_ray_index(s, i + (k & 1), j + (k >> 1));
+
+                if (s->status[at] == GLINT_RAY_OK)
+                    add_ray_to_bounds(&cell, &s->ray[at]);
+            }
             if (can_cell_pass_light(s, &cell))
                 mark_visible_cell(s, i, j, &cell, &box, &found);
         }
@@ -250,10 +264,13 @@ static double find_max_energy(struct search *s)
     for (int j = 0; j <= s->down; j++) {
         if (!memchr(s->kept[j], 1, sizeof s->kept[j]))
             continue;
-        trace_grid_row(s, &s->grid, s->path, j);
-        for (int i = 0; i <= s->across; i++)
-            if (s->kept[j][i] && s->status[j][i] == GLINT_RAY_OK)
-                most = fmax(most, s->ray[j][i].energy);
+        trace_grid_rows(s, &s->grid, s->path, j, 1);
+        for (int i = 0; i <= s->across; i++) {
+            const int at = get_ray_index(s, i, j);
+
+            if (s->kept[j][i] && s->status[at] == GLINT_RAY_OK)
+                most = fmax(most, s->ray[at].energy);
+        }
     }
     return most;
 }

@@ -399,23 +399,34 @@ void glint_trace_many(const struct glint_path *path, int n,
     }
 }
 
+void glint_trace_grid(const struct glint_path *path,
+                      const struct glint_row *row, int rows,
+                      const double *y_mm, struct glint_ray *ray,
+                      enum glint_ray_status *status, double (*hits)[2])
+{
+    struct glint_launch from[LANES];
+    int n = 0, at = 0;
+
+    for (int j = 0; j < rows; j++)
+        for (int i = 0; i < row->n; i++) {
+            from[n++] = (struct glint_launch){
+                row->x0_mm + i * row->step_mm,
+                y_mm[j],
+                {row->direction[0], row->direction[1], row->direction[2]}};
+            if (n < LANES && (i + 1 < row->n || j + 1 < rows))
+                continue;
+            glint_trace_many(path, n, from, ray + at, status + at,
+                             hits ? hits + at * path->n_events : NULL);
+            at += n;
+            n = 0;
+        }
+}
+
 void glint_trace_row(const struct glint_path *path, const struct glint_row *row,
                      struct glint_ray *ray, enum glint_ray_status *status,
                      double (*hits)[2])
 {
-    struct glint_launch from[LANES];
-
-    for (int at = 0; at < row->n; at += LANES) {
-        const int n = row->n - at < LANES ? row->n - at : LANES;
-
-        for (int k = 0; k < n; k++)
-            from[k] = (struct glint_launch){
-                row->x0_mm + (at + k) * row->step_mm,
-                row->y_mm,
-                {row->direction[0], row->direction[1], row->direction[2]}};
-        glint_trace_many(path, n, from, ray + at, status + at,
-                         hits ? hits + at * path->n_events : NULL);
-    }
+    glint_trace_grid(path, row, 1, &row->y_mm, ray, status, hits);
 }
 
 enum glint_ray_status glint_trace(const struct glint_path *path, double px_mm,

@@ -101,7 +101,8 @@ void glint_visible_join_boxes(struct glint_pupil *a,
 
 /* -------------------------------------------------------------------- boxes */
 
-enum { ACROSS = 64 /* number of columns of the finest grid */ };
+/* max numbers of cells of a grid */
+enum { ACROSS = 64, DOWN = 32 };
 
 /* the unblocked rays of a grid: first and last column, last row */
 struct extent {
@@ -113,26 +114,28 @@ static bool trace_box_grid(const struct glint_visible *h,
                            int across, int down, const struct glint_pupil *box,
                            struct extent *extent)
 {
-    struct glint_row row = {across + 1,
-                            box->x0_mm,
-                            (box->x1_mm - box->x0_mm) / across,
-                            0,
-                            {sine, 0, sqrt(1 - sine * sine)}};
-    struct glint_ray ray[ACROSS + 1];
-    enum glint_ray_status status[ACROSS + 1];
+    const struct glint_row row = {across + 1,
+                                  box->x0_mm,
+                                  (box->x1_mm - box->x0_mm) / across,
+                                  0,
+                                  {sine, 0, sqrt(1 - sine * sine)}};
+    struct glint_ray ray[(ACROSS + 1) * (DOWN + 1)];
+    enum glint_ray_status status[(ACROSS + 1) * (DOWN + 1)];
+    double y_mm[DOWN + 1];
 
+    for (int j = 0; j <= down; j++)
+        y_mm[j] = box->y1_mm * j / down;
+    glint_trace_grid(path, &row, down + 1, y_mm, ray, status, NULL);
     *extent = (struct extent){across + 1, -1, -1};
-    for (int j = 0; j <= down; j++) {
-        row.y_mm = box->y1_mm * j / down;
-        glint_trace_row(path, &row, ray, status, NULL);
-        for (int i = 0; i <= across; i++) {
-            if (status[i] != GLINT_RAY_OK ||
-                !glint_visible_is_ray_visible(h, &ray[i]))
-                continue;
-            extent->i0 = i < extent->i0 ? i : extent->i0;
-            extent->i1 = i > extent->i1 ? i : extent->i1;
-            extent->j1 = j;
-        }
+    for (int k = 0; k < (across + 1) * (down + 1); k++) {
+        const int i = k % (across + 1);
+
+        if (status[k] != GLINT_RAY_OK ||
+            !glint_visible_is_ray_visible(h, &ray[k]))
+            continue;
+        extent->i0 = i < extent->i0 ? i : extent->i0;
+        extent->i1 = i > extent->i1 ? i : extent->i1;
+        extent->j1 = k / (across + 1);
     }
     return extent->i1 >= 0;
 }
@@ -161,19 +164,19 @@ static bool grow_box_to_visible(const struct glint_visible *h,
                                 const struct glint_path *path, double sine,
                                 struct glint_pupil *box)
 {
-    enum { COARSE = 16, DOWN = 8, ROUNDS = 8 };
+    enum { COARSE = 16, ROUNDS = 8 };
 
     for (int round = 0; round < ROUNDS; round++) {
         const double more = 0.5 * (box->x1_mm - box->x0_mm);
         struct extent e;
 
-        if (!trace_box_grid(h, path, sine, COARSE, DOWN, box, &e))
+        if (!trace_box_grid(h, path, sine, COARSE, COARSE / 2, box, &e))
             return false;
-        if (e.i0 > 0 && e.i1 < COARSE && e.j1 < DOWN)
+        if (e.i0 > 0 && e.i1 < COARSE && e.j1 < COARSE / 2)
             return true;
         box->x0_mm -= e.i0 == 0 ? more : 0;
         box->x1_mm += e.i1 == COARSE ? more : 0;
-        box->y1_mm *= e.j1 == DOWN ? 1.5 : 1;
+        box->y1_mm *= e.j1 == COARSE / 2 ? 1.5 : 1;
     }
     return false;
 }
@@ -203,7 +206,7 @@ static bool find_tight_visible_box(const struct glint_visible *h,
                                    struct glint_pupil *box)
 {
     bool found = shrink_box_to_visible(h, path, sine, 24, 12, box) ||
-                 shrink_box_to_visible(h, path, sine, ACROSS, 32, box);
+                 shrink_box_to_visible(h, path, sine, ACROSS, DOWN, box);
 
     for (int round = 0; round < 5 && found; round++) {
         const double before = (box->x1_mm - box->x0_mm) * box->y1_mm;
@@ -238,7 +241,6 @@ static double shrink_box_to_nearest_ray(const struct glint_visible *h,
                                         const struct glint_path *path,
                                         double sine, struct glint_pupil *box)
 {
-    enum { DOWN = 32 };
     const double dx = (box->x1_mm - box->x0_mm) / ACROSS;
     const double dy = box->y1_mm / DOWN, x0 = box->x0_mm;
     struct glint_row row = {
