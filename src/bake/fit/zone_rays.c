@@ -115,36 +115,59 @@ static double compute_fractional_product(int n, double r)
     return fmod(n * r, 1);
 }
 
-/* Traces a grid of rays at one angle and wavelength. Fast lenses: the grid is
- * shifted by a different amount for each angle and wavelength, as polynomials
- * could otherwise oscillate between rays. In the finest grid only every third
- * ray far outside the visible region is stored. */
+/* grid over the pupil at one angle and wavelength, in zone coordinates */
+struct pupil_grid {
+    int columns, rows;
+    double u[ACROSS + 1], v[DOWN + 1], s, w;
+};
+
+/* Sets G to every STRIDE-th column and row. Fast lenses: the grid is shifted by
+ * a different amount for each angle and wavelength, as polynomials could
+ * otherwise oscillate between rays. */
+static void set_pupil_grid(const struct glint_zone *zone, bool wide, int sine,
+                           int wave, int stride, struct pupil_grid *g)
+{
+    /* Multiples of 1 / g and 1 / g^2 fill a square evenly, where g is the root
+     * of x^3 = x + 1. */
+    const int plane = sine * 4 + wave;
+    const double move = wide ? stride : 0;
+    const double right =
+        move * compute_fractional_product(plane, 0.75487766624669276);
+    const double up =
+        move * compute_fractional_product(plane, 0.56984029099805327);
+
+    g->columns = ACROSS / stride + 1;
+    g->rows = DOWN / stride + 1;
+    for (int i = 0; i < g->columns; i++)
+        g->u[i] = -cos(GLINT_PI * fmin(i * stride + right, ACROSS) / ACROSS);
+    for (int j = 0; j < g->rows; j++) {
+        const double at = fmin(j * stride + up, DOWN);
+
+        g->v[j] = zone->annulus ? 0.5 - 0.5 * cos(GLINT_PI * at / DOWN)
+                                : sin(0.5 * GLINT_PI * at / DOWN);
+    }
+    g->s = glint_zone_compute_node(sine, SINES);
+    g->w = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
+}
+
+/* Traces a grid of rays at one angle and wavelength. In the finest grid only
+ * every third ray far outside the visible region is stored. */
 static void trace_pupil_grid(const struct glint_zone *zone,
                              const struct glint_visible *visible, int sine,
                              int wave, int stride, struct glint_zone_rays *rays)
 {
     const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
-    /* Multiples of 1 / g and 1 / g^2 fill a square evenly, where g is the root
-     * of x^3 = x + 1. */
-    const int plane = sine * 4 + wave;
-    const double move = visible->wide ? stride : 0;
-    const double right =
-        move * compute_fractional_product(plane, 0.75487766624669276);
-    const double up =
-        move * compute_fractional_product(plane, 0.56984029099805327);
     struct glint_zone_batch t;
+    struct pupil_grid g;
     struct beside beside;
 
-    for (int j = 0; j <= DOWN; j += stride) {
-        t.n = 0;
-        for (int i = 0; i <= ACROSS; i += stride) {
-            const double x[GLINT_VARIABLES] = {
-                -cos(GLINT_PI * fmin(i + right, ACROSS) / ACROSS),
-                zone->annulus
-                    ? 0.5 - 0.5 * cos(GLINT_PI * fmin(j + up, DOWN) / DOWN)
-                    : sin(0.5 * GLINT_PI * fmin(j + up, DOWN) / DOWN),
-                glint_zone_compute_node(sine, SINES),
-                glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES)};
+    set_pupil_grid(zone, visible->wide, sine, wave, stride, &g);
+    for (int at = 0; at < g.columns * g.rows; at += t.n) {
+        for (t.n = 0;
+             t.n < GLINT_ZONE_BATCH && at + t.n < g.columns * g.rows;) {
+            const int k = at + t.n;
+            const double x[GLINT_VARIABLES] = {g.u[k % g.columns],
+                                               g.v[k / g.columns], g.s, g.w};
 
             glint_zone_batch_add_ray(&t, zone, x);
         }
@@ -152,12 +175,14 @@ static void trace_pupil_grid(const struct glint_zone *zone,
         t.path = &visible->path[wave];
         glint_zone_batch_trace_rays(&t);
         for (int i = 0; i < t.n && rays->n < full; i++) {
+            const int k = at + i;
+
             if (t.status[i] != GLINT_RAY_OK)
                 continue;
             append_zone_ray(visible, t.path, t.x[i], &t.ray[i],
                             glint_zone_batch_get_hits(&t, i), rays);
             replace_by_nearer_zoom_position(&beside, i, rays);
-            if (stride == 1 && (i + j) % 3 &&
+            if (stride == 1 && (k % g.columns + k / g.columns) % 3 &&
                 fmax(rays->at[RAY_EXCESS][rays->n - 1],
                      rays->at[RAY_FIELD][rays->n - 1]) > 1.1)
                 rays->n--;
