@@ -336,12 +336,12 @@ void glint_zone_batch_add_ray(struct glint_zone_batch *batch,
     batch->n++;
 }
 
-void glint_zone_batch_trace_rays(struct glint_zone_batch *batch)
+void glint_zone_batch_trace_rays(struct glint_zone_batch *batch, bool hits)
 {
-    for (int k = 0; k < batch->n * batch->path->n_events; k++)
+    for (int k = 0; k < batch->n * batch->path->n_events && hits; k++)
         batch->hits[k][0] = batch->hits[k][1] = -1;
     glint_trace_many(batch->path, batch->n, batch->from, batch->ray,
-                     batch->status, batch->hits);
+                     batch->status, hits ? batch->hits : NULL);
 }
 
 /* Shrinks the interval *FROM .. *TO to its part LOW .. HIGH, in relative
@@ -370,7 +370,7 @@ static void trace_at_zoom_positions(const struct glint_visible *visible,
             glint_visible_get_member(visible, m);
 
         t->path = &h->position_path[wave];
-        glint_zone_batch_trace_rays(t);
+        glint_zone_batch_trace_rays(t, false);
         for (int i = 0; i < t->n; i++)
             if (t->status[i] == GLINT_RAY_OK &&
                 glint_visible_is_ray_visible(h, &t->ray[i]))

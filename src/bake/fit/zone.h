@@ -98,7 +98,7 @@ double glint_zone_compute_node(int k, int n);
  * batch.path = &path;
  * for (batch.n = 0; batch.n < GLINT_ZONE_BATCH;)
  *     glint_zone_batch_add_ray(&batch, &zone, x);
- * glint_zone_batch_trace_rays(&batch); */
+ * glint_zone_batch_trace_rays(&batch, false); */
 enum { GLINT_ZONE_BATCH = 32 };
 
 struct glint_zone_batch {
@@ -109,8 +109,8 @@ struct glint_zone_batch {
     struct glint_launch from[GLINT_ZONE_BATCH];
     struct glint_ray ray[GLINT_ZONE_BATCH];
     enum glint_ray_status status[GLINT_ZONE_BATCH];
-    /* positions at the events of the path, mm; -1, -1: the ray does not reach
-     * the event */
+    /* positions at the events of the path, mm, if they were requested; -1, -1:
+     * the ray does not reach the event */
     double hits[GLINT_ZONE_BATCH * (GLINT_MAX_EVENTS + 1)][2];
 };
 
@@ -121,7 +121,8 @@ void glint_zone_batch_add_ray(struct glint_zone_batch *batch,
                               const struct glint_zone *zone,
                               const double x[GLINT_VARIABLES]);
 
-void glint_zone_batch_trace_rays(struct glint_zone_batch *batch);
+/* HITS: also sets the hits of BATCH. */
+void glint_zone_batch_trace_rays(struct glint_zone_batch *batch, bool hits);
 
 /* Returns the positions of ray K at the events of the path, mm, [n_events]. */
 static inline double (*glint_zone_batch_get_hits(struct glint_zone_batch *batch,

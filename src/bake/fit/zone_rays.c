@@ -74,7 +74,7 @@ static void trace_neighbour_zoom_positions(const struct glint_visible *visible,
         const struct glint_visible *const h = &visible->beside[m];
 
         t->path = &h->position_path[wave];
-        glint_zone_batch_trace_rays(t);
+        glint_zone_batch_trace_rays(t, false);
         for (int i = 0; i < t->n; i++) {
             double excess, field;
 
@@ -173,7 +173,7 @@ static void trace_pupil_grid(const struct glint_zone *zone,
         }
         trace_neighbour_zoom_positions(visible, wave, &t, &beside);
         t.path = &visible->path[wave];
-        glint_zone_batch_trace_rays(&t);
+        glint_zone_batch_trace_rays(&t, rays->n_barrels > 0);
         for (int i = 0; i < t.n && rays->n < full; i++) {
             const int k = at + i;
 
@@ -292,7 +292,7 @@ static void trace_scattered_rays(const struct glint_zone *zone,
             x[GLINT_W] = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
             add_ray_with_neighbours(&t, zone, x, true);
         }
-        glint_zone_batch_trace_rays(&t);
+        glint_zone_batch_trace_rays(&t, rays->n_barrels > 0);
         append_middle_rays(visible, &t, rays);
     }
 }
@@ -397,7 +397,7 @@ void glint_zone_trace_check_rays(const struct glint_zone *zone,
             x[GLINT_P] = bundle[GLINT_P];
             add_ray_with_neighbours(&t, zone, x, group == 3);
         }
-        glint_zone_batch_trace_rays(&t);
+        glint_zone_batch_trace_rays(&t, false);
         if (zone->skew)
             append_middle_rays(visible, &t, rays);
         else
@@ -543,7 +543,7 @@ static void sample_zone_rays(const struct glint_zone *z,
             x[3] = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
             glint_zone_batch_add_ray(&t, z, x);
         }
-        glint_zone_batch_trace_rays(&t);
+        glint_zone_batch_trace_rays(&t, true);
         for (int i = 0; i < GLINT_ZONE_BATCH; i++)
             sampling->n +=
                 sample_barrel_radii(h, t.path, t.status[i], &t.ray[i],

@@ -106,7 +106,7 @@ void glint_piece_crop_box(struct glint_skew_piece *p,
             x[GLINT_V] = 2.0 * row / (ROWS - 1) - 1;
             glint_zone_batch_add_ray(&t, &p->zone, x);
         }
-        glint_zone_batch_trace_rays(&t);
+        glint_zone_batch_trace_rays(&t, false);
         for (int i = 0; i < t.n; i++)
             if (t.status[i] == GLINT_RAY_OK &&
                 glint_visible_is_ray_visible(visible, &t.ray[i]))
