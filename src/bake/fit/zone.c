@@ -271,36 +271,38 @@ void glint_zone_cut_to_part(struct glint_zone *zone,
     zone->annulus = part->annulus;
 }
 
-/* Sets X to point K of a low-discrepancy sequence in four dimensions, each
- * -1 .. 1: the fractional parts of 1/2 + (K + 1) / g^i for i = 1 .. 4, scaled,
- * where g is the root of x^5 = x + 1. */
-static void compute_4d_sequence_point(int k, double x[GLINT_VARIABLES])
-{
-    const double root = 1.16730397826141868426;
-    double step = 1;
+/* roots of x^5 = x + 1 and x^6 = x + 1 */
+#define ROOT_5 1.16730397826141868426
+#define ROOT_6 1.13472413840151949260
 
-    for (int i = 0; i < GLINT_P; i++) {
-        step /= root;
-        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
-    }
-    x[GLINT_P] = 0;
+/* Returns coordinate STEP of point K of a low-discrepancy sequence, -1 .. 1: the
+ * fractional part of 1/2 + (K + 1) STEP, scaled. With STEP = 1 / g^i for i = 1
+ * .. n, where g is the root of x^(n + 1) = x + 1, points fill n dimensions
+ * evenly. */
+static double compute_sequence_coordinate(int k, double step)
+{
+    const double x = 0.5 + (k + 1) * step;
+
+    return 2 * (x - (int)x) - 1;
 }
 
 void glint_zone_set_scattered_point(const struct glint_zone *zone, int k,
                                     double x[GLINT_VARIABLES])
 {
-    const double root = 1.13472413840151949260;
-    double step = 1;
+    static const double round[] = {
+        1 / ROOT_5, 1 / ROOT_5 / ROOT_5, 1 / ROOT_5 / ROOT_5 / ROOT_5,
+        1 / ROOT_5 / ROOT_5 / ROOT_5 / ROOT_5, 0};
+    static const double skew[] = {
+        1 / ROOT_6, 1 / ROOT_6 / ROOT_6, 1 / ROOT_6 / ROOT_6 / ROOT_6,
+        1 / ROOT_6 / ROOT_6 / ROOT_6 / ROOT_6,
+        1 / ROOT_6 / ROOT_6 / ROOT_6 / ROOT_6 / ROOT_6};
 
-    if (!zone->skew) {
-        compute_4d_sequence_point(k, x);
-        x[GLINT_V] = fabs(x[GLINT_V]);
+    for (int i = 0; i < GLINT_VARIABLES; i++)
+        x[i] = compute_sequence_coordinate(k, zone->skew ? skew[i] : round[i]);
+    if (zone->skew)
         return;
-    }
-    for (int i = 0; i < GLINT_VARIABLES; i++) {
-        step /= root;
-        x[i] = 2 * fmod(0.5 + (k + 1) * step, 1) - 1;
-    }
+    x[GLINT_V] = fabs(x[GLINT_V]);
+    x[GLINT_P] = 0;
 }
 
 static void compute_light_direction(const struct glint_zone *z,
