@@ -209,10 +209,13 @@ static WHOLLY_INLINE void compute_reflectances(const struct beam *b, int n,
 
     for (int k = 0; k < n && bare; k++)
         part[k] = compute_bare_reflectance(n1, fabs(b->cosine[k]), n2, out[k]);
-    for (int k = 0; k < n && single; k++)
+    for (int k = 0; k < n && single; k++) {
         inside[k] = compute_film_cosine2(n1, fabs(b->cosine[k]), film->n);
+        sine2[k] = compute_sine2(0.5 * film->phase * sqrt(fabs(inside[k])));
+    }
     for (int k = 0; k < n && single; k++)
-        sine2[k] = compute_film_sine2(inside[k], film->phase);
+        if (inside[k] < 0.0)
+            sine2[k] = compute_film_sine2(inside[k], film->phase);
     for (int k = 0; k < n && single; k++)
         part[k] = compute_film_reflectance(n1, fabs(b->cosine[k]), n2, out[k],
                                            film->n, inside[k], sine2[k]);
