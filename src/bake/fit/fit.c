@@ -128,12 +128,13 @@ static const struct glint_visible *crop_zone_to_part(struct fitter *f,
     return band;
 }
 
-/* Traces rays of ZONE within BAND and fits its outputs. Adds no outputs if no
- * light passes the part. */
+/* Traces rays of ZONE within BAND and fits its outputs. HAS_BARRELS: its
+ * barrels are chosen already. Adds no outputs if no light passes the part. */
 static enum glint_status fit_zone_outputs(struct fitter *f,
                                           const struct glint_zone_piece *p,
                                           const struct glint_zone *zone,
                                           const struct glint_visible *band,
+                                          bool has_barrels,
                                           struct glint_fitted_system *system,
                                           struct glint_attempt *a)
 {
@@ -144,9 +145,13 @@ static enum glint_status fit_zone_outputs(struct fitter *f,
                                    .barrel = f->tolerance->barrel,
                                    .thorough = p->thorough,
                                    .stacks =
-                                       glint_next_has_film_stack(f->visible)};
+                                       glint_next_has_film_stack(f->visible),
+                                   .sampling =
+                                       has_barrels ? NULL : &f->sampling};
     enum glint_status status;
 
+    if (!has_barrels)
+        buffers->rays.n_barrels = 0;
     glint_zone_trace_rays(zone, band, &buffers->rays);
     a->errors.worst = 0;
     if ((p->depth > 0 || !is_full_band(p->w0, p->w1)) &&
@@ -173,6 +178,10 @@ static enum glint_status try_zone_fit(struct fitter *f,
                                       struct glint_attempt *a)
 {
     const struct glint_visible_profile *profile = find_band_profile(f, p);
+    /* true: the zone may be too wide for the number of its barrels */
+    const bool crowds =
+        !p->thorough && !f->visible->shaped &&
+        glint_next_compute_width_deg(p->lo, p->hi) > CROWD_DEG;
     const struct glint_visible *band;
     struct glint_zone zone;
 
@@ -194,12 +203,12 @@ static enum glint_status try_zone_fit(struct fitter *f,
     band = crop_zone_to_part(f, p, &zone);
     system->wave_lo = band->wave_lo;
     system->wave_hi = band->wave_hi;
-    glint_zone_choose_barrels(&zone, band, f->tolerance->escape, &f->sampling,
-                              &f->buffers.rays);
-    if (!p->thorough && f->buffers.rays.n_barrels > 2 && !f->visible->shaped &&
-        glint_next_compute_width_deg(p->lo, p->hi) > CROWD_DEG)
+    if (crowds)
+        glint_zone_choose_barrels(&zone, band, f->tolerance->escape,
+                                  &f->sampling, &f->buffers.rays);
+    if (crowds && f->buffers.rays.n_barrels > 2)
         return GLINT_OK;
-    return fit_zone_outputs(f, p, &zone, band, system, a);
+    return fit_zone_outputs(f, p, &zone, band, crowds, system, a);
 }
 
 static const struct glint_zone_part full_part = {-1, 1, 1, -1, 1, 0};

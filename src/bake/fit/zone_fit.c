@@ -428,6 +428,22 @@ static enum glint_status fit_energy_output(struct fit *f,
                                 fmin(grain, f->aim->energy), left <= 1);
 }
 
+/* Chooses the barrels of the zone, unless they are known, and traces its rays
+ * again with their radii at these barrels. */
+static void find_barrels(struct fit *f)
+{
+    const struct glint_zone_task *const t = f->task;
+    struct glint_zone_rays *const rays = &f->buffers->rays;
+
+    if (f->buffers->has_barrels)
+        return;
+    f->buffers->has_barrels = true;
+    glint_zone_choose_barrels(t->zone, t->visible, t->tolerance->escape,
+                              t->sampling, rays);
+    if (rays->n_barrels > 0)
+        glint_zone_trace_rays(t->zone, t->visible, rays);
+}
+
 /* Fits the relative radius at barrel number BARREL, (1 + r^2) / 2. Rays near
  * its rim have most weight. */
 static enum glint_status fit_barrel_radius(struct fit *f, int barrel,
@@ -515,6 +531,8 @@ static enum glint_status fit_all_outputs(struct fit *f,
         status = fit_energy_output(f, system, &energy);
     e->energy = energy;
     combine_output_errors(f, energy);
+    if (status == GLINT_OK && !is_next_step_decided(f))
+        find_barrels(f);
     for (int b = 0; b < f->buffers->rays.n_barrels && status == GLINT_OK &&
                     !is_next_step_decided(f);
          b++) {
@@ -592,6 +610,7 @@ enum glint_status glint_zone_fit_outputs(const struct glint_zone_task *task,
     enum glint_status status;
 
     buffers->has_energies = false;
+    buffers->has_barrels = !task->sampling;
     set_ray_weights(&f);
     status = fit_all_outputs(&f, system);
     if (status != GLINT_OK || is_next_step_decided(&f))

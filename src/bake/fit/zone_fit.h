@@ -36,6 +36,9 @@ struct glint_zone_task {
      * any case. Skew zones compare the errors of positions and outlines,
      * thorough fits dims of struct glint_zone_errors. 0: never skip. */
     double settled;
+    /* Memory for choosing the barrels once positions and energy are fitted and
+     * the remaining outputs matter; NULL: the rays have their barrels. */
+    glint_zone_sampling *sampling;
 };
 
 /* Number of doubles of scratch memory for one fit. Skew zones have most planes
@@ -46,10 +49,10 @@ struct glint_zone_task {
 /* Memory for fitting one zone; used by one fit at a time. */
 struct glint_zone_buffers {
     double *scratch; /* scratch memory, GLINT_ZONE_SCRATCH doubles */
-    /* Rays that are fitted; each fit overwrites them. Energies are traced when a
-     * fit first needs them. */
+    /* Rays that are fitted; each fit overwrites them. Energies are traced and
+     * barrels chosen when the fit of a zone first needs them. */
     struct glint_zone_rays rays, energies;
-    bool has_energies;
+    bool has_energies, has_barrels;
     double weight[GLINT_ZONE_RAYS], sensor_weight[GLINT_ZONE_RAYS];
     /* brightness weights, see glint_zone_aim_set_ray_brightness() */
     double light[GLINT_ZONE_RAYS];

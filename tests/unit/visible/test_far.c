@@ -156,10 +156,10 @@ static double compute_barrel_rms_error(const struct glint_fitted_system *system)
 {
     const struct glint_fitted_output *o =
         &system->output[system->n_outputs - 1];
+    static glint_zone_sampling sampling;
     double sum = 0, n = 0;
 
-    glint_zone_choose_barrels(&zone, &visible, tolerance.escape,
-                              (glint_zone_sampling *)buffers.scratch,
+    glint_zone_choose_barrels(&zone, &visible, tolerance.escape, &sampling,
                               &buffers.rays);
     glint_zone_trace_rays(&zone, &visible, &buffers.rays);
     for (int i = 0; i < buffers.rays.n; i++) {
