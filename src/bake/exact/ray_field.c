@@ -206,42 +206,60 @@ static void compute_barrel_values(const struct ray_field *field,
     }
 }
 
+/* Sets entry (I, J) of COARSE_GRID from a traced ray. */
+static void set_coarse_ray(const struct ray_field_config *cfg,
+                           const struct ray_field *field,
+                           const struct glint_path *path, int i, int j,
+                           enum glint_ray_status status,
+                           const struct glint_ray *ray, double (*hits)[2],
+                           struct coarse_grid *coarse_grid)
+{
+    const bool traced = status == GLINT_RAY_OK;
+
+    coarse_grid->traced[j][i] = traced;
+    coarse_grid->inside[j][i] =
+        traced && ray->rel_radius <= 1 &&
+        hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+            cfg->setup->optics.stop_radius_mm;
+    if (!traced)
+        return;
+    coarse_grid->ray[j][i] = *ray;
+    compute_barrel_values(field, path, hits, coarse_grid->barrel[j][i]);
+}
+
 static void trace_coarse_grid(const struct ray_field_config *cfg,
                               const struct ray_field *field, double nm,
                               struct coarse_grid *coarse_grid)
 {
     const struct glint_pupil *p = &field->pupil;
-    const double stop_mm = cfg->setup->optics.stop_radius_mm;
-    double hits[(LOOKS + 1) * (GLINT_MAX_EVENTS + 1)][2];
+    const int rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
+    double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_launch from[SOME];
+    struct glint_ray ray[SOME];
+    enum glint_ray_status status[SOME];
     struct glint_path path;
     double d[3];
+    int n = 0;
 
     init_field_path(cfg, field, nm, &path);
     glint_ray_compute_direction(cfg, field->patch->middle, d);
-    coarse_grid->rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
+    coarse_grid->rows = rows;
     coarse_grid->cell_mm2 = (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) /
-                            (LOOKS * (coarse_grid->rows - 1));
-    for (int j = 0; j < coarse_grid->rows; j++) {
-        enum glint_ray_status status[LOOKS + 1];
-        const struct glint_row row = {LOOKS + 1,
-                                      p->x0_mm,
-                                      (p->x1_mm - p->x0_mm) / LOOKS,
-                                      p->y0_mm + (p->y1_mm - p->y0_mm) * j /
-                                                     (coarse_grid->rows - 1),
-                                      {d[0], d[1], d[2]}};
+                            (LOOKS * (rows - 1));
+    for (int at = 0; at < rows * (LOOKS + 1); at += n) {
+        for (n = 0; n < SOME && at + n < rows * (LOOKS + 1); n++) {
+            const int i = (at + n) % (LOOKS + 1), j = (at + n) / (LOOKS + 1);
 
-        glint_trace_row(&path, &row, coarse_grid->ray[j], status, hits);
-        for (int i = 0; i <= LOOKS; i++) {
-            const struct glint_ray *r = &coarse_grid->ray[j][i];
-
-            coarse_grid->traced[j][i] = status[i] == GLINT_RAY_OK;
-            if (coarse_grid->traced[j][i])
-                compute_barrel_values(field, &path, hits + i * path.n_events,
-                                      coarse_grid->barrel[j][i]);
-            coarse_grid->inside[j][i] =
-                coarse_grid->traced[j][i] && r->rel_radius <= 1 &&
-                hypot(r->stop_x_mm, r->stop_y_mm) <= stop_mm;
+            from[n] = (struct glint_launch){
+                p->x0_mm + i * ((p->x1_mm - p->x0_mm) / LOOKS),
+                p->y0_mm + (p->y1_mm - p->y0_mm) * j / (rows - 1),
+                {d[0], d[1], d[2]}};
         }
+        glint_trace_many(&path, n, from, ray, status, hits);
+        for (int k = 0; k < n; k++)
+            set_coarse_ray(cfg, field, &path, (at + k) % (LOOKS + 1),
+                           (at + k) / (LOOKS + 1), status[k], &ray[k],
+                           hits + k * path.n_events, coarse_grid);
     }
 }
 
@@ -639,38 +657,50 @@ static bool set_node_channels(const struct ray_field_config *cfg,
            value[BARREL_0] < 0x1p13 && value[BARREL_1] < 0x1p13;
 }
 
-static void trace_node_row(const struct ray_field_config *cfg,
-                           const struct ray_field *field,
-                           const struct glint_path *path, const double d[3],
-                           int j, float *node, unsigned char *invalid)
+/* Returns the start of ray I in row J of the grid of FIELD, for light along
+ * D. */
+static struct glint_launch launch_node_ray(const struct ray_field *field,
+                                           const double d[3], int i, int j)
 {
     const struct glint_pupil *p = &field->pupil;
     const int n = field->n_cells;
+    const double step_mm = (p->x1_mm - p->x0_mm) / n;
+
+    return (struct glint_launch){
+        (p->x0_mm + (i - i % SOME) * step_mm) + i % SOME * step_mm,
+        p->mirrored ? p->y1_mm * (2.0 * j - n) / n
+                    : p->y0_mm + (p->y1_mm - p->y0_mm) * j / n,
+        {d[0], d[1], d[2]}};
+}
+
+/* Traces all rays of the grid of FIELD, for light along D, to NODE. Marks rays
+ * in INVALID that do not reach the sensor. */
+static void trace_node_grid(const struct ray_field_config *cfg,
+                            const struct ray_field *field,
+                            const struct glint_path *path, const double d[3],
+                            float *node, unsigned char *invalid)
+{
+    const int row = field->n_cells + 1, all = (int)count_traced_nodes(field);
     double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_launch from[SOME];
     struct glint_ray ray[SOME];
     enum glint_ray_status status[SOME];
-    struct glint_row rays = {0,
-                             0,
-                             (p->x1_mm - p->x0_mm) / n,
-                             p->mirrored
-                                 ? p->y1_mm * (2.0 * j - n) / n
-                                 : p->y0_mm + (p->y1_mm - p->y0_mm) * j / n,
-                             {d[0], d[1], d[2]}};
+    int n = 0;
 
-    for (int i = 0; i <= n; i++) {
-        const int k = i % SOME;
+    for (int at = 0; at < all; at += n) {
+        for (n = 0; n < SOME && at + n < all; n++)
+            from[n] =
+                launch_node_ray(field, d, (at + n) % row, (at + n) / row);
+        glint_trace_many(path, n, from, ray, status, hits);
+        for (int k = 0; k < n; k++) {
+            float *const to = node + (size_t)(at + k) * CHANNELS;
 
-        if (k == 0) {
-            rays.n = n + 1 - i < SOME ? n + 1 - i : SOME;
-            rays.x0_mm = p->x0_mm + i * rays.step_mm;
-            glint_trace_row(path, &rays, ray, status, hits);
-        }
-        if (status[k] != GLINT_RAY_OK ||
-            !set_node_channels(cfg, field, path, &ray[k],
-                               hits + k * path->n_events,
-                               node + (size_t)i * CHANNELS)) {
-            invalid[i] = 1;
-            memset(node + (size_t)i * CHANNELS, 0, CHANNELS * sizeof *node);
+            if (status[k] == GLINT_RAY_OK &&
+                set_node_channels(cfg, field, path, &ray[k],
+                                  hits + k * path->n_events, to))
+                continue;
+            invalid[at + k] = 1;
+            memset(to, 0, CHANNELS * sizeof *to);
         }
     }
 }
@@ -678,8 +708,7 @@ static void trace_node_row(const struct ray_field_config *cfg,
 void glint_ray_field_trace_rays(const struct ray_field_config *cfg,
                                 const struct ray_field *field, void *mem)
 {
-    const size_t nodes = count_traced_nodes(field),
-                 wide = (size_t)field->n_cells + 1;
+    const size_t nodes = count_traced_nodes(field);
     float *node = mem;
     unsigned char *invalid =
         (unsigned char *)(node + (size_t)field->n_samples * nodes * CHANNELS);
@@ -692,11 +721,8 @@ void glint_ray_field_trace_rays(const struct ray_field_config *cfg,
         if (s == 0 || field->sample[s].nm != field->sample[s - 1].nm)
             init_field_path(cfg, field, field->sample[s].nm, &path);
         glint_ray_compute_direction(cfg, field->sample[s].at, d);
-        for (int j = 0; j < count_traced_rows(field); j++)
-            trace_node_row(cfg, field, &path, d, j,
-                           node + ((size_t)s * nodes + (size_t)j * wide) *
-                                      CHANNELS,
-                           invalid + (size_t)j * wide);
+        trace_node_grid(cfg, field, &path, d,
+                        node + (size_t)s * nodes * CHANNELS, invalid);
     }
 }
 
