@@ -81,6 +81,10 @@ $(call of,$(addprefix platform/panel/,panel sinks),-O3)
 $(call of,tools/measure/canvas,-O3)
 # Rays in eights: errno and traps are all that these give away.
 $(call of,src/bake/trace/trace src/bake/trace/forms src/bake/table/form,-O3 -fno-math-errno -fno-trapping-math)
+ifeq ($(findstring clang,$(CC)),)
+# gcc unrolls loops over eight rays before it vectorises, and then cannot.
+$(call of,src/bake/trace/trace src/bake/trace/forms src/bake/table/form,--param max-completely-peel-times=3)
+endif
 
 ifeq ($(ARCH)-$(findstring gcc,$(CC)),aarch64-gcc)
 # Else constants that are hoisted push out tables: a tenth more instructions.
