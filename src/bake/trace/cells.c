@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "bake/trace/sampling.h"
 #include "engine/setup/degrees.h"
@@ -42,6 +43,7 @@ bool glint_cells_init(struct glint_cells *cells,
                           setup->optics.stop_radius_mm, NULL))
         return false;
     find_blocking_barrels(cells);
+    glint_iris_compute_sides(&cells->sides, setup);
     cells->stride = NODE_CUT + 2 * cells->n_cuts;
     return true;
 }
@@ -259,26 +261,25 @@ static void clip_polygon_by_cut(struct shape *s, const struct cut *cut)
 static void clip_polygon_by_all_cuts(const struct glint_cells *c,
                                      struct shape *s)
 {
-    struct glint_iris_sides sides;
+    const struct glint_iris_sides *const sides = &c->sides;
 
-    glint_iris_compute_sides(&sides, c->setup);
     for (int k = 0; k < c->n_cuts && s->n; k++)
         clip_polygon_by_cut(
             s,
             &(struct cut){.first = NODE_CUT + 2 * k, .disc = true, .scale = 1});
-    if (sides.n == 0)
+    if (sides->n == 0)
         clip_polygon_by_cut(
             s, &(struct cut){.first = NODE_STOP_X, .disc = true, .scale = 1});
-    for (int side = 0; side < sides.n && s->n; side++) {
-        const double *n = sides.normal[side];
+    for (int side = 0; side < sides->n && s->n; side++) {
+        const double *n = sides->normal[side];
 
         clip_polygon_by_cut(
             s, &(struct cut){.first = NODE_STOP_X,
-                             .disc = sides.arcs,
+                             .disc = sides->arcs,
                              .normal = {n[0], n[1]},
-                             .limit = sides.apothem,
-                             .scale = sides.round,
-                             .middle = {sides.off * n[0], sides.off * n[1]}});
+                             .limit = sides->apothem,
+                             .scale = sides->round,
+                             .middle = {sides->off * n[0], sides->off * n[1]}});
     }
 }
 
@@ -317,34 +318,59 @@ static bool get_triangle_corners(const struct glint_cells *c, int i, int j,
     return true;
 }
 
+/* Sets S to the visible part of triangle HALF of cell (I, J). Returns false if
+ * nothing is visible. */
+static bool clip_triangle(const struct glint_cells *c, int i, int j, int half,
+                          struct shape *s)
+{
+    s->n = 3;
+    memcpy(s->uv, (const double[3][2]){{0, 0}, {1, 0}, {0, 1}},
+           3 * sizeof *s->uv);
+    if (!get_triangle_corners(c, i, j, half, s->corner))
+        return false;
+    if (s->corner[0][NODE_STATE] != 2 || s->corner[1][NODE_STATE] != 2 ||
+        s->corner[2][NODE_STATE] != 2)
+        clip_polygon_by_all_cuts(c, s);
+    return s->n >= 3;
+}
+
+/* Returns the area of S as a fraction of its triangle. */
+static double compute_visible_share(const struct shape *s)
+{
+    return fabs(2 * compute_polygon_area((const double(*)[2])s->uv, s->n));
+}
+
+/* Returns the mean energy over S, including the transmission of the stop. */
+static double compute_mean_energy(const struct glint_cells *c,
+                                  const struct shape *s)
+{
+    double middle[2] = {0, 0};
+
+    for (int k = 0; k < s->n; k++) {
+        middle[0] += s->uv[k][0] / s->n;
+        middle[1] += s->uv[k][1] / s->n;
+    }
+    return interpolate_node_channel(s, NODE_ENERGY, middle) *
+           glint_dirt_compute_transmission(
+               c->setup, interpolate_node_channel(s, NODE_STOP_X, middle),
+               interpolate_node_channel(s, NODE_STOP_Y, middle));
+}
+
 void glint_cells_clip_triangle(const struct glint_cells *cells, int i, int j,
                                int half, struct glint_piece *piece)
 {
-    struct shape s = {.n = 3, .uv = {{0, 0}, {1, 0}, {0, 1}}};
-    double middle[2] = {0, 0};
+    struct shape s;
 
     piece->n = 0;
-    if (!get_triangle_corners(cells, i, j, half, s.corner))
-        return;
-    if (s.corner[0][NODE_STATE] != 2 || s.corner[1][NODE_STATE] != 2 ||
-        s.corner[2][NODE_STATE] != 2)
-        clip_polygon_by_all_cuts(cells, &s);
-    if (s.n < 3)
+    if (!clip_triangle(cells, i, j, half, &s))
         return;
     piece->n = s.n;
     for (int k = 0; k < s.n; k++) {
         piece->xy[k][0] = interpolate_node_channel(&s, NODE_X, s.uv[k]);
         piece->xy[k][1] = interpolate_node_channel(&s, NODE_Y, s.uv[k]);
-        middle[0] += s.uv[k][0] / s.n;
-        middle[1] += s.uv[k][1] / s.n;
     }
-    piece->share =
-        fabs(2 * compute_polygon_area((const double(*)[2])s.uv, s.n));
-    piece->energy =
-        interpolate_node_channel(&s, NODE_ENERGY, middle) *
-        glint_dirt_compute_transmission(
-            cells->setup, interpolate_node_channel(&s, NODE_STOP_X, middle),
-            interpolate_node_channel(&s, NODE_STOP_Y, middle));
+    piece->share = compute_visible_share(&s);
+    piece->energy = compute_mean_energy(cells, &s);
 }
 
 bool glint_cells_overlap_range(const struct glint_cells *cells, int i, int j,
@@ -364,9 +390,9 @@ bool glint_cells_overlap_range(const struct glint_cells *cells, int i, int j,
 double glint_direct_compute_flux(const struct glint_setup *setup,
                                  double wavelength_nm)
 {
-    struct glint_piece piece;
     struct glint_cells cells;
     struct glint_path path;
+    struct shape s;
     double sum = 0;
 
     glint_path_init(&path, setup->lens, NULL, wavelength_nm);
@@ -379,10 +405,8 @@ double glint_direct_compute_flux(const struct glint_setup *setup,
         glint_cells_trace_row(&cells, j);
     for (int k = 0; k < 2 * cells.n * cells.n; k++) {
         /* NOLINTNEXTLINE: n is 256 */
-        glint_cells_clip_triangle(&cells, k / 2 % cells.n, k / 2 / cells.n,
-                                  k & 1, &piece);
-        if (piece.n)
-            sum += piece.share * piece.energy;
+        if (clip_triangle(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1, &s))
+            sum += compute_visible_share(&s) * compute_mean_energy(&cells, &s);
     }
     free(cells.node);
     return sum * 0.5 * glint_cells_compute_cell_area(&cells);

@@ -13,6 +13,7 @@
 #ifndef GLINT_BAKE_TRACE_CELLS_H
 #define GLINT_BAKE_TRACE_CELLS_H
 
+#include "engine/setup/iris.h"
 #include "glint/setup.h"
 #include "glint/trace.h"
 
@@ -45,6 +46,7 @@ struct glint_cells {
     int n; /* number of cells per side, even */
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
+    struct glint_iris_sides sides; /* of the stop */
     int stride;   /* number of doubles per node */
     double *node; /* channels of all nodes, [n + 1][n + 1][stride] */
 };
