@@ -29,7 +29,6 @@ enum glint_status picture_pair_open(struct picture_pair *pair,
 
     *pair = (struct picture_pair){NULL, NULL};
     glint_engine_defaults(&cfg, view->width, view->height);
-    cfg.sets = 0;
     cfg.camera.setup = setup;
     cfg.camera.sensor_width_mm = view->sensor_width_mm;
     /* Twice the height of the image: then the width determines the scale. */
