@@ -275,13 +275,19 @@ static WHOLLY_INLINE void update_max_radius(struct beam *b, int n,
     }
 }
 
+/* N: LANES or 1. */
 static WHOLLY_INLINE bool are_all_rays_invalid(const struct beam *b, int n)
 {
-    double least = b->status[0];
+    enum { HALF = LANES / 2 };
+    double least[HALF];
 
-    for (int k = 1; k < n; k++)
-        least = b->status[k] < least ? b->status[k] : least;
-    return least > GLINT_RAY_OK;
+    if (n == 1)
+        return b->status[0] > GLINT_RAY_OK;
+    for (int k = 0; k < HALF; k++)
+        least[k] = b->status[k] < b->status[k + HALF] ? b->status[k]
+                                                      : b->status[k + HALF];
+    return (least[0] > GLINT_RAY_OK) & (least[1] > GLINT_RAY_OK) &
+           (least[2] > GLINT_RAY_OK) & (least[3] > GLINT_RAY_OK);
 }
 
 static WHOLLY_INLINE void init_beam_ray(struct beam *b, int k,
