@@ -3,7 +3,7 @@
  * glint/explain.h - reports for each ghost, light and wavelength of a frame
  * whether it was drawn and, if not, why.
  *
- *     glint_explain_open(&explain, engine, 0); its last picture
+ *     glint_explain_open(&explain, engine, &config); its last picture
  *     glint_explain_close(&explain);
  *
  * Counts and reasons come from glint_flare_account(). The light of a ghost,
@@ -107,7 +107,11 @@ struct glint_explain {
     /* For each ghost of the lens or additional pupil region of a ghost: index
      * of the pair of surfaces that causes the ghost. */
     int *ghost_of;
-    struct glint_explain_part all, *ghost, *light, *wave;
+    /* Number of lamps of the lights, and for each light the index of its lamp.
+     * All lights that are points of one lamp of visible extent have the same
+     * index. Lamps are numbered in the order of their first lights. */
+    int n_lamps, *lamp_of;
+    struct glint_explain_part all, *ghost, *light, *wave, *lamp;
     int barrels[GLINT_EXPLAIN_BARRELS]; /* number of bundles that 0, 1, ...
                                            barrels cut */
     double stage[GLINT_COST_KINDS]; /* estimated instructions of each stage */
@@ -118,13 +122,26 @@ struct glint_explain {
     int32_t *linear_q20;
 };
 
+/* How glint_explain_open() explains a picture; all zero bytes: defaults. */
+struct glint_explain_config {
+    /* gain passed to glint_engine_render(); 0: another function drew the
+     * picture */
+    double gain;
+    /* lamps of the picture; without them each light counts as a lamp */
+    const struct glint_engine_lamp *lamps;
+    int n_lamps;
+    /* receives the progress of measuring ghosts and lights; may be NULL */
+    glint_progress_fn *progress;
+    void *progress_ctx;
+};
+
 /* Explains the picture that ENGINE drew last; the picture must have at least
- * one lamp. Members that describe costs are 0 if rays are exact. GAIN is the
- * gain passed to glint_engine_render(), or 0 if another function drew the
- * picture. glint_explain_close() must be called even after a failure. May
- * return GLINT_E_MEMORY. */
+ * one lamp. Members that describe costs are 0 if rays are exact.
+ * glint_explain_close() must be called even after a failure. May return
+ * GLINT_E_MEMORY. */
 enum glint_status glint_explain_open(struct glint_explain *explain,
-                                     struct glint_engine *engine, double gain);
+                                     struct glint_engine *engine,
+                                     const struct glint_explain_config *config);
 
 /* Like glint_explain_open(), for N LAMPS drawn at SCALE on a black picture of
  * WIDTH x HEIGHT with the settings of ENGINE and three wavelengths. If ENGINE

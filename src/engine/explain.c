@@ -8,6 +8,7 @@
 #include "engine/engine_parts.h"
 #include "engine/explain_frame.h"
 #include "engine/frame/frame_parts.h"
+#include "engine/setup/degrees.h"
 
 /* Returns the cost, in instructions, of N operations of type KIND, such as
  * drawing edges. */
@@ -97,6 +98,7 @@ static void count_bundle(void *ctx, int ghost, int light,
     /* NOLINTNEXTLINE: set_ghost_numbers() has set ghost_of */
     add_account(&e->ghost[e->ghost_of[ghost]], a);
     add_account(&e->light[light], a);
+    add_account(&e->lamp[e->lamp_of[light]], a);
     if (a->outcome == GLINT_OUTCOME_DRAWN || a->outcome == GLINT_OUTCOME_EMPTY)
         e->barrels[a->barrels]++;
 }
@@ -173,8 +175,21 @@ static void measure_part_light(struct glint_explain *e,
     part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
 }
 
+/* Progress of drawing the parts of a frame one by one. */
+struct parts {
+    struct glint_explain *e;
+    const struct glint_explain_config *cfg;
+    int n_done, n_all;
+    int32_t *sum; /* sum of the light of some parts, like e->linear_q20 */
+};
+
+static size_t count_frame_samples(const struct glint_explain *e)
+{
+    return 3 * (size_t)e->frame->view.width * (size_t)e->frame->view.height;
+}
+
 /* Draws and measures PART of the frame if any of its ray bundles is drawn. */
-static enum glint_status draw_and_measure_part(struct glint_explain *e,
+static enum glint_status draw_and_measure_part(struct parts *p,
                                                struct glint_explain_part *part,
                                                int ghost, int light, int wave)
 {
@@ -182,52 +197,101 @@ static enum glint_status draw_and_measure_part(struct glint_explain *e,
 
     if (glint_explain_drawn(part) == 0)
         return GLINT_OK;
-    status = draw_flare_part(e, ghost, light, wave);
+    status = draw_flare_part(p->e, ghost, light, wave);
     if (status == GLINT_OK)
-        measure_part_light(e, part);
+        measure_part_light(p->e, part);
+    p->n_done++;
+    if (p->cfg->progress)
+        p->cfg->progress(p->cfg->progress_ctx, (double)p->n_done / p->n_all);
     return status;
+}
+
+/* Adds the light of PART, which must have been drawn last, to P->sum. */
+static void add_part_to_sum(struct parts *p,
+                            const struct glint_explain_part *part)
+{
+    const size_t n = part->lit > 0 ? count_frame_samples(p->e) : 0;
+
+    for (size_t k = 0; k < n; k++) {
+        const int64_t light = (int64_t)p->sum[k] + p->e->linear_q20[k];
+
+        p->sum[k] = (int32_t)(light < INT32_MAX ? light : INT32_MAX);
+    }
+}
+
+/* Measures P->sum as the light of PART. */
+static void measure_sum_of_parts(struct parts *p,
+                                 struct glint_explain_part *part)
+{
+    int32_t *const drawn = p->e->linear_q20;
+
+    p->e->linear_q20 = p->sum;
+    measure_part_light(p->e, part);
+    p->e->linear_q20 = drawn;
 }
 
 /* Draws and measures each ghost, and measures their sum, which costs less than
  * to draw all again if rays are exact. */
-static enum glint_status measure_ghosts_and_sum(struct glint_explain *e)
+static enum glint_status measure_ghosts_and_sum(struct parts *p)
 {
-    const size_t n =
-        3 * (size_t)e->frame->view.width * (size_t)e->frame->view.height;
-    int32_t *const part = e->linear_q20, *const sum = calloc(n, sizeof *sum);
-    enum glint_status status = sum ? GLINT_OK : GLINT_E_MEMORY;
+    struct glint_explain *const e = p->e;
+    enum glint_status status = GLINT_OK;
 
     for (int i = 0; i < e->n_ghosts && status == GLINT_OK; i++) {
-        status = draw_and_measure_part(e, &e->ghost[i], i, -1, -1);
-        for (size_t k = 0; k < n && e->ghost[i].lit > 0; k++) {
-            const int64_t light = (int64_t)sum[k] + part[k];
-
-            sum[k] = (int32_t)(light < INT32_MAX ? light : INT32_MAX);
-        }
+        status = draw_and_measure_part(p, &e->ghost[i], i, -1, -1);
+        if (!e->lens)
+            add_part_to_sum(p, &e->ghost[i]);
     }
-    if (status == GLINT_OK && !e->lens) {
-        e->linear_q20 = sum;
-        measure_part_light(e, &e->all);
-        e->linear_q20 = part;
-    }
-    free(sum);
+    if (status == GLINT_OK && !e->lens)
+        measure_sum_of_parts(p, &e->all);
     return status;
 }
 
-static enum glint_status draw_and_measure_all_parts(struct glint_explain *e)
+/* Draws and measures the lights of lamp LAMP, and measures their sum. */
+static enum glint_status measure_lights_of_lamp(struct parts *p, int lamp)
 {
-    enum glint_status status = measure_ghosts_and_sum(e);
-    const int n_lights = !e->lens && e->n_lights == 1 ? 0 : e->n_lights;
+    struct glint_explain *const e = p->e;
+    enum glint_status status = GLINT_OK;
 
-    if (n_lights < e->n_lights)
-        e->light[0] = e->all;
-    for (int i = 0; i < n_lights && status == GLINT_OK; i++)
-        status = draw_and_measure_part(e, &e->light[i], -1, i, -1);
+    memset(p->sum, 0, count_frame_samples(e) * sizeof *p->sum);
+    for (int i = 0; i < e->n_lights && status == GLINT_OK; i++) {
+        if (e->lamp_of[i] != lamp)
+            continue;
+        status = draw_and_measure_part(p, &e->light[i], -1, i, -1);
+        add_part_to_sum(p, &e->light[i]);
+    }
+    measure_sum_of_parts(p, &e->lamp[lamp]);
+    return status;
+}
+
+static int count_drawn_parts(const struct glint_explain_part *part, int n)
+{
+    int n_drawn = 0;
+
+    for (int i = 0; i < n; i++)
+        n_drawn += glint_explain_drawn(&part[i]) > 0;
+    return n_drawn;
+}
+
+static enum glint_status draw_and_measure_all_parts(struct parts *p)
+{
+    struct glint_explain *const e = p->e;
+    const bool is_only_light = !e->lens && e->n_lights == 1;
+    enum glint_status status;
+
+    p->n_all = count_drawn_parts(e->ghost, e->n_ghosts) +
+               (is_only_light ? 0 : count_drawn_parts(e->light, e->n_lights)) +
+               count_drawn_parts(e->wave, e->n_waves) + (e->lens ? 1 : 0);
+    status = measure_ghosts_and_sum(p);
+    if (is_only_light)
+        e->light[0] = e->lamp[0] = e->all;
+    for (int i = 0; i < e->n_lamps && !is_only_light && status == GLINT_OK; i++)
+        status = measure_lights_of_lamp(p, i);
     for (int i = 0; i < e->n_waves && status == GLINT_OK; i++)
-        status = draw_and_measure_part(e, &e->wave[i], -1, -1, i);
+        status = draw_and_measure_part(p, &e->wave[i], -1, -1, i);
     if (!e->lens || status != GLINT_OK)
         return status;
-    return draw_and_measure_part(e, &e->all, -1, -1, -1);
+    return draw_and_measure_part(p, &e->all, -1, -1, -1);
 }
 
 static void set_part_fractions_of_total(const struct glint_explain *e,
@@ -282,11 +346,105 @@ static void set_costs(struct glint_explain *e)
     e->all.cost = 1;
 }
 
-enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
-                                               struct glint_frame *frame,
-                                               double unit)
+/* Returns the distance of LIGHT from the centre of LAMP, in major semi-axes of
+ * the lamp. */
+static double compute_distance_from_lamp(const struct glint_light *light,
+                                         const struct glint_lamp *lamp)
 {
-    const size_t n_all = (size_t)frame->setup->n_ghosts + 1;
+    const double tangent = tan(lamp->theta_deg * (GLINT_PI / 180));
+    const double scale = ldexp(light->sine_q30, -30) / light->cosine_q30;
+
+    return hypot(scale * light->cos_q30 -
+                     tangent * glint_cos_deg(lamp->phi_deg),
+                 scale * light->sin_q30 -
+                     tangent * glint_sin_deg(lamp->phi_deg)) /
+           lamp->axis[0];
+}
+
+/* Returns the index of the lamp of CFG that LIGHT is a point of, or -1 if LIGHT
+ * is not a point of a lamp of visible extent. */
+static int find_lamp_of_point(const struct glint_explain_config *cfg,
+                              const struct glint_light *light)
+{
+    double least = HUGE_VAL;
+    int nearest = -1;
+
+    for (int i = 0; i < cfg->n_lamps && light->apart_q30 > 0; i++) {
+        const struct glint_lamp *const lamp = &cfg->lamps[i].lamp;
+        const double distance = lamp->axis[0] > 0
+                                    ? compute_distance_from_lamp(light, lamp)
+                                    : HUGE_VAL;
+
+        if (distance < least) {
+            least = distance;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
+
+/* Sets e->lamp_of and e->n_lamps. */
+static enum glint_status
+assign_lights_to_lamps(struct glint_explain *e,
+                       const struct glint_explain_config *cfg)
+{
+    /* index of each lamp of CFG in e->lamp, plus 1; 0: it has no light yet */
+    int *const number = calloc((size_t)cfg->n_lamps + 1, sizeof *number);
+
+    if (!number)
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < e->n_lights; i++) {
+        const int lamp = find_lamp_of_point(cfg, &e->lights[i]);
+
+        if (lamp < 0 || number[lamp] == 0)
+            e->n_lamps++;
+        if (lamp >= 0 && number[lamp] == 0)
+            number[lamp] = e->n_lamps;
+        e->lamp_of[i] = (lamp < 0 ? e->n_lamps : number[lamp]) - 1;
+    }
+    free(number);
+    return GLINT_OK;
+}
+
+static enum glint_status allocate_parts(struct glint_explain *e)
+{
+    const size_t n_all = (size_t)e->frame->setup->n_ghosts + 1;
+    const size_t n_lights = (size_t)e->n_lights + 1;
+
+    e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
+    e->ghost = calloc(n_all, sizeof *e->ghost);
+    e->light = calloc(n_lights, sizeof *e->light);
+    e->lamp = calloc(n_lights, sizeof *e->lamp);
+    e->lamp_of = calloc(n_lights, sizeof *e->lamp_of);
+    e->wave = calloc((size_t)e->n_waves + 1, sizeof *e->wave);
+    e->linear_q20 = calloc(count_frame_samples(e), sizeof *e->linear_q20);
+    return e->ghost_of && e->ghost && e->light && e->lamp && e->lamp_of &&
+                   e->wave && e->linear_q20
+               ? GLINT_OK
+               : GLINT_E_MEMORY;
+}
+
+/* Counts the bundles of all parts, then draws and measures the parts. */
+static enum glint_status measure_frame(struct glint_explain *e,
+                                       const struct glint_explain_config *cfg)
+{
+    struct parts parts = {.e = e, .cfg = cfg};
+    enum glint_status status;
+
+    if (e->lens)
+        count_model_bundles(e);
+    else
+        e->frame->trace->account(e->frame, count_bundle, e);
+    parts.sum = calloc(count_frame_samples(e), sizeof *parts.sum);
+    status = parts.sum ? draw_and_measure_all_parts(&parts) : GLINT_E_MEMORY;
+    free(parts.sum);
+    return status;
+}
+
+static enum glint_status open_frame(struct glint_explain *e,
+                                    struct glint_frame *frame, double unit,
+                                    const struct glint_explain_config *cfg)
+{
     const struct glint_wave_sets *const sets = frame->plan.rays.sets;
     enum glint_status status;
 
@@ -307,21 +465,13 @@ enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
                                 .unit = unit,
                                 .tile_log2 = frame->cfg.tile_log2,
                                 .n_tiles = count_picture_tiles(frame)};
-    e->ghost_of = malloc(n_all * sizeof *e->ghost_of);
-    e->ghost = calloc(n_all, sizeof *e->ghost);
-    e->light = calloc((size_t)e->n_lights + 1, sizeof *e->light);
-    e->wave = calloc((size_t)e->n_waves + 1, sizeof *e->wave);
-    e->linear_q20 =
-        calloc(3 * (size_t)frame->view.width * (size_t)frame->view.height,
-               sizeof *e->linear_q20);
-    if (!e->ghost_of || !e->ghost || !e->light || !e->wave || !e->linear_q20)
-        return GLINT_E_MEMORY;
+    status = allocate_parts(e);
+    if (status == GLINT_OK)
+        status = assign_lights_to_lamps(e, cfg);
+    if (status != GLINT_OK)
+        return status;
     set_ghost_numbers(e);
-    if (e->lens)
-        count_model_bundles(e);
-    else
-        frame->trace->account(frame, count_bundle, e);
-    status = draw_and_measure_all_parts(e);
+    status = measure_frame(e, cfg);
     if (status != GLINT_OK)
         return status;
     if (e->lens)
@@ -329,17 +479,31 @@ enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
     e->all.share = e->all.flux > 0;
     set_part_fractions_of_total(e, e->ghost, e->n_ghosts);
     set_part_fractions_of_total(e, e->light, e->n_lights);
+    set_part_fractions_of_total(e, e->lamp, e->n_lamps);
     set_part_fractions_of_total(e, e->wave, e->n_waves);
     return GLINT_OK;
 }
 
+enum glint_status glint_explain_open_for_frame(struct glint_explain *e,
+                                               struct glint_frame *frame,
+                                               double unit)
+{
+    const struct glint_explain_config cfg = {.n_lamps = 0};
+
+    return open_frame(e, frame, unit, &cfg);
+}
+
 enum glint_status glint_explain_open(struct glint_explain *explain,
-                                     struct glint_engine *engine, double gain)
+                                     struct glint_engine *engine,
+                                     const struct glint_explain_config *config)
 {
     struct glint_frame *const f = &engine->paint.frame;
 
-    return glint_explain_open_for_frame(
-        explain, f, gain > 0 && f->plan.scale > 0 ? gain / f->plan.scale : 1);
+    return open_frame(explain, f,
+                      config->gain > 0 && f->plan.scale > 0
+                          ? config->gain / f->plan.scale
+                          : 1,
+                      config);
 }
 
 enum glint_status glint_explain_at(struct glint_explain *explain,
@@ -390,6 +554,8 @@ void glint_explain_close(struct glint_explain *e)
     free(e->ghost_of);
     free(e->ghost);
     free(e->light);
+    free(e->lamp);
+    free(e->lamp_of);
     free(e->wave);
     free(e->linear_q20);
 }

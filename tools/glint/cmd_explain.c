@@ -293,6 +293,30 @@ static int print_scene_explanation(struct tool *tool,
     return code;
 }
 
+/* Measures the ghosts and lights of the last picture, which takes seconds with
+ * exact rays, and shows the progress. */
+static enum glint_status open_explanation(const struct tool *tool,
+                                          struct explain_command *c,
+                                          bool linear, struct glint_explain *e)
+{
+    const struct drawing *const drawing = &c->drawing;
+    struct tool_progress progress;
+    const struct glint_explain_config cfg = {
+        .gain = linear
+                    ? settings_compute_brightness_scale(&drawing->line.settings)
+                    : 0,
+        .lamps = drawing->run.lamp,
+        .n_lamps = drawing->run.n_lamps,
+        .progress = tool_progress_show,
+        .progress_ctx = &progress};
+    enum glint_status status;
+
+    tool_progress_start(&progress, tool, "ghosts");
+    status = glint_explain_open(e, drawing->run.engine, &cfg);
+    tool_progress_end(&progress);
+    return status;
+}
+
 static int print_explanation(struct tool *tool, struct explain_command *c,
                              bool linear)
 {
@@ -308,10 +332,7 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
                       ? NULL
                       : drawing->run.engine};
     struct glint_explain e;
-    const enum glint_status status = glint_explain_open(
-        &e, drawing->run.engine,
-        linear ? settings_compute_brightness_scale(&drawing->line.settings)
-               : 0);
+    const enum glint_status status = open_explanation(tool, c, linear, &e);
     int code = EXIT_OK;
 
     if (status == GLINT_OK && drawing->files.scene.is_open)

@@ -240,6 +240,71 @@ TEST(ghosts_are_sorted_by_light)
     glint_frame_finish(&frame);
 }
 
+struct progress {
+    int n;
+    double last;
+};
+
+static void record_progress(void *ctx, double done)
+{
+    struct progress *const p = ctx;
+
+    assert_true(done > p->last && done <= 1);
+    p->last = done;
+    p->n++;
+}
+
+/* Draws a disc and a point, and explains the frame. All points of the disc must
+ * be one lamp, whose light is their sum, and the progress must end at 1. */
+TEST(points_of_a_lamp_are_summed)
+{
+    const struct glint_lamp two[] = {{8, 140, 2e6, {1, 1, 1}, {0, 0}, 0},
+                                     {12, 20, 3e6, {1, 1, 1}, {0.01, 0.01}, 0}};
+    const struct glint_engine_lamp known[] = {glint_engine_lamp_of(&two[0], 1),
+                                              glint_engine_lamp_of(&two[1], 2)};
+    struct progress progress = {0, 0};
+    const struct glint_explain_config config = {.lamps = known,
+                                                .n_lamps = 2,
+                                                .progress = record_progress,
+                                                .progress_ctx = &progress};
+    struct glint_engine_report report;
+    struct glint_engine_config cfg;
+    struct glint_engine *engine;
+    struct glint_error error;
+    struct glint_explain e;
+    double flux[2] = {0, 0}, brightest = 0;
+    int n[2] = {0, 0}, disc;
+
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    cfg.model = &opened.lens.model.lens;
+    assert_ok(glint_engine_create(&engine, &cfg, &error));
+    memset(rgb, 0, sizeof rgb);
+    assert_ok(glint_engine_draw_at(engine, two, 2, 1, &image, &report));
+    assert_ok(glint_explain_open(&e, engine, &config));
+    assert_true(e.n_lights > 5);
+    assert_int_equal(e.n_lamps, 2);
+    for (int i = 0; i < e.n_lights; i++) {
+        flux[e.lamp_of[i]] += e.light[i].flux;
+        n[e.lamp_of[i]]++;
+    }
+    disc = n[1] > n[0];
+    assert_int_equal(n[!disc], 1);
+    for (int i = 0; i < e.n_lights; i++)
+        if (e.lamp_of[i] == disc)
+            brightest = fmax(brightest, e.light[i].brightest);
+    for (int k = 0; k < 2; k++)
+        assert_true(fabs(e.lamp[k].flux / flux[k] - 1) < 1e-9);
+    assert_true(fabs(e.lamp[0].share + e.lamp[1].share - 1) < 0.002);
+    assert_true(e.lamp[disc].brightest > brightest &&
+                e.lamp[disc].brightest <= e.all.brightest);
+    assert_int_equal(glint_explain_bundles(&e.lamp[0]) +
+                         glint_explain_bundles(&e.lamp[1]),
+                     glint_explain_bundles(&e.all));
+    assert_true(progress.n > e.n_lights && progress.last == 1);
+    glint_explain_close(&e);
+    glint_engine_destroy(engine);
+}
+
 /* Returns whether most of the tile at (X0, Y0) has the colour that marks a
  * touched tile on a black image. */
 static int is_tile_shaded(const struct glint_image *marked, int x0, int y0)

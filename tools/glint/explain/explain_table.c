@@ -99,27 +99,50 @@ static void print_explanation_title(const struct glint_explain *e,
            100.0 * e->all.lit / e->view->width / e->view->height);
 }
 
-static void print_light_rows(const struct glint_explain *e,
-                             const struct explain_title *t)
+/* Returns the direction of lamp LAMP, the mean of its lights weighted by their
+ * power, and sets *N to their number. A single light keeps its direction. */
+static struct glint_lamp find_lamp_direction(const struct glint_explain *e,
+                                             int lamp, int *n)
 {
-    print_table_heading(e, "light  centre, pixels    angle  azimuth");
-    for (int i = 0; i < e->n_lights && i < t->top; i++) {
-        const struct glint_light *b = &e->lights[i];
-        const struct glint_lamp lamp = {
-            .theta_deg =
-                compute_direction_angle_deg(b->sine_q30, b->cosine_q30),
-            .phi_deg = compute_direction_angle_deg(b->sin_q30, b->cos_q30)};
+    double x = 0, y = 0, z = 0;
+
+    *n = 0;
+    for (int i = 0; i < e->n_lights; i++) {
+        const struct glint_light *const b = &e->lights[i];
+        const double power = glint_real_value(b->power);
+
+        if (e->lamp_of[i] != lamp)
+            continue;
+        x += power * b->sine_q30 * b->cos_q30 / b->cosine_q30;
+        y += power * b->sine_q30 * b->sin_q30 / b->cosine_q30;
+        z += power * 0x1p30;
+        (*n)++;
+    }
+    return (struct glint_lamp){.theta_deg =
+                                   compute_direction_angle_deg(hypot(x, y), z),
+                               .phi_deg = compute_direction_angle_deg(y, x)};
+}
+
+/* Prints a row per lamp. A lamp of visible extent is drawn as several lights,
+ * its points. */
+static void print_lamp_rows(const struct glint_explain *e,
+                            const struct explain_title *t)
+{
+    print_table_heading(e, "light  centre, pixels    angle  azimuth points");
+    for (int i = 0; i < e->n_lamps && i < t->top; i++) {
+        int n_points;
+        const struct glint_lamp lamp = find_lamp_direction(e, i, &n_points);
         char centre[64];
         double x, y;
 
         glint_view_to_pixel(e->view, e->setup->optics.focal_mm, &lamp, &x, &y);
         snprintf(centre, sizeof centre, "%.0f,%.0f", x, y);
-        printf("%5d %15s %8.3f %8.1f", i + 1, centre, lamp.theta_deg,
-               lamp.phi_deg);
-        print_light_columns(e, &e->light[i]);
+        printf("%5d %15s %8.3f %8.1f %6d", i + 1, centre, lamp.theta_deg,
+               lamp.phi_deg, n_points);
+        print_light_columns(e, &e->lamp[i]);
     }
-    if (e->n_lights > t->top)
-        printf("      and %d more (--top)\n", e->n_lights - t->top);
+    if (e->n_lamps > t->top)
+        printf("      and %d more (--top)\n", e->n_lamps - t->top);
 }
 
 /* Prints a row per wavelength if all ghosts are drawn with the same ones. */
@@ -278,7 +301,7 @@ void explain_print_tables(const struct glint_explain *e,
     glint_explain_sort(e, ghosts);
     print_explanation_title(e, t);
     if (e->n_lights) {
-        print_light_rows(e, t);
+        print_lamp_rows(e, t);
         print_wavelength_rows(e);
         print_ghost_rows(e, t, ghosts);
         print_ghosts_left_out(e);
@@ -316,7 +339,8 @@ static void write_lights_json(struct json_writer *json,
     for (int i = 0; i < e->n_lights; i++) {
         const struct glint_light *b = &e->lights[i];
 
-        json_write(json, "{angle_deg: %.6g, azimuth_deg: %.6g",
+        json_write(json, "{lamp: %d, angle_deg: %.6g, azimuth_deg: %.6g",
+                   e->lamp_of[i] + 1,
                    compute_direction_angle_deg(b->sine_q30, b->cosine_q30),
                    compute_direction_angle_deg(b->sin_q30, b->cos_q30));
         write_bundles_json(json, &e->light[i]);
