@@ -32,7 +32,7 @@
  *
  * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
  * start of the file, multiples of 4. Header first, then in any order what it
- * points to.
+ * points to, then, unless nobody compared pictures, struct glint_model_check.
  */
 #ifndef GLINT_MODEL_H
 #define GLINT_MODEL_H
@@ -215,6 +215,17 @@ static inline uint64_t glint_model_error_q20(uint16_t e)
 {
     return (uint64_t)(e & 2047) << (e >> 11);
 }
+
+/* The last bytes of a file whose pictures were compared with pictures by exact
+ * rays: the light whose pictures differ most. The magic number exceeds all
+ * values at this place in files without a check, bounds below 2^30. */
+#define GLINT_MODEL_CHECK_MAGIC UINT32_C(0x4b434c47) /* "GLCK" */
+struct glint_model_check {
+    uint32_t magic;
+    uint32_t n;        /* number of lights */
+    uint32_t psnr_q8;  /* dB; 999: all pictures are identical */
+    uint32_t angle_q8; /* angle of the light off the axis, degrees */
+};
 
 struct glint_lens {
     const struct glint_model_header *header;

@@ -181,22 +181,13 @@ static int reject_inaccurate_model(const struct tool *tool, double psnr_db,
     return tool_fail(tool, GLINT_E_LENS, text);
 }
 
-/* Compares images by MODEL with images by exact rays. Returns EXIT_OK if the
- * PSNR is at least PICTURE_CHECK_DB, else an exit code after printing the
- * reason. */
+/* Returns EXIT_OK if CHECK has a PSNR of at least PICTURE_CHECK_DB, else an
+ * exit code after printing the reason. */
 static int check_accuracy_for_strict(const struct tool *tool,
-                                     const struct bake *b,
-                                     const struct glint_prescription *lens,
-                                     const struct glint_lens *model,
-                                     struct picture_check *check)
+                                     const struct picture_check *check)
 {
-    struct glint_error error = {""};
-    const enum glint_status status =
-        picture_check_run(tool, lens, model, &b->options, check, &error);
     char where[64];
 
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
     if (check->psnr_db >= PICTURE_CHECK_DB)
         return EXIT_OK;
     snprintf(where, sizeof where, "with the light %.1f degrees off the axis",
@@ -205,58 +196,61 @@ static int check_accuracy_for_strict(const struct tool *tool,
                                    where, "try a smaller --tolerance");
 }
 
-/* Compares images by MODEL, whose file is already written, with images by exact
- * rays, for the report. Prints a warning on failure. */
-static void measure_accuracy_for_report(const struct tool *tool,
-                                        const struct bake *b,
-                                        const struct glint_prescription *lens,
-                                        const struct glint_lens *model,
-                                        struct picture_check *check)
+/* Compares images by the model *DATA[*BYTES] with images by exact rays, and
+ * stores the result in the model. On failure CHECK->n is 0: prints a warning,
+ * or the error if --strict needs the result. Returns an exit code. */
+static int measure_accuracy(const struct tool *tool, const struct bake *b,
+                            const struct glint_prescription *lens,
+                            unsigned char **data, size_t *bytes,
+                            struct picture_check *check)
 {
     struct glint_error error = {""};
-    const enum glint_status status =
-        picture_check_run(tool, lens, model, &b->options, check, &error);
+    enum glint_status status = GLINT_E_LENS;
+    struct glint_lens opened;
+    const char *reason;
 
+    if (glint_lens_open(&opened, *data, *bytes, &reason) != GLINT_OK)
+        return tool_fail(tool, status, reason);
+    status = picture_check_run(tool, lens, &opened, &b->options, check, &error);
     if (status == GLINT_OK)
-        return;
+        status = picture_check_store(check, data, bytes);
+    if (status == GLINT_OK)
+        return b->is_strict ? check_accuracy_for_strict(tool, check) : EXIT_OK;
     check->n = 0;
+    if (b->is_strict)
+        return tool_fail(tool, status, error.text);
     fprintf(stderr,
-            "glint bake: %s is written, but its pictures could not be compared "
-            "with exact rays: %s\n",
+            "glint bake: the pictures of %s could not be compared with exact "
+            "rays: %s\n",
             b->output, error.text[0] ? error.text : glint_status_text(status));
+    return EXIT_OK;
 }
 
-/* Checks MODEL[BYTES], commits it to OUT and prints a report. Aborts OUT if a
- * check fails. SECONDS is the time of the bake. Returns an exit code. */
+/* Checks the model *DATA[BYTES], which may move, commits it to OUT and prints a
+ * report. Aborts OUT if a check fails. SECONDS is the time of the bake. Returns
+ * an exit code. */
 static int write_model(struct glint_output *out, const struct tool *tool,
                        const struct bake *b,
                        const struct glint_prescription *lens,
-                       const unsigned char *model, size_t bytes, double seconds,
+                       unsigned char **data, size_t bytes, double seconds,
                        const struct glint_bake_report *report)
 {
-    const bool reports =
-        strcmp(b->output, "-") != 0 && (tool->json || !tool->quiet);
     struct picture_check check = {.n = 0};
     struct glint_error error = {""};
     struct glint_lens opened;
     enum glint_status status;
     const char *reason;
-    int code = EXIT_OK;
+    const int code = measure_accuracy(tool, b, lens, data, &bytes, &check);
 
-    if (glint_lens_open(&opened, model, bytes, &reason) != GLINT_OK)
-        code = tool_fail(tool, GLINT_E_LENS, reason);
-    else if (b->is_strict)
-        code = check_accuracy_for_strict(tool, b, lens, &opened, &check);
     if (code != EXIT_OK) {
         glint_output_abort(out);
         return code;
     }
-    status = glint_output_write_and_commit(out, model, bytes, &error);
+    status = glint_output_write_and_commit(out, *data, bytes, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
-    if (reports && !b->is_strict)
-        measure_accuracy_for_report(tool, b, lens, &opened, &check);
-    if (reports)
+    if (strcmp(b->output, "-") != 0 && (tool->json || !tool->quiet) &&
+        glint_lens_open(&opened, *data, bytes, &reason) == GLINT_OK)
         model_report_print_bake(tool, &opened, seconds, report, &check);
     return EXIT_OK;
 }
@@ -283,7 +277,7 @@ static int bake_lens_to_output(struct glint_output *out, struct tool *tool,
     status = glint_bake(lens, &b->options, &model, &bytes, &r, &error);
     tool_progress_end(&b->progress);
     if (status == GLINT_OK) {
-        code = write_model(out, tool, b, lens, model, bytes,
+        code = write_model(out, tool, b, lens, &model, bytes,
                            tool_clock_s() - start, &r);
     } else {
         glint_output_abort(out);

@@ -7,6 +7,7 @@
 
 #include "model/cache_file.h"
 #include "model/lens_files.h"
+#include "model/picture_check.h"
 #include "posix/input.h"
 
 enum { MAX_BYTES = 1 << 28 };
@@ -154,6 +155,26 @@ static int report_too_much_work(const struct tool *tool, const char *file)
     return EXIT_LENS;
 }
 
+/* Compares pictures by MODEL with pictures by exact rays of LENS, and stores
+ * the result in MODEL. If that fails, MODEL stays without a result. */
+static void check_model_pictures(const struct tool *tool,
+                                 const struct glint_prescription *lens,
+                                 const struct glint_bake_options *options,
+                                 struct model_file *model)
+{
+    unsigned char *data = model->data;
+    struct picture_check check;
+    struct glint_error error;
+    const char *reason;
+
+    if (picture_check_run(tool, lens, &model->lens, options, &check, &error) !=
+            GLINT_OK ||
+        picture_check_store(&check, &data, &model->bytes) != GLINT_OK)
+        return;
+    model->data = data;
+    glint_lens_open(&model->lens, data, model->bytes, &reason);
+}
+
 /* Bakes the model of LENS into MODEL and writes it to the cache file PATH
  * (NULL: no cache). FILE is the lens as named on the command line. Returns an
  * exit code. */
@@ -193,6 +214,7 @@ static int bake_model(const struct tool *tool,
     }
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
+    check_model_pictures(tool, lens, &options, model);
     if (path)
         write_cached_model(tool, path, model);
     return EXIT_OK;

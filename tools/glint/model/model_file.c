@@ -142,6 +142,17 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
     return GLINT_OK;
 }
 
+const struct glint_model_check *model_get_check(const struct glint_lens *lens)
+{
+    const struct glint_model_header *const h = lens->header;
+    const struct glint_model_check *check;
+
+    if (lens->zoom || h->bytes % 4 || h->bytes < sizeof *h + sizeof *check)
+        return NULL;
+    check = (const void *)((const char *)h + h->bytes - sizeof *check);
+    return check->magic == GLINT_MODEL_CHECK_MAGIC ? check : NULL;
+}
+
 void model_file_close(struct model_file *model)
 {
     free(model->zoom);

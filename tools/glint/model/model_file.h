@@ -13,6 +13,9 @@
 #include "glint/model.h"
 #include "options/tool.h"
 
+/* Min PSNR, dB, of a model that is reported as accurate */
+#define PICTURE_CHECK_DB 50.0
+
 /* A baked lens in memory. All zero bytes: closed. */
 struct model_file {
     struct glint_lens lens; /* points into data */
@@ -44,6 +47,10 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
 
 /* Returns the number of zoom positions at which all ghosts are baked. */
 int model_file_count_positions(const struct glint_zoom_lens *zoom);
+
+/* Returns the comparison of pictures that the file of LENS contains, or NULL.
+ * It has none if nobody compared pictures, or if LENS is a zoom. */
+const struct glint_model_check *model_get_check(const struct glint_lens *lens);
 
 /* Closes MODEL; does nothing if it is closed. */
 void model_file_close(struct model_file *model);

@@ -50,10 +50,21 @@ static void write_missed_targets_json(struct json_writer *json,
     json_write(json, "]");
 }
 
+/* Writes the light with the lowest PSNR, PSNR_DB, of N whose pictures were
+ * compared. */
+static void write_picture_check_json(struct json_writer *json, int n,
+                                     double psnr_db, double angle_deg)
+{
+    json_write(json, "pictures: %d", n);
+    if (n > 0 && psnr_db < IDENTICAL_DB)
+        json_write(json, "worst_db: %.2f, worst_deg: %.4f", psnr_db, angle_deg);
+}
+
 static void write_header_json(struct json_writer *json,
                               const struct model_file *model)
 {
     const struct glint_model_header *h = model->lens.header;
+    const struct glint_model_check *const check = model_get_check(&model->lens);
     const struct model_summary sum =
         model_compute_summary(&model->lens, model_get_full_span(&model->lens));
 
@@ -87,6 +98,9 @@ static void write_header_json(struct json_writer *json,
                model_convert_sine_to_deg(h->sine_hi_q30),
                model_convert_real_to_double(h->field_mm), h->n_systems,
                model_compute_mean_terms(&sum));
+    write_picture_check_json(json, check ? (int)check->n : 0,
+                             check ? ldexp(check->psnr_q8, -8) : 0,
+                             check ? ldexp(check->angle_q8, -8) : 0);
     write_errors_json(json, &sum);
     write_missed_targets_json(json, &model->lens);
 }
@@ -173,16 +187,28 @@ static void write_bake_json(const struct glint_lens *lens, double seconds,
                seconds, h->bytes, model_count_ghosts(lens), h->n_ghosts,
                h->n_systems, model_compute_mean_terms(&sum), report->unmet,
                report->rays, report->intruders);
-    json_write(&json, "pictures: %d", check->n);
-    if (check->n > 0 && check->psnr_db < IDENTICAL_DB)
-        json_write(&json, "worst_db: %.2f, worst_deg: %.4f", check->psnr_db,
-                   check->angle_deg);
+    write_picture_check_json(&json, check->n, check->psnr_db, check->angle_deg);
     write_errors_json(&json, &sum);
     write_missed_targets_json(&json, lens);
     json_write(&json, "by_ghost: [");
     for (uint32_t k = 0; k < h->n_ghosts; k++)
         write_ghost_json(&json, lens, k);
     json_write(&json, "]}\n");
+}
+
+/* Prints the comparison of pictures that the file of LENS contains. */
+static void print_stored_check(const struct glint_lens *lens)
+{
+    const struct glint_model_check *const check = model_get_check(lens);
+
+    if (!check)
+        puts("pictures            not checked against exact rays");
+    else if (check->psnr_q8 >= IDENTICAL_DB << 8)
+        puts("pictures            identical to those by exact rays");
+    else
+        printf("pictures            %6.1f dB PSNR against exact rays at worst, "
+               "with the light %.1f degrees off the axis\n",
+               ldexp(check->psnr_q8, -8), ldexp(check->angle_q8, -8));
 }
 
 static void print_model_header(const struct model_file *model)
@@ -230,6 +256,7 @@ static void print_model_header(const struct model_file *model)
            (unsigned long)model_count_ghosts(&model->lens),
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_compute_mean_terms(&sum));
+    print_stored_check(&model->lens);
     if (model->zoom)
         printf("positions           %6d with all ghosts, %d more with some of "
                "them; all other values are those of the first\n",

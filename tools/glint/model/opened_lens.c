@@ -108,6 +108,23 @@ static void warn_of_small_field(const struct tool *tool,
                 tool->name, field);
 }
 
+/* Prints a warning if pictures by the model of LENS are inaccurate. */
+static void warn_of_inaccurate_model(const struct tool *tool,
+                                     const struct opened_lens *lens)
+{
+    const struct glint_model_check *const check =
+        lens->model.data ? model_get_check(&lens->model.lens) : NULL;
+    const double psnr_db = check ? ldexp(check->psnr_q8, -8) : HUGE_VAL;
+
+    if (!tool->quiet && psnr_db < PICTURE_CHECK_DB)
+        fprintf(stderr,
+                "glint %s: pictures by the model of %s have down to %.1f dB "
+                "PSNR against exact rays, with the light %.1f degrees off the "
+                "axis, below %g dB; use the lens table with --rays exact\n",
+                tool->name, lens->table.name, psnr_db,
+                ldexp(check->angle_q8, -8), PICTURE_CHECK_DB);
+}
+
 /* Moves the zoom lens of the model PATH to the position that --zoom
  * requests. */
 static int zoom_model_to_option(const struct tool *tool,
@@ -225,6 +242,8 @@ int opened_lens_open(const struct tool *tool, struct opened_lens *lens,
     if (code == EXIT_OK && lens->model.data &&
         settings->camera.waves.kind == GLINT_WAVES_LIST)
         code = check_wavelength_band(tool, lens, settings);
+    if (code == EXIT_OK)
+        warn_of_inaccurate_model(tool, lens);
     return code == EXIT_OK ? set_up_opened_lens(tool, lens, settings) : code;
 }
 

@@ -2,7 +2,9 @@
 #include "model/picture_check.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "glint/exact.h"
 #include "glint/measure.h"
@@ -161,6 +163,8 @@ find_light_with_lowest_psnr(const struct job *job, struct picture_check *check,
             check->angle_deg = light->angle_deg;
         }
     }
+    check->psnr_db = fmax(0, floor(ldexp(check->psnr_db, 8)) / 256);
+    check->angle_deg = rint(ldexp(check->angle_deg, 8)) / 256;
     return GLINT_OK;
 }
 
@@ -204,4 +208,28 @@ enum glint_status picture_check_run(const struct tool *tool,
     }
     free(setup);
     return status;
+}
+
+enum glint_status picture_check_store(const struct picture_check *check,
+                                      unsigned char **data, size_t *bytes)
+{
+    const struct glint_model_check stored = {
+        GLINT_MODEL_CHECK_MAGIC, (uint32_t)check->n,
+        (uint32_t)ldexp(check->psnr_db, 8),
+        (uint32_t)ldexp(check->angle_deg, 8)};
+    const size_t n = *bytes + sizeof stored;
+    /* offset of the bytes that the checksum covers */
+    const size_t covered = offsetof(struct glint_model_header, basis);
+    unsigned char *const file = realloc(*data, n);
+    struct glint_model_header *header;
+
+    if (!file)
+        return GLINT_E_MEMORY;
+    memcpy(file + *bytes, &stored, sizeof stored);
+    header = (void *)file; /* realloc() has aligned the file */
+    header->bytes = (uint32_t)n;
+    header->crc32 = glint_model_crc32(file + covered, n - covered);
+    *data = file;
+    *bytes = n;
+    return GLINT_OK;
 }

@@ -7,11 +7,7 @@
 
 #include "glint/bake.h"
 #include "glint/engine.h"
-#include "glint/model.h"
-#include "options/tool.h"
-
-/* Min PSNR, dB, of a model that is reported as accurate */
-#define PICTURE_CHECK_DB 50.0
+#include "model/model_file.h"
 
 /* Two engines for the same lens: one draws by a model, the other by exact
  * rays. */
@@ -31,7 +27,8 @@ void picture_pair_close(struct picture_pair *pair);
 /* Result of picture_check_run(): the light with the lowest PSNR */
 struct picture_check {
     /* PSNR of the sRGB codes, dB, at the exposure of glint compare; 999: the
-     * images are identical */
+     * images are identical. Multiple of 2^-8, like the angle, so that the
+     * model stores both exactly. */
     double psnr_db;
     double angle_deg; /* angle of the light off the axis, degrees */
     int n;            /* number of lights whose pictures were compared */
@@ -47,5 +44,10 @@ enum glint_status picture_check_run(const struct tool *tool,
                                     const struct glint_bake_options *baked,
                                     struct picture_check *check,
                                     struct glint_error *error);
+
+/* Appends the result of CHECK to the file DATA[BYTES], which may move. Returns
+ * GLINT_E_MEMORY and changes nothing if there is no memory. */
+enum glint_status picture_check_store(const struct picture_check *check,
+                                      unsigned char **data, size_t *bytes);
 
 #endif
