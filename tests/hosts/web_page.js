@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // web_page.js FOLDER - tests the web page in Debian's Chromium: drops a photograph, drags a lamp,
-// chooses a lens and a style. Each saved picture must equal that of the command that the page
-// prints. FOLDER contains node_modules/playwright-core (npm install playwright-core). Needs
+// chooses a lens, a style and a doubtful region. Each saved picture must equal that of the command
+// that the page prints. FOLDER contains node_modules/playwright-core (npm install playwright-core). Needs
 // make web, make oiio and chromium. The test takes minutes, so make check does not run it.
 import {execFileSync, spawn} from "node:child_process";
 import fs from "node:fs";
@@ -32,13 +32,19 @@ async function drop(name, data, type) {
     }, [name, data, type]);
 }
 
+async function open(file) {
+    fs.copyFileSync(root + "/" + file, work + "/photo.jpg");
+    await drop("photo.jpg", base64(work + "/photo.jpg"), "image/jpeg");
+    await page.waitForFunction(() => document.body.dataset.first, null, {timeout: 0});
+}
+
 // Saves the picture, runs the printed command, and compares.
 async function compare(name) {
     const command = await page.inputValue("#command");
     const [download] = await Promise.all([page.waitForEvent("download", {timeout: 0}), page.click("#export")]);
     await download.saveAs(work + "/page.png");
     execFileSync("bash", ["-ec", command], {cwd: work, stdio: "ignore", env: {...process.env, PATH: root + "/build:" + process.env.PATH,
-        XDG_CACHE_HOME: root + "/build/web-cache", GLINT_LENSES: root + "/lenses", GLINT_OIIO: root + "/build/glint-oiio.so"}});
+        GLINT_LENSES: root + "/lenses", GLINT_OIIO: root + "/build/glint-oiio.so"}});
     check(name, await page.evaluate(async files => {
         const [a, b] = await Promise.all(files.map(async data => {
             const blob = new Blob([Uint8Array.from(atob(data), c => c.charCodeAt(0))]);
@@ -57,9 +63,7 @@ try {
     for (let i = 0; i < 100 && await page.goto(`http://127.0.0.1:${port}/`).then(() => false, () => true); i++)
         await new Promise(done => setTimeout(done, 100));
     await page.waitForFunction(() => document.body.dataset.loaded, null, {timeout: 0});
-    fs.copyFileSync(root + "/tests/data/bridge.jpg", work + "/photo.jpg");
-    await drop("photo.jpg", base64(work + "/photo.jpg"), "image/jpeg");
-    await page.waitForFunction(() => document.body.dataset.first, null, {timeout: 0});
+    await open("tests/data/bridge.jpg");
     await compare("lamps as they are found");
 
     const box = await page.locator(".lamp").first().boundingBox();
@@ -73,9 +77,24 @@ try {
     await compare("a lamp that was dragged and moved by keys");
     await page.fill("#search", "westanar");
     await page.click('#lenses button[data-name="tele-westanar-135"]');
-    await compare("a lens that the page bakes");
+    await compare("another lens");
+    await page.focus("#search");
+    await page.fill("#search", "");
+    await page.keyboard.press("Tab");
+    await page.keyboard.press("ArrowUp");
+    check("arrow keys choose lenses", await page.evaluate(() => document.activeElement.getAttribute("aria-checked") === "true" &&
+        document.activeElement.dataset.name !== "tele-westanar-135"));
+    await page.waitForFunction(() => document.activeElement.dataset.thumb, null, {timeout: 0});
+    check("the list shows the photograph with each lens", true);
     await page.click('#styles button[data-name="toy"]');
     await compare("a style");
+    await page.click("#ghost-box summary");
+    await page.click('#ghosts button[aria-label^="Mute"]', {timeout: 0});
+    await compare("a ghost left out");
+    await open("tests/gallery/window.jpg");
+    await page.waitForFunction(() => document.querySelectorAll(".doubt").length === 3, null, {timeout: 0});
+    await page.locator(".doubt").first().click();
+    await compare("a doubtful region as a lamp");
     await page.setViewportSize({width: 360, height: 740});
     check("360 pixels are wide enough", await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     for (const [name, data, type] of [["cut.jpg", base64(work + "/photo.jpg").slice(0, 400), "image/jpeg"], ["a.svg", btoa("<svg/>"), "image/svg+xml"],

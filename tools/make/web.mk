@@ -4,18 +4,15 @@
 WEB_PACKAGES := clang lld llvm wasi-libc libclang-rt-dev-wasm32
 wasm := build/wasm32/glint.wasm
 web_files := $(wildcard $(addprefix tools/hosts/web/*.,html css js svg))
-# The models of the styles' lenses come with the page; it bakes those of others.
 web:
 	@tools/make/deps "the page" $(WEB_PACKAGES)
-	@$(MAKE) --no-print-directory wasm build/glint
-	@mkdir -p build/web/models
+	@$(MAKE) --no-print-directory wasm
+	@mkdir -p build/web
 	$(Q)cp $(wasm) $(web_files) build/web && cp tests/data/bridge.jpg build/web/sample.jpg
-	$(Q)XDG_CACHE_HOME=$(CURDIR)/build/web-cache build/glint styles tests/data/bridge.ppm -o build/web-cache.ppm -q --rays model
-	$(Q)cp build/web-cache/glint/*.glint build/web/models
 	@echo "build/web/glint.wasm: $$(wc -c <build/web/glint.wasm) bytes, $$(gzip -9c build/web/glint.wasm | wc -c) by gzip"
 # The module alone. Objects of another machine, as those of boards.
 wasm:
-	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi' OUT=build/wasm32 LDFLAGS=-static \
+	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi -msimd128' OUT=build/wasm32 LDFLAGS=-static \
 	        WITH_JPEG=no WITH_INIH=no WITH_JANSSON=no WITH_EXPAT=no $(wasm)
 # Pictures of the module are those of the program.
 check-web: build/glint

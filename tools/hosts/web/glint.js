@@ -4,8 +4,6 @@
 //
 //     const glint = await Glint.make(bytesOfGlintWasm);
 //     glint.options({lens: "heliar-tronnier", strength: "0.7"});
-//     glint.open();            the file name of the lens's model
-//     glint.model(bytes);      or glint.bake()
 //     glint.size(width, height);
 //     const lamps = glint.find(rgba);
 //     glint.draw(rgba);        or glint.draw(rgba, lamps)
@@ -76,25 +74,12 @@ export class Glint {
         }
     }
 
-    // Sets all options: those of VALUES, and the defaults of others.
-    options(values) {
+    // Sets all options: those of VALUES, and the defaults of others. MUTED: numbers of ghosts to leave out.
+    options(values, muted = []) {
         this.c.web_reset();
+        muted.forEach(ghost => this.check(this.c.web_mute(ghost)));
         for (const [name, value] of Object.entries(values))
             this.set(name, value);
-    }
-
-    open(widest = 0) {
-        return this.text(this.check(this.c.web_open(widest)));
-    }
-
-    model(bytes) {
-        this.check(this.c.web_model(this.take(bytes), bytes.length));
-    }
-
-    // Bakes the model; returns its bytes.
-    bake() {
-        this.check(this.c.web_bake());
-        return this.bytes(this.c.web_model_data(), this.c.web_model_bytes()).slice();
     }
 
     size(width, height) {
@@ -131,19 +116,33 @@ export class Glint {
         return lamps;
     }
 
-    // Returns where the brightest spot is that find() did not take for a lamp, or null.
+    // Returns the positions of up to three regions that find() did not accept as lamps, the brightest first.
     doubtful() {
-        const at = this.c.web_take(16);
-        const xy = this.c.web_doubtful(at) ? [...new Float64Array(this.c.memory.buffer, at, 2)] : null;
+        const at = this.c.web_take(16), list = [];
+        while (list.length < 3 && this.c.web_doubtful(list.length, at))
+            list.push([...new Float64Array(this.c.memory.buffer, at, 2)]);
         this.c.web_free(at);
-        return xy;
+        return list;
     }
 
-    // Draws the flare of LAMPS, or of those that find() found, into RGBA. QUICK: about.
-    draw(rgba, lamps = null, quick = false) {
+    // Draws the flare of LAMPS, or of those that find() found, into RGBA.
+    draw(rgba, lamps = null) {
         if (lamps)
             this.rows(lamps.length).set(lamps.flatMap(lamp => COLUMNS.map(name => lamp[name])));
-        this.with(rgba, true, at => this.check(this.c.web_draw(at, lamps ? lamps.length : FOUND, Number(quick))));
+        this.with(rgba, true, at => this.check(this.c.web_draw(at, lamps ? lamps.length : FOUND)));
+    }
+
+    // Returns up to MAX ghosts of the last picture, the brightest first.
+    ghosts(max) {
+        const at = this.c.web_take(48 * max), n = this.c.web_ghosts(at, max);
+        const rows = new Float64Array(this.c.memory.buffer, at, 6 * Math.max(0, n)), list = [];
+        for (let i = 0; i < n; i++) {
+            const [number, share, x0, y0, x1, y1] = rows.subarray(6 * i);
+            list.push({number, share, x0, y0, x1, y1});
+        }
+        this.c.web_free(at);
+        this.check(n >= 0);
+        return list;
     }
 }
 
@@ -152,3 +151,6 @@ export function lampFile(lamps) {
     return "frame,id," + COLUMNS.join() + "\n" +
         lamps.map((lamp, i) => `*,${i + 1},` + COLUMNS.map(name => lamp[name]).join() + "\n").join("");
 }
+
+// The ghosts MUTED as a file of glint overlay --ghosts.
+export const ghostFile = muted => muted.map(ghost => ghost + " mute\n").join("");

@@ -9,30 +9,21 @@
 #include "glint/area.h"
 #include "glint/bake.h"
 #include "glint/engine.h"
+#include "glint/explain.h"
 #include "glint/options.h"
 
 /* default roundness of the aperture blades, as in glint overlay; --stop may set
  * another one */
 #define PHOTO_ROUNDNESS 0.2
 
-/* assumed time between pictures if web_draw() draws quickly, microseconds */
-enum { QUICK_US = 1000000 };
-
-/* number of wavelengths of exact rays if the option is "auto" */
-enum { EXACT_WAVES = 9 };
-
 static struct {
     struct glint_error error;
     struct glint_options options;
-    char *text[GLINT_N_OPTIONS];
+    char *text[GLINT_N_OPTIONS]; /* values of text options */
 
     struct glint_prescription table;
-    /* is_model: web_open() was called with an f-number (WIDEST) */
-    bool is_open, is_model;
-    char name[GLINT_NAME_BYTES + 32];
-    unsigned char *data;
-    size_t bytes;
-    struct glint_lens lens;
+    /* factors on the light of the ghosts: 0 or 1 */
+    struct glint_tint tint[GLINT_MAX_GHOSTS];
     struct glint_dirt *dirt;
     struct glint_setup setup;
     struct glint_projection projection;
@@ -83,6 +74,17 @@ void web_reset(void)
         web.text[i] = NULL;
     }
     glint_options_defaults(&web.options);
+    for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
+        web.tint[i] =
+            (struct glint_tint){{16384, 16384, 16384}, glint_real_of(1)};
+}
+
+int web_mute(int ghost)
+{
+    if (ghost < 0 || ghost >= GLINT_MAX_GHOSTS)
+        return record_error("no ghost has this number");
+    web.tint[ghost].gain = (struct glint_real){0, 0};
+    return 1;
 }
 
 int web_set(const char *name, const char *text)
@@ -119,15 +121,6 @@ static void close_web_engine(void)
     web.n_found = 0;
     glint_dirt_free(web.dirt);
     web.dirt = NULL;
-}
-
-static void close_web_lens(void)
-{
-    close_web_engine();
-    free(web.data);
-    web.data = NULL;
-    web.bytes = 0;
-    web.is_open = false;
 }
 
 /* Applies the films of --coating to the table. */
@@ -168,108 +161,23 @@ static int move_zoom_groups(void)
     return record_status(status);
 }
 
-/* Returns the options for baking the model: those of glint overlay. If
- * web_open() was called with an f-number, returns the defaults of glint
- * bake. */
-static struct glint_bake_options get_model_bake_options(void)
-{
-    const struct glint_options *const o = &web.options;
-    const struct glint_prescription *const l = &web.table;
-    struct glint_waves waves = {GLINT_WAVES_AUTO, 0, {0}};
-    struct glint_bake_options b;
-    double mm[2];
-
-    glint_bake_defaults(&b);
-    if (web.is_model)
-        return b;
-    b.tolerance = glint_options_quality(o).tolerance;
-    glint_option_waves(o->wavelengths, &waves);
-    for (int i = 0; waves.kind == GLINT_WAVES_LIST && i < waves.n; i++) {
-        b.band_nm[0] =
-            fmin(b.band_nm[0], fmax(300, 10 * floor(waves.nm[i] / 10)));
-        b.band_nm[1] =
-            fmax(b.band_nm[1], fmin(1100, 10 * ceil(waves.nm[i] / 10)));
-    }
-    if (o->sensor && glint_option_sensor(o->sensor, mm) &&
-        hypot(mm[0], mm[1]) > hypot(l->film_width_mm, l->film_height_mm))
-        b.field_mm = 0.55 * hypot(mm[0], mm[1]);
-    return b;
-}
-
-const char *web_open(double widest)
+/* Sets the table to the lens of the options, with their zoom, focus, coating
+ * and f-number. */
+static int open_web_lens(void)
 {
     const struct glint_options *const o = &web.options;
     const struct web_lens *from = web_lens;
-    struct glint_bake_options b;
-    double f = 0;
 
-    close_web_lens();
-    web.error.text[0] = '\0';
     while (from->name && strcmp(from->name, o->lens) != 0)
         from++;
     if (!from->name)
-        return record_error("no lens has this name"), NULL;
-    if (!record_status(glint_prescription_parse(&web.table, from->text,
-                                                strlen(from->text), from->name,
-                                                &web.error)) ||
-        !move_zoom_groups() || !apply_coating_option())
-        return NULL;
-    web.is_model = widest > 0;
-    if (web.is_model)
-        f = widest;
-    else if (o->f_number > 0 &&
-             (o->rays == GLINT_RAYS_EXACT || o->f_number < web.table.f_number))
-        f = o->f_number;
-    if (f > 0 && !record_status(glint_prescription_set_f_number(&web.table, f,
-                                                                &web.error)))
-        return NULL;
-    b = get_model_bake_options();
-    snprintf(web.name, sizeof web.name, "%s-%016llx.glint", web.table.name,
-             (unsigned long long)glint_bake_key(&web.table, &b));
-    web.is_open = true;
-    return web.name;
-}
-
-int web_model(void *data, size_t bytes)
-{
-    const char *reason = "no lens is open";
-
-    close_web_engine();
-    free(web.data);
-    web.data = data;
-    web.bytes = bytes;
-    if (web.is_open &&
-        glint_lens_open(&web.lens, data, bytes, &reason) == GLINT_OK)
-        return 1;
-    free(web.data);
-    web.data = NULL;
-    web.bytes = 0;
-    return record_error(reason);
-}
-
-int web_bake(void)
-{
-    const struct glint_bake_options b = get_model_bake_options();
-    struct glint_bake_report report;
-    unsigned char *data;
-    size_t bytes;
-
-    if (!web.is_open)
-        return record_error("no lens is open");
-    web.error.text[0] = '\0';
-    return record_status(glint_bake(&web.table, &b, &data, &bytes, &report,
-                                    &web.error)) &&
-           web_model(data, bytes);
-}
-
-const void *web_model_data(void)
-{
-    return web.data;
-}
-
-size_t web_model_bytes(void)
-{
-    return web.bytes;
+        return record_error("no lens has this name");
+    return record_status(glint_prescription_parse(&web.table, from->text,
+                                                  strlen(from->text),
+                                                  from->name, &web.error)) &&
+           move_zoom_groups() && apply_coating_option() &&
+           (!(o->f_number > 0) || record_status(glint_prescription_set_f_number(
+                                      &web.table, o->f_number, &web.error)));
 }
 
 /* ------------------------------------------------------------------- engine */
@@ -277,77 +185,33 @@ size_t web_model_bytes(void)
 /* Sets CAMERA from the options and computes the lens's setup. The aperture has
  * the blades that glint overlay uses for photographs, unless the options or the
  * table define others. */
-static int set_up_camera(struct glint_engine_camera *camera, bool exact)
+static int set_up_camera(struct glint_engine_camera *camera)
 {
     double nm[GLINT_MAX_WAVELENGTHS];
     int n;
 
-    if (!web.options.stop && !web.is_model && web.table.stop_is_circle) {
+    if (!web.options.stop && web.table.stop_is_circle) {
         camera->n_blades = 0;
         camera->iris.roundness = 0;
     }
-    if (exact && camera->waves.kind == GLINT_WAVES_AUTO)
-        camera->waves =
-            (struct glint_waves){GLINT_WAVES_COUNT, EXACT_WAVES, {0}};
     n = glint_waves_list(&camera->waves, nm);
-    return (!exact || record_status(glint_setup_init(
-                          &web.setup, &web.table, camera->n_blades,
-                          camera->blade_rotation_deg, nm, n, &web.error))) &&
-           record_status(glint_engine_setup(&web.setup,
-                                            exact ? NULL : &web.lens, camera,
-                                            &web.dirt, &web.error));
-}
-
-/* Cache of the responses (brightness of the flare) of the lenses and stops that
- * were used last. Measuring a response takes about as long as drawing a coarse
- * picture. */
-enum { KEPT = 16, KEPT_BYTES = 4096 };
-static struct {
-    uint64_t key;
-    size_t bytes; /* bytes of the cached response; 0: unused entry */
-    unsigned char data[KEPT_BYTES];
-} kept[KEPT];
-static int next_kept;
-
-static int read_cached_response(void *ctx, const char *name, uint64_t key,
-                                void *data, size_t bytes)
-{
-    (void)ctx;
-    (void)name;
-    for (int i = 0; i < KEPT; i++)
-        if (kept[i].key == key && kept[i].bytes == bytes) {
-            memcpy(data, kept[i].data, bytes);
-            return 1;
-        }
-    return 0;
-}
-
-static void write_cached_response(void *ctx, const char *name, uint64_t key,
-                                  const void *data, size_t bytes)
-{
-    (void)ctx;
-    (void)name;
-    if (bytes > KEPT_BYTES)
-        return;
-    kept[next_kept].key = key;
-    kept[next_kept].bytes = bytes;
-    memcpy(kept[next_kept].data, data, bytes);
-    next_kept = (next_kept + 1) % KEPT;
+    return record_status(glint_setup_init(
+               &web.setup, &web.table, camera->n_blades,
+               camera->blade_rotation_deg, nm, n, &web.error)) &&
+           record_status(glint_engine_setup(&web.setup, NULL, camera, &web.dirt,
+                                            &web.error));
 }
 
 int web_size(int width, int height)
 {
     const struct glint_options *const o = &web.options;
-    const bool exact = o->rays == GLINT_RAYS_EXACT;
-    const struct glint_engine_cache cache = {read_cached_response,
-                                             write_cached_response, NULL};
     struct glint_engine_config cfg;
     double miss_deg;
 
     web.error.text[0] = '\0';
     close_web_engine();
-    if (!web.is_open || (!exact && !web.data))
-        return record_error("there is no model of the lens");
+    if (!open_web_lens())
+        return 0;
     web.projection = (struct glint_projection){0, {0}};
     if (o->projection == GLINT_PROJECTION_LENS &&
         !record_status(glint_projection_of(&web.projection, &web.table,
@@ -356,18 +220,17 @@ int web_size(int width, int height)
     glint_engine_defaults(&cfg, width, height);
     cfg.camera.iris.roundness = PHOTO_ROUNDNESS;
     glint_engine_configure(&cfg, o);
-    if (!set_up_camera(&cfg.camera, exact))
+    if (!set_up_camera(&cfg.camera))
         return 0;
-    cfg.model = exact ? NULL : &web.lens;
     cfg.search.more_lamps = GLINT_ENGINE_MAX_LAMPS;
     cfg.camera.setup = &web.setup;
     cfg.camera.rays = &glint_frame_traces;
+    cfg.camera.tints = web.tint;
     cfg.camera.projection = &web.projection;
     if (!(cfg.camera.sensor_width_mm > 0)) {
         cfg.camera.sensor_width_mm = web.table.film_width_mm;
         cfg.camera.sensor_height_mm = web.table.film_height_mm;
     }
-    cfg.cache = &cache;
     web.width = width;
     web.height = height;
     return record_status(glint_engine_create(&web.engine, &cfg, &web.error));
@@ -448,11 +311,11 @@ int web_find(uint8_t *pixels)
     return web.n_found;
 }
 
-int web_doubtful(double xy[2])
+int web_doubtful(int i, double xy[2])
 {
     struct glint_spot spot;
 
-    if (!web.engine || !glint_engine_doubtful(web.engine, 0, &spot))
+    if (!web.engine || !glint_engine_doubtful(web.engine, i, &spot))
         return 0;
     xy[0] = spot.x_q8 / 256.0;
     xy[1] = spot.y_q8 / 256.0;
@@ -472,7 +335,7 @@ static bool is_lamp_row_valid(const double row[WEB_COLUMNS])
            isfinite(row[WEB_TURN]);
 }
 
-int web_draw(uint8_t *pixels, int n, int quick)
+int web_draw(uint8_t *pixels, int n)
 {
     struct glint_engine_config cfg;
     struct glint_engine_report report;
@@ -495,9 +358,32 @@ int web_draw(uint8_t *pixels, int n, int quick)
         }
     glint_engine_configure(&cfg, &web.options);
     glint_engine_set_light(web.engine, &cfg.light);
-    glint_engine_elapsed(web.engine, quick ? QUICK_US : 0);
-    if (quick)
-        glint_engine_mark_cut(web.engine);
+    glint_engine_elapsed(web.engine, 0);
     return record_status(
         glint_engine_draw(web.engine, web.lamp, n, &image, &report));
+}
+
+int web_ghosts(double (*rows)[WEB_GHOST_COLUMNS], int max)
+{
+    int order[GLINT_MAX_GHOSTS], n = 0;
+    struct glint_explain explain;
+
+    if (!web.engine)
+        return record_error("there is no engine") - 1;
+    web.error.text[0] = '\0';
+    if (!record_status(glint_explain_open(&explain, web.engine, 0))) {
+        glint_explain_close(&explain);
+        return -1;
+    }
+    glint_explain_sort(&explain, order);
+    for (; n < max && n < explain.n_ghosts; n++) {
+        const struct glint_explain_part *const p = &explain.ghost[order[n]];
+        const double row[] = {order[n], p->share, p->x0, p->y0, p->x1, p->y1};
+
+        if (!(p->flux > 0))
+            break;
+        memcpy(rows[n], row, sizeof row);
+    }
+    glint_explain_close(&explain);
+    return n;
 }

@@ -3,16 +3,14 @@
  * glint_web.h - functions of the WebAssembly module that the page calls.
  *
  *     web_set("lens", "heliar-tronnier");  options, by the names of the table
- *     name = web_open(0);                  the file name of the lens's model
- *     web_model(data, bytes);              or  web_bake();
  *     web_size(width, height);
  *     n = web_find(pixels);                rows of lamps in web_lamps()
- *     web_draw(pixels, WEB_FOUND, 0);
+ *     web_draw(pixels, WEB_FOUND);
  *
- * A module has one lens and one engine. On failure functions return 0 or NULL,
- * and web_error() returns the cause. Texts end with 0 and are UTF-8. Pictures
- * have the layout of ImageData: bytes R, G, B, A without padding. The byte A
- * does not change.
+ * A module has one lens and one engine, which traces exact rays. On failure
+ * functions return 0 or NULL, and web_error() returns the cause. Texts end with
+ * 0 and are UTF-8. Pictures have the layout of ImageData: bytes R, G, B, A
+ * without padding. The byte A does not change.
  */
 #ifndef GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
 #define GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
@@ -22,7 +20,7 @@
 
 #define WEB_EXPORT(name) __attribute__((export_name(#name)))
 
-enum { WEB_FOUND = -1 };
+enum { WEB_FOUND = -1, WEB_GHOST_COLUMNS = 6 };
 
 /* A lens table built into the module */
 struct web_lens {
@@ -70,21 +68,12 @@ WEB_EXPORT(web_reset) void web_reset(void);
  * --budget. */
 WEB_EXPORT(web_set) int web_set(const char *name, const char *text);
 
-/* Opens the lens that the options name. WIDEST: the f-number that its model is
- * baked for, as with glint bake --f-number WIDEST. 0 means the f-number of the
- * table or the options, as with glint overlay. Returns the model's file name in
- * glint's cache, NAME-KEY.glint, which is valid until the next call. */
-WEB_EXPORT(web_open) const char *web_open(double widest);
+/* Leaves out a ghost, which has the number that glint explain prints.
+ * web_reset() restores all ghosts. */
+WEB_EXPORT(web_mute) int web_mute(int ghost);
 
-/* web_model() sets the model of the lens to DATA, which must come from
- * web_take() and is not copied. web_bake() bakes the model instead. Without a
- * model, web_size() succeeds only with --rays exact. */
-WEB_EXPORT(web_model) int web_model(void *data, size_t bytes);
-WEB_EXPORT(web_bake) int web_bake(void);
-WEB_EXPORT(web_model_data) const void *web_model_data(void);
-WEB_EXPORT(web_model_bytes) size_t web_model_bytes(void);
-
-/* Makes an engine for pictures of WIDTH x HEIGHT with the current options. */
+/* Opens the lens of the options and makes an engine for pictures of WIDTH x
+ * HEIGHT. */
 WEB_EXPORT(web_size) int web_size(int width, int height);
 
 /* Finds the lamps of a picture and sets the rows of web_lamps(). Returns
@@ -92,15 +81,20 @@ WEB_EXPORT(web_size) int web_size(int width, int height);
 WEB_EXPORT(web_find) int web_find(uint8_t *pixels);
 WEB_EXPORT(web_lamps) double *web_lamps(void);
 
-/* Sets XY to the centre of the brightest region that was not accepted as a
- * lamp, and returns 1. Returns 0 if there is no such region. */
-WEB_EXPORT(web_doubtful) int web_doubtful(double xy[2]);
+/* Sets XY to the position of the I-th region that was not accepted as a lamp,
+ * the brightest first; returns 0 if there is no such region. */
+WEB_EXPORT(web_doubtful) int web_doubtful(int i, double xy[2]);
 
 /* Draws a flare into PIXELS: that of the first N rows of web_lamps(), N = 0 ..
- * 1024, or of the lamps that web_find() has found (N = WEB_FOUND). If QUICK is
- * not 0, draws as in a video: brightness is estimated, and wide lamps have
- * fewer points. The options strength, exposure, gain and starburst may change
- * between web_size() and this call. */
-WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n, int quick);
+ * 1024, or of the lamps that web_find() has found (N = WEB_FOUND). The options
+ * strength, exposure, gain and starburst may change between web_size() and this
+ * call. */
+WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n);
+
+/* Sets ROWS[MAX] to number, fraction of the light and bounding box (x0, y0, x1,
+ * y1, pixels) of the brightest ghosts of the last picture. Returns how many
+ * rows were set, or -1 on failure. */
+WEB_EXPORT(web_ghosts)
+int web_ghosts(double (*rows)[WEB_GHOST_COLUMNS], int max);
 
 #endif

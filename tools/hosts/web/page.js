@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: MIT
 //
 // page.js - the page: what a person sets, and what the workers drew of it.
-import {commandLine, widestOf} from "./command.js";
+import {commandLine} from "./command.js";
 import {drawSection, makeOptions} from "./widgets.js";
 
 const $ = id => document.getElementById(id);
 const MAX_PIXELS = 40e6;
 const MAX_BYTES = 200e6;
 const DRAFT_SIDE = 640; // pixels of the longer side of coarse pictures
+const GHOSTS = 12; // that are listed
+const THUMB_SIDE = 192; // pixels of the longer side of the pictures in the list of lenses
 const FULL_DELAY_MS = 250; // without a change, before the whole picture is drawn
+const PATIENCE_MS = 2000; // after which an outdated picture is abandoned
 const NEW_LAMP_POWER = 2 ** 16; // that of glint overlay --light-at
 const FIRST_LENS = "nikon-zoom-short";
 
 let tables = null;
-let photo = null; // {name, width, height, k: scale of coarse pictures}
-let state = {values: {}, lamps: null, style: ""}; // lamps null: as found
-let found = [], doubtful = null;
+let photo = null; // {id, file, width, height, searched: the search that found FOUND}
+let state = {values: {}, muted: [], lamps: null, style: ""}; // muted: numbers of ghosts; lamps null: as found
+let found = [], doubtful = []; // lamps, and positions of regions that may be lamps
 let selected = -1;
 let past = [], future = [];
 let zoom = 1;
-let models = new Map();
 let renderMark = 0;
 
 // ------------------------------------------------------------------- workers
@@ -29,63 +31,110 @@ let renderMark = 0;
 const workerFile = URL.createObjectURL(new Blob([`import ${JSON.stringify(new URL("worker.js", location.href).href)};`],
     {type: "text/javascript"}));
 
-// A worker that draws the latest state; requests in between are left out.
+// Returns LAMPS in a picture scaled by K.
+const scaleLamps = (lamps, k) => k === 1 ? lamps : lamps.map(lamp =>
+    ({...lamp, x: lamp.x * k, y: lamp.y * k, power: lamp.power * k * k, size: lamp.size * k, seen: lamp.seen * k}));
+
+// A worker that draws pictures whose longer side has at most SIDE pixels.
 class Painter {
-    constructor(draft) {
+    constructor(side, isDraft) {
+        this.side = side;
+        this.isDraft = isDraft;
+        this.start();
+    }
+
+    start() {
         this.worker = new Worker(workerFile, {type: "module"});
-        this.draft = draft;
-        this.busy = this.waiting = false;
         this.worker.onmessage = ({data}) => this.take(data);
         this.worker.onerror = event => report(event.message || "the page's worker failed", true);
+        this.busy = false;
     }
 
-    send(message, transfer) {
-        this.worker.postMessage(message, transfer);
+    // Sets the photograph. PIXELS returns the RGBA pixels of a picture of a size.
+    open(pixels) {
+        this.k = Math.min(1, this.side / Math.max(photo.width, photo.height));
+        this.picture = {kind: "picture", width: Math.max(1, Math.round(photo.width * this.k)), height: Math.max(1, Math.round(photo.height * this.k))};
+        this.picture.rgba = new Uint8Array(pixels(this.picture).buffer);
+        if (this.busy)
+            this.restart();
+        else
+            this.worker.postMessage(this.picture);
     }
 
+    // Abandons the picture being drawn.
+    restart() {
+        this.worker.terminate();
+        this.start();
+        this.worker.postMessage(this.picture);
+    }
+
+    post(message) {
+        this.busy = true;
+        this.since = performance.now();
+        this.worker.postMessage({...message, id: photo.id});
+    }
+
+    send(values, muted, lamps, ghosts = 0) {
+        this.post({kind: "draw", values, muted, lamps: lamps && scaleLamps(lamps, this.k), draft: this.isDraft, ghosts});
+    }
+}
+
+// Draws the latest state; states in between are left out.
+class View extends Painter {
     draw() {
-        this.waiting = true;
+        if (this.busy && performance.now() - this.since > PATIENCE_MS)
+            this.restart();
+        this.waiting = this.busy;
         if (this.busy || !photo)
             return;
-        this.busy = true;
-        this.waiting = false;
+        if (this.isDraft && !state.lamps && photo.searched !== searchKey())
+            return full.search();
+        if (!this.isDraft)
+            report("Drawing the whole picture");
         this.mark = renderMark;
-        const k = this.draft ? photo.k : 1;
-        const lamps = state.lamps && state.lamps.map(lamp => k === 1 ? lamp :
-            {...lamp, x: lamp.x * k, y: lamp.y * k, power: lamp.power * k * k, size: lamp.size * k, seen: lamp.seen * k});
-        this.send({kind: "draw", id: photo.id, values: values(), widest: widest(), lamps, draft: this.draft,
-            model: models.get(modelKey())});
+        this.send(values(), state.muted, this.isDraft ? lamps() : state.lamps);
+    }
+
+    // Searches lamps, after which the coarse view draws.
+    search() {
+        if (this.busy && this.searching === searchKey())
+            return;
+        if (this.busy)
+            this.restart();
+        this.searching = searchKey();
+        this.post({kind: "find", values: values(), muted: state.muted});
+    }
+
+    takeFound(data) {
+        photo.searched = this.searching;
+        ({found, doubtful} = data);
+        showLamps();
+        coarse.draw();
     }
 
     take(data) {
         if (data.kind === "tables")
             return start(data);
-        if (data.kind === "busy")
-            return report(data.text);
         this.busy = false;
-        if (photo && data.id === photo.id && !this.waiting)
+        if (data.kind === "found" && data.id === photo.id)
+            this.takeFound(data);
+        else if (photo && data.id === photo.id && !this.waiting)
             data.kind === "failed" ? report(data.text, true) : this.show(data);
-        else if (data.kind === "drawn" && photo && data.id === photo.id && this.draft)
+        else if (data.kind === "drawn" && photo && data.id === photo.id && this.isDraft)
             this.show(data); // better an old coarse picture than none
         if (this.waiting)
             this.draw();
+        gallery.next();
     }
 
     show(data) {
-        if (data.model)
-            models.set(modelKey(), data.model);
-        if (this.draft) {
-            if (shown.full >= this.mark)
-                return;
+        if (this.isDraft && shown.full >= this.mark)
+            return;
+        if (this.isDraft)
             planFull();
-        } else {
+        else {
             shown.full = this.mark;
-            const same = JSON.stringify(found) === JSON.stringify(data.found);
-            found = data.found;
-            doubtful = data.doubtful;
-            if (!same)
-                showLamps();
-            report(`${data.width} × ${data.height}, ${(state.lamps || found).length} lamps, drawn in ${Math.round(data.ms)} ms; ` +
+            report(`${data.width} × ${data.height}, ${lamps().length} lamps, drawn in ${Math.round(data.ms)} ms; ` +
                 `${(100 * data.clipped).toFixed(1)} % of the pixels are clipped`);
             document.body.dataset.ready = this.mark;
             document.body.dataset.memory = data.memory;
@@ -96,9 +145,39 @@ class Painter {
         document.body.dataset.step = Math.round(performance.now() - changedAt);
     }
 }
+
+// Lists the ghosts, and draws the photograph with each lens that the list shows, while the views are idle.
+class Gallery extends Painter {
+    next() {
+        if (this.busy || coarse.busy || full.busy || !photo || !photo.searched)
+            return;
+        const all = {...values(), ghost: undefined}, key = JSON.stringify([photo.id, all, state.lamps]);
+        this.button = null;
+        if ($("ghost-box").open && this.listed !== key) {
+            delete all.ghost;
+            this.listed = key;
+            return this.send(all, [], lamps(), GHOSTS);
+        }
+        this.button = [...$("lenses").children].find(one => one.dataset.seen === "true" && Number(one.dataset.thumb) !== photo.id);
+        if (this.button)
+            this.send({lens: this.button.dataset.name}, [], found);
+    }
+
+    take(data) {
+        this.busy = false;
+        if (data.id === photo.id && this.button) {
+            this.button.dataset.thumb = photo.id;
+            if (data.kind === "drawn")
+                paint(this.button.querySelector("canvas"), data);
+        } else if (data.id === photo.id && data.kind === "drawn")
+            showGhosts(data.ghosts.map(ghost => ({...ghost, left: ghost.x0 / data.width, top: ghost.y0 / data.height,
+                right: (ghost.x1 + 1) / data.width, bottom: (ghost.y1 + 1) / data.height})));
+        this.next();
+    }
+}
 const shown = {full: -1};
 let fullTimer = 0, changedAt = 0;
-const coarse = new Painter(true), full = new Painter(false);
+const coarse = new View(DRAFT_SIDE, true), full = new View(Infinity, false), gallery = new Gallery(THUMB_SIDE, true);
 
 function planFull() {
     clearTimeout(fullTimer);
@@ -118,10 +197,9 @@ function report(text, bad = false) {
 
 // ---------------------------------------------------------------- the state
 
+const searchKey = () => JSON.stringify([photo.id, ...["threshold", "headroom", "max-lights"].map(name => values()[name])]);
 const lensOf = name => tables.lenses.find(lens => lens.name === name);
 const values = () => ({lens: FIRST_LENS, ...state.values});
-const widest = () => widestOf(lensOf(values().lens), values());
-const modelKey = () => JSON.stringify([values().lens, values().coating, values()["f-number"], values().zoom, values().focus]);
 
 // Changes the state by CHANGE; a run of changes with one MARK is one step of undo.
 let lastMark = "";
@@ -159,9 +237,9 @@ function setOption(name, value) {
     if (name === "exposure")
         delete next.strength;
     if (name === "lens") // ranges of another lens
-        for (const other of ["f-number", "zoom", "focus"])
+        for (const other of ["f-number", "zoom", "focus", "ghost"])
             delete next[other];
-    change({values: next}, name);
+    change({values: next, muted: name === "lens" ? [] : state.muted}, name);
     if (["lens", "strength", "exposure"].includes(name))
         options.forEach(option => option.show());
 }
@@ -174,12 +252,15 @@ function render() {
     $("redo").disabled = !future.length;
     for (const button of $("styles").children)
         button.setAttribute("aria-pressed", button.dataset.name === state.style);
-    for (const button of $("lenses").children)
+    for (const button of $("lenses").children) {
         button.setAttribute("aria-checked", button.dataset.name === values().lens);
+        button.tabIndex = button.dataset.name === values().lens ? 0 : -1;
+    }
     showLamps();
+    showPressed();
     if (!photo)
         return;
-    $("command").value = commandLine(photo.name, values(), state.lamps, widest());
+    $("command").value = commandLine(photo.file.name, values(), state.muted, state.lamps);
     clearTimeout(fullTimer);
     coarse.draw();
 }
@@ -194,15 +275,13 @@ function showLamps() {
         return;
     if (selected >= list.length)
         selected = -1;
-    while (box.children.length > list.length + 1)
+    const doubts = state.lamps ? [] : doubtful;
+    while (box.children.length > list.length + doubts.length)
         box.lastChild.remove();
-    while (box.children.length < list.length + 1)
+    while (box.children.length < list.length + doubts.length)
         box.append(makeHandle(box.children.length));
     list.forEach((lamp, i) => place(box.children[i], lamp.x, lamp.y, `Lamp ${i + 1}, ${Math.log2(lamp.power).toFixed(1)} stops`, i));
-    const doubt = box.children[list.length];
-    doubt.hidden = !doubtful || Boolean(state.lamps);
-    if (!doubt.hidden)
-        place(doubt, doubtful[0], doubtful[1], "Perhaps a lamp: use it", -2);
+    doubts.forEach(([x, y], i) => place(box.children[list.length + i], x, y, "Perhaps a lamp: use it", -2));
     $("remove").disabled = selected < 0;
     $("power-label").hidden = selected < 0;
     if (selected >= 0) {
@@ -263,7 +342,7 @@ function makeHandle(i) {
         };
         handle.onpointerup = handle.onpointercancel = () => handle.onpointermove = null;
     };
-    handle.onclick = () => isLamp() ? select() : addLamp(...doubtful);
+    handle.onclick = () => isLamp() ? select() : addLamp(...doubtful[i - lamps().length]);
     handle.ondblclick = event => event.stopPropagation();
     handle.onkeydown = event => {
         const lamp = lamps()[i], step = event.shiftKey ? 10 : 1;
@@ -281,6 +360,48 @@ function makeHandle(i) {
         event.preventDefault();
     };
     return handle;
+}
+
+// -------------------------------------------------------------------- ghosts
+
+function showGhosts(list) {
+    $("ghosts").replaceChildren(...list.map(ghost => {
+        const row = document.createElement("div"), label = document.createElement("span");
+        row.className = "bar";
+        label.textContent = `${ghost.number}: ${(100 * ghost.share).toFixed(1)} %`;
+        row.append(label, ...["Solo", "Mute"].map(word => {
+            const button = document.createElement("button");
+            button.type = "button";
+            button.textContent = word;
+            button.dataset.ghost = ghost.number;
+            button.setAttribute("aria-label", `${word} ghost ${ghost.number}`);
+            button.onclick = () => word === "Solo" ? setOption("ghost", isSolo(ghost.number) ? null : String(ghost.number)) :
+                change({muted: isMuted(ghost.number) ? state.muted.filter(one => one !== ghost.number) : [...state.muted, ghost.number]});
+            return button;
+        }));
+        const outline = () => {
+            const style = $("box").style;
+            for (const side of ["left", "top"])
+                style[side] = 100 * ghost[side] + "%";
+            style.width = 100 * (ghost.right - ghost.left) + "%";
+            style.height = 100 * (ghost.bottom - ghost.top) + "%";
+            $("box").hidden = false;
+        };
+        for (const name of ["pointerenter", "focusin"])
+            row.addEventListener(name, outline);
+        for (const name of ["pointerleave", "focusout"])
+            row.addEventListener(name, () => $("box").hidden = true);
+        return row;
+    }));
+    showPressed();
+}
+
+const isSolo = number => values().ghost === String(number);
+const isMuted = number => state.muted.includes(number);
+
+function showPressed() {
+    for (const button of $("ghosts").querySelectorAll("button"))
+        button.setAttribute("aria-pressed", (button.textContent === "Solo" ? isSolo : isMuted)(Number(button.dataset.ghost)));
 }
 
 // -------------------------------------------------------------------- opening
@@ -301,23 +422,18 @@ async function open(file) {
         const {width, height} = bitmap;
         if (width * height > MAX_PIXELS || Math.max(width, height) > 32768)
             throw new Error(`${file.name}: ${width} × ${height} is more than ${MAX_PIXELS / 1e6} megapixels; glint overlay has no such limit`);
-        const k = Math.min(1, DRAFT_SIDE / Math.max(width, height));
-        const small = {width: Math.max(1, Math.round(width * k)), height: Math.max(1, Math.round(height * k))};
         const pixels = size => {
             const canvas = new OffscreenCanvas(size.width, size.height), context = canvas.getContext("2d", {willReadFrequently: true});
             context.imageSmoothingQuality = "high";
             context.drawImage(bitmap, 0, 0, size.width, size.height);
             return context.getImageData(0, 0, size.width, size.height).data;
         };
-        const whole = pixels(bitmap), part = pixels(small);
-        photo = {id: (photo ? photo.id : 0) + 1, name: file.name, width, height, k, opened};
-        paint($("before"), {rgba: whole.slice(), width, height});
-        paint($("after"), {rgba: whole.slice(), width, height});
+        photo = {id: (photo ? photo.id : 0) + 1, file, width, height, opened};
+        for (const painter of [coarse, full, gallery])
+            painter.open(pixels);
         bitmap.close();
-        coarse.send({kind: "picture", ...small, rgba: new Uint8Array(part.buffer)}, [part.buffer]);
-        full.send({kind: "picture", width, height, rgba: new Uint8Array(whole.buffer)}, [whole.buffer]);
         found = [];
-        doubtful = null;
+        doubtful = [];
         selected = -1;
         past = [];
         future = [];
@@ -329,12 +445,12 @@ async function open(file) {
             $(id).disabled = false;
         setZoom(1);
         render();
+        for (const id of ["before", "after"]) // meanwhile the workers find the lamps
+            paint($(id), full.picture);
     } catch (error) {
         report(error.message, true);
     }
 }
-
-const stem = () => photo.name.replace(/\.[^.]*$/, "");
 
 async function save() {
     report("Drawing the picture to save");
@@ -348,7 +464,7 @@ async function save() {
     const blob = await new Promise(done => $("after").toBlob(done, "image/png"));
     const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
-    link.download = stem() + "-glint.png";
+    link.download = photo.file.name.replace(/\.[^.]*$/, "") + "-glint.png";
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60000);
     report(`Saved ${link.download}`);
@@ -396,11 +512,29 @@ function makeLenses() {
         const text = document.createElement("span"), small = document.createElement("small");
         small.textContent = `${Math.round(lens.focal)} mm. ${lens.character}`;
         text.append(lens.name, small);
-        button.append(drawSection(lens), text);
+        button.append(document.createElement("canvas"), drawSection(lens), text);
         button.onclick = () => setOption("lens", lens.name);
         $("lenses").append(button);
+        seen.observe(button);
     }
 }
+
+const seen = new IntersectionObserver(entries => {
+    for (const {target, isIntersecting} of entries)
+        target.dataset.seen = isIntersecting;
+    gallery.next();
+}, {root: $("lenses")});
+
+// Arrow keys move from lens to lens; Tab leaves the list.
+$("lenses").onkeydown = event => {
+    const by = {ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1}[event.key];
+    const list = [...$("lenses").children].filter(button => !button.hidden), to = list[list.indexOf(document.activeElement) + by];
+    if (!by || !to)
+        return;
+    to.focus();
+    to.click();
+    event.preventDefault();
+};
 
 // Scrolls the list of lenses to the chosen one.
 function showChosen() {
@@ -416,7 +550,7 @@ function makeStyles() {
         button.dataset.name = button.textContent = style.name;
         button.title = style.about;
         button.onclick = () => {
-            change({values: {...style.set}, style: style.name});
+            change({values: {...style.set}, muted: [], style: style.name});
             options.forEach(option => option.show());
             showChosen();
         };
@@ -455,6 +589,7 @@ $("find").onclick = () => {
 $("remove").onclick = () => removeLamp(selected);
 $("power").oninput = event => changeLamp(selected, {power: 2 ** event.target.value}, "power" + selected);
 $("search").oninput = showLenses;
+$("ghost-box").ontoggle = () => gallery.next();
 $("divider").oninput = setDivider;
 $("show").onchange = event => $("lamps").className = event.target.checked ? "" : "none";
 $("in").onclick = () => setZoom(zoom * 1.5);
@@ -490,4 +625,4 @@ addEventListener("keydown", event => {
     event.shiftKey ? travel(future, past) : travel(past, future);
 });
 setDivider();
-coarse.send({kind: "tables"});
+coarse.worker.postMessage({kind: "tables"});

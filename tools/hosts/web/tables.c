@@ -142,6 +142,7 @@ const char *web_lenses(void)
         append_json_text("source", lens->source);
         append_json_text("character", lens->character);
         append_json_number("f", lens->f_number);
+        append_json_number("widest", glint_prescription_widest(lens));
         append_json_number("focal", optics.focal_mm);
         append_json_number("filmWidth", lens->film_width_mm);
         append_json_number("filmHeight", lens->film_height_mm);

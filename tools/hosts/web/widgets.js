@@ -5,7 +5,7 @@
 // Options shown first; those of the command alone are not shown.
 const MAIN = ["strength", "f-number", "stop", "starburst", "coating", "veil", "haze", "dust", "front-dust"];
 const HIDDEN = ["lens", "lights", "interpolate", "light-at", "save-lights", "light", "no-tracking", "show", "layer", "style", "preview",
-    "mask", "edge-fade", "keys", "still", "stop-mask", "ghosts", "front-mask", "budget", "rays", "memory"];
+    "mask", "edge-fade", "keys", "still", "stop-mask", "ghosts", "front-mask", "budget", "rays", "memory", "half"];
 const GROUPS = ["lamps", "lens", "brightness", "speed"];
 const COATINGS = ["mixed", "table", "none", "v-coat", "broadband-3", "broadband-4"];
 const STEPS = 1000; // of a slider
@@ -35,7 +35,7 @@ function makeNumber(row, host, id) {
         const lens = host.lens();
         let {low, high, initial} = row;
         if (row.name === "f-number")
-            [low, high, initial] = [Math.max(lens.f < 8 ? 2 : lens.f / 2, 0.5), 64, lens.f < 8 ? 11 : lens.f];
+            [low, high, initial] = [Number((1.0005 * lens.widest).toPrecision(4)), 64, lens.f]; // rounded up
         if (row.name === "zoom")
             [low, high, initial] = [0, 1, 0];
         if (row.name === "focus")

@@ -1,64 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
-// worker.js - draws pictures beside the page, so that it never waits. The page has two: one
-// draws coarsely at screen size, one the whole picture.
+// worker.js - draws pictures beside the page, so that it never waits.
 //
-//     {kind: "tables"}                                   -> {kind: "tables", options, styles, lenses}
-//     {kind: "picture", width, height, rgba}             the picture to come
-//     {kind: "draw", id, values, widest, lamps, draft, model}  -> {kind: "drawn", id, ...}
+//     {kind: "tables"}                         -> {kind: "tables", options, styles, lenses}
+//     {kind: "picture", width, height, rgba}   the picture to come
+//     {kind: "find", id, values, muted}        -> {kind: "found", id, found, doubtful}
+//     {kind: "draw", id, values, muted, lamps, draft, ghosts}  -> {kind: "drawn", id, ...}
 //
-// lamps null: as they are found. Replies to "draw" may also be {kind: "busy", text} while a
-// lens is baked, and {kind: "failed", id, text}.
+// muted: numbers of ghosts. lamps null: as they are found. draft: quickly, with a part of the light.
+// ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
 import {Glint} from "./glint.js";
 
 // Options that an engine takes up from picture to picture.
 const LIGHT = ["strength", "exposure", "gain", "starburst"];
-// Options that choose the model.
-const LENS = ["lens", "coating", "zoom", "focus", "f-number", "wavelengths", "sensor", "quality", "error"];
+// Drafts have the options of --preview, and only the strongest lamps, as time grows with the number of lamps.
+const DRAFT = {quality: "draft", "area-samples": "1"}, DRAFT_LAMPS = 4;
 
 const urlOf = path => new URL(path, import.meta.url);
 const glint = fetch(urlOf("glint.wasm")).then(answer => answer.arrayBuffer()).then(bytes => Glint.make(bytes));
 let picture = null;
-let opened = "", sized = "", last = {name: ""};
-let found = [], doubtful = null;
-
-async function keptModel(name) {
-    try {
-        const kept = await caches.match(urlOf("models/" + name));
-        if (kept)
-            return new Uint8Array(await kept.arrayBuffer());
-    } catch { /* no storage: as if nothing was kept */ }
-    const answer = await fetch(urlOf("models/" + name)).catch(() => null);
-    return answer && answer.ok ? new Uint8Array(await answer.arrayBuffer()) : null;
-}
-
-async function keepModel(name, bytes) {
-    try {
-        const cache = await caches.open("glint-models");
-        await cache.put(urlOf("models/" + name), new Response(bytes));
-    } catch { /* baked again on the next visit */ }
-}
-
-// Opens the lens of VALUES; returns its model if that had to be baked or fetched.
-async function open(g, values, widest, known) {
-    const key = JSON.stringify([widest, ...LENS.map(name => values[name] ?? null)]);
-    if (key === opened)
-        return null;
-    opened = sized = "";
-    const name = g.open(widest);
-    const near = [last, known].find(model => model && model.name === name);
-    let bytes = near ? near.bytes : await keptModel(name);
-    if (bytes)
-        g.model(bytes);
-    else {
-        postMessage({kind: "busy", text: `Baking the lens ${values.lens}: seconds to minutes, once`});
-        bytes = g.bake();
-        await keepModel(name, bytes);
-    }
-    opened = key;
-    last = {name, bytes};
-    return last;
-}
+let sized = "", found = null;
 
 function clippedShare(rgba) {
     let n = 0;
@@ -67,25 +28,32 @@ function clippedShare(rgba) {
     return 4 * n / rgba.length;
 }
 
-async function draw(message) {
-    const g = await glint;
-    const started = performance.now();
-    const {id, values, widest, lamps, draft} = message;
-    g.options(values);
-    const model = await open(g, values, widest, message.model);
+function prepare(g, values, muted) {
+    g.options(values, muted);
+    const key = JSON.stringify([values, muted], (name, value) => LIGHT.includes(name) ? undefined : value);
+    if (key === sized)
+        return;
+    sized = "";
+    g.size(picture.width, picture.height);
+    found = null;
+    sized = key;
+}
+
+function find(g, {id, values, muted}) {
+    prepare(g, values, muted);
+    found ??= g.find(picture.rgba);
+    postMessage({kind: "found", id, found, doubtful: g.doubtful()});
+}
+
+function draw(g, {id, values, muted, lamps, draft, ghosts}) {
+    const started = performance.now(), rgba = picture.rgba.slice();
+    prepare(g, draft ? {...values, ...DRAFT} : values, muted);
     if (draft)
-        g.set("quality", "draft");
-    const key = JSON.stringify(values, (name, value) => LIGHT.includes(name) ? undefined : value);
-    if (key !== sized) {
-        sized = "";
-        g.size(picture.width, picture.height);
-        found = g.find(picture.rgba);
-        doubtful = g.doubtful();
-        sized = key;
-    }
-    const rgba = picture.rgba.slice();
-    g.draw(rgba, lamps, draft);
-    postMessage({kind: "drawn", id, rgba, width: picture.width, height: picture.height, found, doubtful, model,
+        lamps = lamps.sort((a, b) => b.power - a.power).slice(0, DRAFT_LAMPS);
+    else if (!lamps)
+        found ??= g.find(picture.rgba);
+    g.draw(rgba, lamps);
+    postMessage({kind: "drawn", id, rgba, width: picture.width, height: picture.height, ghosts: ghosts ? g.ghosts(ghosts) : [],
         ms: performance.now() - started, clipped: clippedShare(rgba), memory: g.c.memory.buffer.byteLength}, [rgba.buffer]);
 }
 
@@ -93,15 +61,16 @@ let queue = Promise.resolve();
 onmessage = ({data}) => {
     queue = queue.then(async () => {
         try {
+            const g = await glint;
             if (data.kind === "tables")
-                postMessage({kind: "tables", ...(await glint).tables()});
+                postMessage({kind: "tables", ...g.tables()});
             else if (data.kind === "picture") {
                 picture = data;
                 sized = "";
             } else
-                await draw(data);
+                (data.kind === "find" ? find : draw)(g, data);
         } catch (error) {
-            opened = sized = "";
+            sized = "";
             postMessage({kind: "failed", id: data.id, text: error.message});
         }
     });
