@@ -91,6 +91,9 @@ try {
     await page.click("#ghost-box summary");
     await page.click('#ghosts button[aria-label^="Mute"]', {timeout: 0});
     await compare("a ghost left out");
+    const [download] = await Promise.all([page.waitForEvent("download", {timeout: 0}), page.click("#export-jpeg")]);
+    const saved = fs.readFileSync(await download.path()).toString("latin1");
+    check("a JPEG file keeps the metadata of the photograph", saved.includes("Exif\0\0") && saved.includes("OLYMPUS"));
     await open("tests/gallery/window.jpg");
     await page.waitForFunction(() => document.querySelectorAll(".doubt").length === 3, null, {timeout: 0});
     await page.locator(".doubt").first().click();

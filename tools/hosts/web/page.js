@@ -2,6 +2,7 @@
 //
 // page.js - the page: what a person sets, and what the workers drew of it.
 import {commandLine} from "./command.js";
+import {copyMetadata} from "./jpeg.js";
 import {drawSection, makeOptions} from "./widgets.js";
 
 const $ = id => document.getElementById(id);
@@ -441,7 +442,7 @@ async function open(file) {
         delete document.body.dataset.first;
         $("empty").hidden = true;
         $("frame").hidden = false;
-        for (const id of ["add", "find", "export"])
+        for (const id of ["add", "find", "export", "export-jpeg"])
             $(id).disabled = false;
         setZoom(1);
         render();
@@ -452,7 +453,8 @@ async function open(file) {
     }
 }
 
-async function save() {
+// Saves the whole picture as TYPE, "png" or "jpeg".
+async function save(type) {
     report("Drawing the picture to save");
     if (shown.full < renderMark) {
         full.draw();
@@ -461,10 +463,12 @@ async function save() {
     }
     if (shown.full < renderMark)
         return;
-    const blob = await new Promise(done => $("after").toBlob(done, "image/png"));
+    let blob = await new Promise(done => $("after").toBlob(done, "image/" + type, 0.95));
+    if (type === "jpeg")
+        blob = await copyMetadata(photo.file, blob);
     const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
-    link.download = photo.file.name.replace(/\.[^.]*$/, "") + "-glint.png";
+    link.download = photo.file.name.replace(/\.[^.]*$/, "") + "-glint." + (type === "jpeg" ? "jpg" : type);
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60000);
     report(`Saved ${link.download}`);
@@ -580,7 +584,8 @@ $("sample").onclick = async () => {
 };
 $("undo").onclick = () => travel(past, future);
 $("redo").onclick = () => travel(future, past);
-$("export").onclick = save;
+$("export").onclick = () => save("png");
+$("export-jpeg").onclick = () => save("jpeg");
 $("add").onclick = () => addLamp(photo.width / 2, photo.height / 2);
 $("find").onclick = () => {
     selected = -1;
