@@ -150,7 +150,7 @@ class View extends Painter {
 // Lists the ghosts, and draws the photograph with each lens that the list shows, while the views are idle.
 class Gallery extends Painter {
     next() {
-        if (this.busy || coarse.busy || full.busy || !photo || !photo.searched)
+        if (this.busy || coarse.busy || full.busy || !photo || !photo.searched || !lamps().length)
             return;
         const all = {...values(), ghost: undefined}, key = JSON.stringify([photo.id, all, state.lamps]);
         this.button = null;
@@ -161,7 +161,7 @@ class Gallery extends Painter {
         }
         this.button = [...$("lenses").children].find(one => one.dataset.seen === "true" && Number(one.dataset.thumb) !== photo.id);
         if (this.button)
-            this.send({lens: this.button.dataset.name}, [], found);
+            this.send({lens: this.button.dataset.name}, [], lamps());
     }
 
     take(data) {
