@@ -143,9 +143,9 @@ void glint_trace_row(const struct glint_path *path, const struct glint_row *row,
                      struct glint_ray *ray, enum glint_ray_status *status,
                      double (*hits)[2]);
 
-/* Traces ROWS rows of a grid: row J like ROW, but at the height Y_MM[J]. RAY and
- * STATUS have [rows][n] entries. Takes less time than single rows, as rays of
- * the end of a row are traced together with those of the next. */
+/* Traces ROWS rows of a grid: row J like ROW, but at the height Y_MM[J]. RAY
+ * and STATUS have [rows][n] entries. Takes less time than single rows, as rays
+ * of the end of a row are traced together with those of the next. */
 void glint_trace_grid(const struct glint_path *path,
                       const struct glint_row *row, int rows, const double *y_mm,
                       struct glint_ray *ray, enum glint_ray_status *status,

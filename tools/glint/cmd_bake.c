@@ -197,8 +197,9 @@ static int check_accuracy_for_strict(const struct tool *tool,
 }
 
 /* Compares images by the model *DATA[*BYTES] with images by exact rays, and
- * stores the result in the model. On failure CHECK->n is 0: prints a warning,
- * or the error if --strict needs the result. Returns an exit code. */
+ * stores the result in the model. Prints an error if there is no memory or
+ * --strict needs the result; another failure is a warning, and CHECK->n is 0.
+ * Returns an exit code. */
 static int measure_accuracy(const struct tool *tool, const struct bake *b,
                             const struct glint_prescription *lens,
                             unsigned char **data, size_t *bytes,
@@ -217,8 +218,8 @@ static int measure_accuracy(const struct tool *tool, const struct bake *b,
     if (status == GLINT_OK)
         return b->is_strict ? check_accuracy_for_strict(tool, check) : EXIT_OK;
     check->n = 0;
-    if (b->is_strict)
-        return tool_fail(tool, status, error.text);
+    if (b->is_strict || status == GLINT_E_MEMORY)
+        return tool_fail(tool, status, error.text[0] ? error.text : NULL);
     fprintf(stderr,
             "glint bake: the pictures of %s could not be compared with exact "
             "rays: %s\n",

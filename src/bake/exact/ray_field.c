@@ -217,10 +217,9 @@ static void set_coarse_ray(const struct ray_field_config *cfg,
     const bool traced = status == GLINT_RAY_OK;
 
     coarse_grid->traced[j][i] = traced;
-    coarse_grid->inside[j][i] =
-        traced && ray->rel_radius <= 1 &&
-        hypot(ray->stop_x_mm, ray->stop_y_mm) <=
-            cfg->setup->optics.stop_radius_mm;
+    coarse_grid->inside[j][i] = traced && ray->rel_radius <= 1 &&
+                                hypot(ray->stop_x_mm, ray->stop_y_mm) <=
+                                    cfg->setup->optics.stop_radius_mm;
     if (!traced)
         return;
     coarse_grid->ray[j][i] = *ray;
@@ -244,8 +243,8 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
     init_field_path(cfg, field, nm, &path);
     glint_ray_compute_direction(cfg, field->patch->middle, d);
     coarse_grid->rows = rows;
-    coarse_grid->cell_mm2 = (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) /
-                            (LOOKS * (rows - 1));
+    coarse_grid->cell_mm2 =
+        (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) / (LOOKS * (rows - 1));
     for (int at = 0; at < rows * (LOOKS + 1); at += n) {
         for (n = 0; n < SOME && at + n < rows * (LOOKS + 1); n++) {
             const int i = (at + n) % (LOOKS + 1), j = (at + n) / (LOOKS + 1);
@@ -689,8 +688,7 @@ static void trace_node_grid(const struct ray_field_config *cfg,
 
     for (int at = 0; at < all; at += n) {
         for (n = 0; n < SOME && at + n < all; n++)
-            from[n] =
-                launch_node_ray(field, d, (at + n) % row, (at + n) / row);
+            from[n] = launch_node_ray(field, d, (at + n) % row, (at + n) / row);
         glint_trace_many(path, n, from, ray, status, hits);
         for (int k = 0; k < n; k++) {
             float *const to = node + (size_t)(at + k) * CHANNELS;

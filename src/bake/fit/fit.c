@@ -130,24 +130,21 @@ static const struct glint_visible *crop_zone_to_part(struct fitter *f,
 
 /* Traces rays of ZONE within BAND and fits its outputs. HAS_BARRELS: its
  * barrels are chosen already. Adds no outputs if no light passes the part. */
-static enum glint_status fit_zone_outputs(struct fitter *f,
-                                          const struct glint_zone_piece *p,
-                                          const struct glint_zone *zone,
-                                          const struct glint_visible *band,
-                                          bool has_barrels,
-                                          struct glint_fitted_system *system,
-                                          struct glint_attempt *a)
+static enum glint_status
+fit_zone_outputs(struct fitter *f, const struct glint_zone_piece *p,
+                 const struct glint_zone *zone,
+                 const struct glint_visible *band, bool has_barrels,
+                 struct glint_fitted_system *system, struct glint_attempt *a)
 {
     struct glint_zone_buffers *buffers = &f->buffers;
-    struct glint_zone_task task = {.zone = zone,
-                                   .visible = band,
-                                   .tolerance = f->tolerance,
-                                   .barrel = f->tolerance->barrel,
-                                   .thorough = p->thorough,
-                                   .stacks =
-                                       glint_next_has_film_stack(f->visible),
-                                   .sampling =
-                                       has_barrels ? NULL : &f->sampling};
+    struct glint_zone_task task = {
+        .zone = zone,
+        .visible = band,
+        .tolerance = f->tolerance,
+        .barrel = f->tolerance->barrel,
+        .thorough = p->thorough,
+        .stacks = glint_next_has_film_stack(f->visible),
+        .sampling = has_barrels ? NULL : &f->sampling};
     enum glint_status status;
 
     if (!has_barrels)
@@ -179,9 +176,8 @@ static enum glint_status try_zone_fit(struct fitter *f,
 {
     const struct glint_visible_profile *profile = find_band_profile(f, p);
     /* true: the zone may be too wide for the number of its barrels */
-    const bool crowds =
-        !p->thorough && !f->visible->shaped &&
-        glint_next_compute_width_deg(p->lo, p->hi) > CROWD_DEG;
+    const bool crowds = !p->thorough && !f->visible->shaped &&
+                        glint_next_compute_width_deg(p->lo, p->hi) > CROWD_DEG;
     const struct glint_visible *band;
     struct glint_zone zone;
 

@@ -275,8 +275,9 @@ void glint_zone_cut_to_part(struct glint_zone *zone,
 #define ROOT_5 1.16730397826141868426
 #define ROOT_6 1.13472413840151949260
 
-/* Returns coordinate STEP of point K of a low-discrepancy sequence, -1 .. 1: the
- * fractional part of 1/2 + (K + 1) STEP, scaled. With STEP = 1 / g^i for i = 1
+/* Returns coordinate STEP of point K of a low-discrepancy sequence, -1 .. 1:
+ * the fractional part of 1/2 + (K + 1) STEP, scaled. With STEP = 1 / g^i for i
+ * = 1
  * .. n, where g is the root of x^(n + 1) = x + 1, points fill n dimensions
  * evenly. */
 static double compute_sequence_coordinate(int k, double step)
@@ -289,9 +290,9 @@ static double compute_sequence_coordinate(int k, double step)
 void glint_zone_set_scattered_point(const struct glint_zone *zone, int k,
                                     double x[GLINT_VARIABLES])
 {
-    static const double round[] = {
-        1 / ROOT_5, 1 / ROOT_5 / ROOT_5, 1 / ROOT_5 / ROOT_5 / ROOT_5,
-        1 / ROOT_5 / ROOT_5 / ROOT_5 / ROOT_5, 0};
+    static const double round[] = {1 / ROOT_5, 1 / ROOT_5 / ROOT_5,
+                                   1 / ROOT_5 / ROOT_5 / ROOT_5,
+                                   1 / ROOT_5 / ROOT_5 / ROOT_5 / ROOT_5, 0};
     static const double skew[] = {
         1 / ROOT_6, 1 / ROOT_6 / ROOT_6, 1 / ROOT_6 / ROOT_6 / ROOT_6,
         1 / ROOT_6 / ROOT_6 / ROOT_6 / ROOT_6,

@@ -43,7 +43,7 @@ struct glint_zone_task {
 
 /* Number of doubles of scratch memory for one fit. Skew zones have most planes
  * and the highest degrees: 9, 8, 5, 4 and 5 for positions. */
-#define GLINT_ZONE_SCRATCH                                                     \
+#define GLINT_ZONE_SCRATCH \
     GLINT_REGRESS_DOUBLES(GLINT_ZONE_RAYS, 132, 19 * 17, 6 * 5 * 6)
 
 /* Memory for fitting one zone; used by one fit at a time. */

@@ -340,8 +340,7 @@ void glint_zone_trace_energies(const struct glint_zone *zone,
                                struct glint_zone_rays *energies)
 {
     static const int shift[] = {0, 2, 4, 6, 9};
-    const bool steep =
-        glint_zone_rays_compute_energy_ratio(rays) > GLINT_STEEP;
+    const bool steep = glint_zone_rays_compute_energy_ratio(rays) > GLINT_STEEP;
 
     energies->n_barrels = energies->n = 0;
     energies->scattered = false;

@@ -96,10 +96,10 @@ void glint_zone_trace_rays(const struct glint_zone *zone,
                            struct glint_zone_rays *rays);
 
 /* Traces ENERGIES of a zone that is not skew, at fewer pupil points but more
- * wavelengths than RAYS. Energies hardly vary over the pupil, but oscillate with
- * the wavelength if coatings have several films. If those of RAYS also vary over
- * the pupil, as near total reflection, the grid is finer, with five wavelengths
- * per angle. */
+ * wavelengths than RAYS. Energies hardly vary over the pupil, but oscillate
+ * with the wavelength if coatings have several films. If those of RAYS also
+ * vary over the pupil, as near total reflection, the grid is finer, with five
+ * wavelengths per angle. */
 void glint_zone_trace_energies(const struct glint_zone *zone,
                                const struct glint_visible *visible,
                                const struct glint_zone_rays *rays,

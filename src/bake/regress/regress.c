@@ -75,9 +75,9 @@ struct search {
     double *mixes; /* powers of variables 2 to 4, [powers][n_rows] */
     double share[GLINT_MAX_TERMS]; /* components of the target along each
                                       chosen direction */
-    double target2, left2; /* squared lengths of target and residual */
-    double peak;           /* max magnitude of residual, if is_measured */
-    bool is_measured;      /* residual, left2 and peak are measured on rays */
+    double target2, left2;         /* squared lengths of target and residual */
+    double peak;      /* max magnitude of residual, if is_measured */
+    bool is_measured; /* residual, left2 and peak are measured on rays */
 };
 
 /* ------------------------------------------------------------------- loops */
@@ -110,9 +110,8 @@ static WIDE_VECTORS double compute_dot_product(const double *a, const double *b,
 }
 
 /* Returns the sum of A[k] B[k] C[k] for k < N, a multiple of LANES. */
-static WHOLLY_INLINE double sum_triple_products(const double *a,
-                                                const double *b,
-                                                const double *c, int n)
+static WHOLLY_INLINE double
+sum_triple_products(const double *a, const double *b, const double *c, int n)
 {
     double s[LANES] = {0, 0, 0, 0};
 
@@ -205,8 +204,7 @@ static void collapse_terms_in_plane(const struct search *s, int p, int n,
 {
     const int most_u = s->degrees->most[0], most_v = s->degrees->most[1];
 
-    memset(coef, 0,
-           (size_t)((most_u + 1) * (most_v + 1)) * sizeof *coef);
+    memset(coef, 0, (size_t)((most_u + 1) * (most_v + 1)) * sizeof *coef);
     for (int k = 0; k < n; k++)
         coef[term[k]->power[1] * (most_u + 1) + term[k]->power[0]] +=
             factor[k] * term[k]->mix[p];
@@ -267,13 +265,13 @@ static double compute_term_product(const struct search *s, const double *table,
 
 /* Updates COLUMN by its component along the chosen direction with index
  * RANK. */
-static WHOLLY_INLINE void
-update_component(const struct search *s, struct column *column, int rank)
+static WHOLLY_INLINE void update_component(const struct search *s,
+                                           struct column *column, int rank)
 {
     const struct column *chosen = &s->column[s->chosen[rank]];
-    const double product = sum_triple_products(
-        get_sums(s, s->sums, chosen->place + column->place), chosen->mix,
-        column->mix, s->n_rows);
+    const double product =
+        sum_triple_products(get_sums(s, s->sums, chosen->place + column->place),
+                            chosen->mix, column->mix, s->n_rows);
     const double share =
         (product - multiply_vectors(chosen->on, column->on, rank)) /
         chosen->on[rank];
@@ -459,12 +457,12 @@ static void add_candidate_term(struct search *s, const uint8_t *power)
     memcpy(c->power, power, GLINT_VARIABLES);
     c->dead = c->chosen = false;
     c->place = power[1] * s->row + power[0];
-    c->mix = s->mixes + (size_t)compute_mix_index(s->degrees, power) *
-                            (size_t)s->n_rows;
+    c->mix = s->mixes +
+             (size_t)compute_mix_index(s->degrees, power) * (size_t)s->n_rows;
     c->length2 = 0;
     for (int p = 0; p < s->n_rows; p++)
-        c->length2 += get_sums(s, s->sums, 2 * c->place)[p] * c->mix[p] *
-                      c->mix[p];
+        c->length2 +=
+            get_sums(s, s->sums, 2 * c->place)[p] * c->mix[p] * c->mix[p];
     c->was2 = c->left2 = c->length2;
     c->pull = compute_term_product(s, s->target_sums, c);
     add_components(s, c);

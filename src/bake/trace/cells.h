@@ -47,7 +47,7 @@ struct glint_cells {
     int n_cuts;
     int cut_event[GLINT_MAX_CUTS];
     struct glint_iris_sides sides; /* of the stop */
-    int stride;   /* number of doubles per node */
+    int stride;                    /* number of doubles per node */
     double *node; /* channels of all nodes, [n + 1][n + 1][stride] */
 };
 

@@ -409,9 +409,9 @@ void glint_trace_many(const struct glint_path *path, int n,
 }
 
 void glint_trace_grid(const struct glint_path *path,
-                      const struct glint_row *row, int rows,
-                      const double *y_mm, struct glint_ray *ray,
-                      enum glint_ray_status *status, double (*hits)[2])
+                      const struct glint_row *row, int rows, const double *y_mm,
+                      struct glint_ray *ray, enum glint_ray_status *status,
+                      double (*hits)[2])
 {
     struct glint_launch from[LANES];
     int n = 0, at = 0;

@@ -501,6 +501,33 @@ TEST(row_equals_single_rays)
     }
 }
 
+/* A row of 5 rays and parts of other rows share a batch. */
+TEST(grid_equals_rows)
+{
+    static struct glint_prescription lens;
+    const struct glint_ghost ghost = {1, 4};
+    const struct glint_row row = {5, -5, 2, 0, {0.1, 0, sqrt(0.99)}};
+    const double y_mm[] = {0, 1.5, 4};
+    struct glint_ray ray[15], one[5];
+    enum glint_ray_status status[15], of_one[5];
+    struct glint_path path;
+
+    load_lens(&lens, "heliar-tronnier");
+    glint_path_init(&path, &lens, &ghost, 532);
+    glint_trace_grid(&path, &row, 3, y_mm, ray, status, NULL);
+    for (int j = 0; j < 3; j++) {
+        struct glint_row at = row;
+
+        at.y_mm = y_mm[j];
+        glint_trace_row(&path, &at, one, of_one, NULL);
+        for (int i = 0; i < 5; i++) {
+            assert_int_equal(of_one[i], status[5 * j + i]);
+            if (of_one[i] == GLINT_RAY_OK)
+                assert_memory_equal(&one[i], &ray[5 * j + i], sizeof *one);
+        }
+    }
+}
+
 /* -------------------------------------------------------------- symmetries */
 
 TEST(axis_goes_straight)

@@ -156,23 +156,26 @@ static int report_too_much_work(const struct tool *tool, const char *file)
 }
 
 /* Compares pictures by MODEL with pictures by exact rays of LENS, and stores
- * the result in MODEL. If that fails, MODEL stays without a result. */
-static void check_model_pictures(const struct tool *tool,
-                                 const struct glint_prescription *lens,
-                                 const struct glint_bake_options *options,
-                                 struct model_file *model)
+ * the result in MODEL. If they cannot be compared, MODEL stays without a
+ * result. May return GLINT_E_MEMORY, so that the result does not depend on
+ * memory. */
+static enum glint_status check_model_pictures(
+    const struct tool *tool, const struct glint_prescription *lens,
+    const struct glint_bake_options *options, struct model_file *model)
 {
     unsigned char *data = model->data;
     struct picture_check check;
     struct glint_error error;
     const char *reason;
+    enum glint_status status =
+        picture_check_run(tool, lens, &model->lens, options, &check, &error);
 
-    if (picture_check_run(tool, lens, &model->lens, options, &check, &error) !=
-            GLINT_OK ||
-        picture_check_store(&check, &data, &model->bytes) != GLINT_OK)
-        return;
+    if (status == GLINT_OK)
+        status = picture_check_store(&check, &data, &model->bytes);
+    if (status != GLINT_OK)
+        return status == GLINT_E_MEMORY ? status : GLINT_OK;
     model->data = data;
-    glint_lens_open(&model->lens, data, model->bytes, &reason);
+    return glint_lens_open(&model->lens, data, model->bytes, &reason);
 }
 
 /* Bakes the model of LENS into MODEL and writes it to the cache file PATH
@@ -212,9 +215,10 @@ static int bake_model(const struct tool *tool,
             snprintf(error.text, sizeof error.text, "%s: %.70s", lens->name,
                      reason);
     }
+    if (status == GLINT_OK)
+        status = check_model_pictures(tool, lens, &options, model);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
-    check_model_pictures(tool, lens, &options, model);
     if (path)
         write_cached_model(tool, path, model);
     return EXIT_OK;
