@@ -16,9 +16,9 @@ enum {
     /* Revision of the baker, part of the cache key. A change that makes lenses
      * bake to different models raises it, so that cached models are baked
      * again. */
-    REVISION = 13,
+    REVISION = 14,
     /* revision for lenses faster than GLINT_WIDE, replaces REVISION */
-    WIDE_REVISION = 17,
+    WIDE_REVISION = 18,
     /* further revision in the key of lenses with non-spherical surfaces */
     SHAPED_REVISION = 1,
     /* further revision in the key of lenses that are not round */

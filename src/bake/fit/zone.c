@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "bake/fit/zone.h"
+#include "base/compiler.h"
 #include "bake/regress/regress.h"
 #include "engine/setup/degrees.h"
 
@@ -47,6 +48,7 @@ double glint_zone_evaluate_box_polynomial(const struct glint_zone *zone,
 /* the visible boxes that a zone's box must contain, at zone coordinates s and
  * w */
 enum { MAX_BOXES = GLINT_PROFILE * GLINT_VISIBLE_WAVES };
+STATIC_ASSERT((int)MAX_BOXES <= (int)GLINT_REGRESS_PLANES);
 
 struct seen {
     int n, n_angles;

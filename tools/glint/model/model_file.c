@@ -150,7 +150,10 @@ const struct glint_model_check *model_get_check(const struct glint_lens *lens)
     if (lens->zoom || h->bytes % 4 || h->bytes < sizeof *h + sizeof *check)
         return NULL;
     check = (const void *)((const char *)h + h->bytes - sizeof *check);
-    return check->magic == GLINT_MODEL_CHECK_MAGIC ? check : NULL;
+    return check->magic == GLINT_MODEL_CHECK_MAGIC && check->n - 1 < 1000 &&
+                   check->psnr_q8 <= 999 << 8 && check->angle_q8 <= 90 << 8
+               ? check
+               : NULL;
 }
 
 void model_file_close(struct model_file *model)

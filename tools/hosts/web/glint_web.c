@@ -365,13 +365,14 @@ int web_draw(uint8_t *pixels, int n)
 
 int web_ghosts(double (*rows)[WEB_GHOST_COLUMNS], int max)
 {
+    const struct glint_explain_config config = {.gain = 0};
     int order[GLINT_MAX_GHOSTS], n = 0;
     struct glint_explain explain;
 
     if (!web.engine)
         return record_error("there is no engine") - 1;
     web.error.text[0] = '\0';
-    if (!record_status(glint_explain_open(&explain, web.engine, 0))) {
+    if (!record_status(glint_explain_open(&explain, web.engine, &config))) {
         glint_explain_close(&explain);
         return -1;
     }

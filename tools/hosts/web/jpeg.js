@@ -31,15 +31,27 @@ function correctExif(segment) {
     tiff.setUint32(next, 0, little);
 }
 
-// Returns JPEG, a Blob, with the segments APP1 .. APP15 (Exif, XMP, colour profile, IPTC) of PHOTO, if
-// that is a JPEG file. APP14 describes the coding of the picture and is not copied.
+function startsWith(segment, text) {
+    return text.split("").every((c, i) => segment[4 + i] === c.charCodeAt(0));
+}
+
+// Returns whether SEGMENT may be copied: Exif, the colour profile, IPTC, and XMP unless it states an orientation or
+// a gain map. MPF (offsets of pictures in the file), APP11 (signatures) and APP14 (coding) fit only the photograph.
+function isCopied(segment) {
+    const marker = segment[1];
+    if (marker < 0xe1 || marker > 0xef || marker === 0xeb || marker === 0xee || startsWith(segment, "MPF\0"))
+        return false;
+    return marker !== 0xe1 || !startsWith(segment, "http") ||
+        !/tiff:Orientation|hdrgm:|GContainer/.test(new TextDecoder("latin1").decode(segment));
+}
+
+// Returns JPEG, a Blob, with the segments of PHOTO that isCopied() accepts, if that is a JPEG file.
 export async function copyMetadata(photo, jpeg) {
     const from = new Uint8Array(await photo.arrayBuffer()), to = new Uint8Array(await jpeg.arrayBuffer());
-    const isMetadata = marker => marker >= 0xe1 && marker <= 0xef && marker !== 0xee;
     if (from[0] !== 0xff || from[1] !== 0xd8)
         return jpeg;
-    const copied = segments(from).filter(([start, end]) => isMetadata(from[start + 1]) && end <= from.length)
-        .map(([start, end]) => from.slice(start, end));
+    const copied = segments(from).filter(([start, end]) => end - start >= 4 && end <= from.length)
+        .map(([start, end]) => from.slice(start, end)).filter(isCopied);
     const [at] = segments(to).find(([start]) => to[start + 1] !== 0xe0); // after JFIF
     copied.forEach(correctExif);
     return new Blob([to.slice(0, at), ...copied, to.slice(at)], {type: "image/jpeg"});

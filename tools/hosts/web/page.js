@@ -49,6 +49,7 @@ class Painter {
         this.worker.onmessage = ({data}) => this.take(data);
         this.worker.onerror = event => report(event.message || "the page's worker failed", true);
         this.busy = false;
+        this.drawing = null;
     }
 
     // Sets the photograph. PIXELS returns the RGBA pixels of a picture of a size.
@@ -83,7 +84,9 @@ class Painter {
 // Draws the latest state; states in between are left out.
 class View extends Painter {
     draw() {
-        if (this.busy && performance.now() - this.since > PATIENCE_MS)
+        if (this.busy && this.drawing === renderMark) // this very picture
+            return;
+        if (this.busy && !this.isDraft && performance.now() - this.since > PATIENCE_MS)
             this.restart();
         this.waiting = this.busy;
         if (this.busy || !photo)
@@ -92,7 +95,7 @@ class View extends Painter {
             return full.search();
         if (!this.isDraft)
             report("Drawing the whole picture");
-        this.mark = renderMark;
+        this.mark = this.drawing = renderMark;
         this.send(values(), state.muted, this.isDraft ? lamps() : state.lamps);
     }
 
@@ -102,6 +105,7 @@ class View extends Painter {
             return;
         if (this.busy)
             this.restart();
+        this.drawing = null;
         this.searching = searchKey();
         this.post({kind: "find", values: values(), muted: state.muted});
     }
@@ -117,6 +121,7 @@ class View extends Painter {
         if (data.kind === "tables")
             return start(data);
         this.busy = false;
+        this.drawing = null;
         if (data.kind === "found" && data.id === photo.id)
             this.takeFound(data);
         else if (photo && data.id === photo.id && !this.waiting)
