@@ -389,7 +389,7 @@ static void compute_root_slope(struct ray_measures *measures,
     for (int way = 0; way < 2; way++)
         for (int j = 0; j + 1 + way < l->rows; j++)
             for (int i = 0; i + !way < LOOKS; i++) {
-                double here, next;
+                double here = 0, next = 0;
                 const double area =
                     fmin(compute_open_cell(l, i, j, &here),
                          compute_open_cell(l, i + !way, j + way, &next));

@@ -68,7 +68,7 @@ static void trace_neighbour_zoom_positions(const struct glint_visible *visible,
                                            int wave, struct glint_zone_batch *t,
                                            struct beside *b)
 {
-    for (int i = 0; i < t->n; i++)
+    for (int i = 0; i < GLINT_ZONE_BATCH; i++)
         b->excess[i] = b->field[i] = HUGE_VAL;
     for (int m = 0; m < visible->n_beside; m++) {
         const struct glint_visible *const h = &visible->beside[m];
