@@ -116,7 +116,7 @@ static void warn_of_inaccurate_model(const struct tool *tool,
         lens->model.data ? model_get_check(&lens->model.lens) : NULL;
     const double psnr_db = check ? ldexp(check->psnr_q8, -8) : HUGE_VAL;
 
-    if (!tool->quiet && psnr_db < PICTURE_CHECK_DB)
+    if (check && !tool->quiet && psnr_db < PICTURE_CHECK_DB)
         fprintf(stderr,
                 "glint %s: pictures by the model of %s have down to %.1f dB "
                 "PSNR against exact rays, with the light %.1f degrees off the "
