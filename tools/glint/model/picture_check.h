@@ -45,6 +45,15 @@ enum glint_status picture_check_run(const struct tool *tool,
                                     struct picture_check *check,
                                     struct glint_error *error);
 
+/* Compares images like picture_check_run(), for N lights, at most
+ * PICTURE_CHECK_LIGHTS, at random angles and azimuths in the field; the same
+ * lights in each run. Sets PSNR_DB[N], in rising order. */
+enum { PICTURE_CHECK_LIGHTS = 16 };
+enum glint_status picture_check_run_random(
+    const struct tool *tool, const struct glint_prescription *lens,
+    const struct glint_lens *model, const struct glint_bake_options *baked,
+    int n, double *psnr_db, struct glint_error *error);
+
 /* Appends the result of CHECK to the file DATA[BYTES], which may move. Returns
  * GLINT_E_MEMORY and changes nothing if there is no memory. */
 enum glint_status picture_check_store(const struct picture_check *check,
