@@ -465,6 +465,14 @@ void glint_engine_mark_cut(struct glint_engine *engine);
 /* Removes all tracked lamps, as after a cut. */
 void glint_engine_forget_lamps(struct glint_engine *engine);
 
+/* Lets ENGINE continue the video of FROM, for example with another lens: moves
+ * the tracked lamps and the exposure to ENGINE, so that lamps do not fade in
+ * again, and the brightness settles over time. FROM may only be destroyed
+ * afterwards. Returns GLINT_E_ARGUMENT, without a change, if the engines differ
+ * in picture size or in the numbers of lamps of their configurations. */
+enum glint_status glint_engine_continue(struct glint_engine *engine,
+                                        struct glint_engine *from);
+
 /* Sets SPOT to doubtful region I, from 0, of the last picture that was
  * searched. A doubtful region looks like a lamp but was rejected. SPOT->doubt
  * is the reason. Regions are sorted by decreasing brightness. Returns 0 if

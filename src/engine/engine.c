@@ -392,6 +392,33 @@ void glint_engine_destroy(struct glint_engine *engine)
     free(engine);
 }
 
+enum glint_status glint_engine_continue(struct glint_engine *engine,
+                                        struct glint_engine *from)
+{
+    const struct glint_view *const a = &engine->paint.frame.view;
+    const struct glint_view *const b = &from->paint.frame.view;
+    const struct glint_engine_finding find = engine->find;
+    const struct glint_engine_exposing expose = engine->expose;
+
+    if (a->width != b->width || a->height != b->height ||
+        engine->most_lamps != from->most_lamps ||
+        find.detector.max != from->find.detector.max)
+        return GLINT_E_ARGUMENT;
+    engine->find = from->find;
+    engine->expose.strength = from->expose.strength;
+    engine->expose.last = from->expose.last;
+    engine->expose.before = from->expose.before;
+    engine->expose.part = from->expose.part;
+    engine->expose.n_before = from->expose.n_before;
+    engine->expose.is_done = false;
+    from->find = find;
+    from->expose.before = expose.before;
+    from->expose.part = expose.part;
+    from->expose.n_before = 0;
+    glint_engine_set_light(engine, &expose.light);
+    return GLINT_OK;
+}
+
 /* ----------------------------------------------------------------- settings */
 
 const struct glint_view *glint_engine_view(const struct glint_engine *engine)
@@ -495,7 +522,7 @@ glint_engine_change_stop(struct glint_engine *engine,
                            another stop. */
     else if (measure)
         status = glint_response_measure(
-            f, f->limits.reserved ? f->memory.bytes : 0, &response);
+            f, f->limits.reserved ? f->memory.bytes : 0, 0, &response);
     if (status == GLINT_OK) {
         engine->expose.response = response;
     } else {

@@ -151,11 +151,17 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
      * placeholder is replaced when the flare has been drawn. */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
+    double extent = 0;
 
     if (!glint_engine_can_draw_on_image(engine, image, n))
         return GLINT_E_ARGUMENT;
-    if (!x->light.by_hand && x->response.n == 0 && n > 0 && !is_drawn)
-        status = glint_response_measure(f, 0, &x->response);
+    for (int i = 0; i < n; i++)
+        extent = fmax(extent,
+                      hypot(lamps[i].lamp.axis[0], lamps[i].lamp.axis[1]));
+    if (!x->light.by_hand && n > 0 && !is_drawn &&
+        (x->response.n == 0 ||
+         (!f->lens && !glint_response_has_extent(&x->response, extent))))
+        status = glint_response_measure(f, 0, extent, &x->response);
     if (status != GLINT_OK)
         return status;
     set_lamp_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);

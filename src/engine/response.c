@@ -217,12 +217,22 @@ static void convert_light_to_log2(struct glint_response_light *light)
     }
 }
 
+bool glint_response_has_extent(const struct glint_response *response,
+                               double extent)
+{
+    for (int i = 1; i < GLINT_RESPONSE_EXTENTS; i++)
+        if (response->extent[i] <= 0)
+            return extent <= response->extent[i - 1];
+    return true;
+}
+
 /* Measures (peak of the flare if LAMP is a disc) / (peak if LAMP is a point),
  * at most 1, for discs with RMS radii up to an eighth of the picture's
- * diagonal. */
+ * diagonal, or up to EXTENT if this is less. */
 static enum glint_status measure_extent_softening(struct proxy *p,
                                                   struct glint_response *r,
-                                                  struct glint_lamp lamp)
+                                                  struct glint_lamp lamp,
+                                                  double extent)
 {
     const double diagonal =
         2 *
@@ -230,7 +240,11 @@ static enum glint_status measure_extent_softening(struct proxy *p,
             GLINT_PI / 180);
     double point_log2 = 0, peak_log2 = 0;
 
-    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
+    for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++)
+        r->extent[i] = r->softened_log2[i] = 0;
+    for (int i = 0; i < GLINT_RESPONSE_EXTENTS &&
+                    (i == 0 || !glint_response_has_extent(r, extent));
+         i++) {
         struct glint_response_light light;
         enum glint_status status;
 
@@ -247,7 +261,7 @@ static enum glint_status measure_extent_softening(struct proxy *p,
     return GLINT_OK;
 }
 
-static enum glint_status measure_light_at_angles(struct proxy *p,
+static enum glint_status measure_light_at_angles(struct proxy *p, double extent,
                                                  struct glint_response *r)
 {
     const double azimuth = /* azimuth of a corner of the picture, degrees */
@@ -272,11 +286,12 @@ static enum glint_status measure_light_at_angles(struct proxy *p,
         convert_light_to_log2(&r->log2_of[i]);
     }
     lamp.theta_deg = r->theta_deg[r->n / 2];
-    return measure_extent_softening(p, r, lamp);
+    return measure_extent_softening(p, r, lamp,
+                                    p->frame.lens ? HUGE_VAL : extent);
 }
 
 enum glint_status glint_response_measure(const struct glint_frame *like,
-                                         size_t bytes,
+                                         size_t bytes, double extent,
                                          struct glint_response *response)
 {
     const double start = like->clock ? like->clock() : 0;
@@ -285,7 +300,7 @@ enum glint_status glint_response_measure(const struct glint_frame *like,
         open_small_frame(like, GLINT_RESPONSE_COARSE, bytes, &proxy);
 
     if (status == GLINT_OK)
-        status = measure_light_at_angles(&proxy, response);
+        status = measure_light_at_angles(&proxy, extent, response);
     response->ms = like->clock ? 1e3 * (like->clock() - start) : 0;
     close_small_frame(&proxy);
     return status;
@@ -326,7 +341,8 @@ double glint_response_compute_softening(const struct glint_response *r,
     int i = 0;
     double part;
 
-    while (i + 2 < GLINT_RESPONSE_EXTENTS && r->extent[i + 1] < extent)
+    while (i + 2 < GLINT_RESPONSE_EXTENTS && r->extent[i + 1] < extent &&
+           r->extent[i + 2] > r->extent[i + 1])
         i++;
     if (!(r->extent[i + 1] > r->extent[i]))
         return 1; /* nothing was measured */

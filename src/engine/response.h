@@ -40,7 +40,7 @@ struct glint_response {
     /* log2 of the light at each angle; -100: no light */
     struct glint_response_light log2_of[GLINT_RESPONSE_ANGLES];
     /* For lamps of visible extent. extent: tangents of RMS radii, rising from
-     * 0. softened: log2 of (peak of the flare of such a lamp / peak of a point
+     * 0, then 0 where nothing was measured. softened: log2 of (peak of the flare of such a lamp / peak of a point
      * light's flare). */
     double extent[GLINT_RESPONSE_EXTENTS],
         softened_log2[GLINT_RESPONSE_EXTENTS];
@@ -59,11 +59,17 @@ enum glint_status glint_response_draw_and_measure(
     struct glint_response_light *light, struct glint_seen *seen);
 
 /* Measures RESPONSE for the lens, view and requested options of frame LIKE.
- * Allocates at most BYTES for drawing; 0: no limit. Returns GLINT_E_MEMORY on
- * failure. */
+ * Allocates at most BYTES for drawing; 0: no limit. Exact rays, for which
+ * lamps of visible extent are slow, measure lamps only up to EXTENT, a tangent
+ * of an RMS radius. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_response_measure(const struct glint_frame *like,
-                                         size_t bytes,
+                                         size_t bytes, double extent,
                                          struct glint_response *response);
+
+/* Returns whether RESPONSE was measured for lamps up to EXTENT, or for the
+ * largest lamps that are measured. */
+bool glint_response_has_extent(const struct glint_response *response,
+                               double extent);
 
 /* Like glint_response_measure(), but reads the result from CACHE if it is
  * stored there, and otherwise stores it. CACHE may be NULL. Responses of lenses

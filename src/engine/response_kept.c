@@ -205,7 +205,7 @@ glint_response_measure_cached(const struct glint_frame *like, size_t bytes,
         read_cache_entry(&e, key, response))
         return GLINT_OK;
     *response = (struct glint_response){.n = 0};
-    status = glint_response_measure(like, bytes, response);
+    status = glint_response_measure(like, bytes, HUGE_VAL, response);
     if (status == GLINT_OK && cache) {
         e = make_cache_entry(response, key);
         cache->write(cache->ctx, name, key, &e, sizeof e);

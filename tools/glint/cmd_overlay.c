@@ -431,20 +431,21 @@ static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
 }
 
 /* Returns how to draw with a lens that has no model. A single picture is drawn
- * by exact rays unless an option needs a model. Several pictures need a model,
- * which is baked when a lamp is detected. */
+ * by exact rays unless an option needs a model. A video and several pictures
+ * need a model, which is baked when a lamp is detected, unless an option needs
+ * it before. */
 static enum settings_unbaked
 choose_rendering_without_model(const struct overlay *o)
 {
     const struct settings *const s = &o->drawing.line.settings;
     const struct glint_options *const of = &s->options;
 
-    if (o->is_video || overlay_is_sequence(o))
-        return SETTINGS_BAKE;
-    if (!o->is_one_of_many &&
+    if (!o->is_one_of_many && !o->is_video && !overlay_is_sequence(o) &&
         settings_choose_method_without_model(s) == SETTINGS_TRACE)
         return SETTINGS_TRACE;
-    return of->keys || of->control || of->scene || of->budget > 0
+    return of->keys || of->control || of->scene || of->budget > 0 ||
+                   o->zoom.is_asked || settings_has_veil(s) ||
+                   o->drawing.line.reserve_bytes
                ? SETTINGS_BAKE
                : SETTINGS_SEARCH;
 }

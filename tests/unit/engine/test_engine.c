@@ -373,6 +373,40 @@ TEST(layers_of_single_lamps_add_up)
     glint_engine_destroy(engine);
 }
 
+/* Checks that the frames of a video are the same if another engine continues it
+ * after frame 5, while lamps still fade in, and that an engine for pictures of
+ * another size cannot. */
+TEST(engine_continues_the_video_of_another)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    struct glint_engine *whole = create_engine(NULL, 0);
+    struct glint_engine *first = create_engine(NULL, 0);
+    struct glint_engine *second = create_engine(NULL, 0);
+    struct glint_engine *small;
+    struct glint_engine_report report;
+    struct glint_engine_config cfg;
+    struct glint_error error;
+
+    for (int i = 0; i < 12; i++) {
+        draw_flare_of_found_lamps(whole, 40000, want, &report);
+        if (i == 5)
+            assert_ok(glint_engine_continue(second, first));
+        draw_flare_of_found_lamps(i < 5 ? first : second, 40000, got, &report);
+        assert_memory_equal(got, want, BYTES);
+    }
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT - 2);
+    cfg.model = &opened.lens.model.lens;
+    assert_ok(glint_engine_create(&small, &cfg, &error));
+    assert_int_equal(glint_engine_continue(small, second), GLINT_E_ARGUMENT);
+    draw_flare_of_found_lamps(whole, 40000, want, &report);
+    draw_flare_of_found_lamps(second, 40000, got, &report);
+    assert_memory_equal(got, want, BYTES);
+    glint_engine_destroy(small);
+    glint_engine_destroy(second);
+    glint_engine_destroy(first);
+    glint_engine_destroy(whole);
+}
+
 TEST(rejects_invalid_configurations)
 {
     static uint8_t px[BYTES];

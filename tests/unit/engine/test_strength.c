@@ -418,7 +418,7 @@ static void check_automatic_exposure_of_lens(const char *lens,
     settings_set_defaults(&opened.settings);
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings, lens));
     assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
-    assert_ok(glint_response_measure(&frame, 0, &r));
+    assert_ok(glint_response_measure(&frame, 0, HUGE_VAL, &r));
     assert_true(r.n == GLINT_RESPONSE_ANGLES);
     for (int i = 0; i < 6; i++) {
         struct glint_engine_lamp lamp =
@@ -464,8 +464,8 @@ TEST(response_is_the_same_in_little_memory)
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));
     assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
-    assert_ok(glint_response_measure(&frame, 2 << 20, &r));
-    assert_ok(glint_response_measure(&frame, 0, &free));
+    assert_ok(glint_response_measure(&frame, 2 << 20, HUGE_VAL, &r));
+    assert_ok(glint_response_measure(&frame, 0, HUGE_VAL, &free));
     glint_frame_finish(&frame);
     for (int i = 0; i < r.n; i++)
         assert_memory_equal(&r.log2_of[i], &free.log2_of[i],

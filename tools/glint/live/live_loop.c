@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "live/live.h"
+#include "live/live_bake.h"
 #include "live/live_input.h"
 #include "live/live_log.h"
 #include "live/live_picture.h"
@@ -30,6 +31,8 @@ struct live {
     /* buffer for copies of frames whose memory is slow to read */
     struct live_copy copy;
 
+    /* bake in the background; see open_lens_and_start_bake() */
+    struct live_bake bake;
     struct live_adapt adapt;
     /* requested quality parameters, before adaptation */
     struct glint_dials asked;
@@ -45,6 +48,16 @@ struct live {
 };
 
 /* ------------------------------------------------------------------ set-up */
+
+/* Returns whether the quality of frames may depend on the time that drawing
+ * them takes. */
+static bool is_quality_adaptive(const struct live_options *o)
+{
+    return o->adaptive == LIVE_ADAPTIVE ||
+           (o->adaptive == LIVE_ADAPTIVE_CAMERA &&
+            live_input_is_camera(o->input.camera.device) &&
+            o->drawing.line.settings.options.budget == 0);
+}
 
 /* Stores the format of the input, and how often the input has restarted. */
 static void read_input_format(struct live *l)
@@ -182,14 +195,6 @@ static double get_frame_period_ms(const struct live *l)
     const struct glint_source_format *f = &l->format;
 
     return f->fps_num ? 1e3 * f->fps_den / f->fps_num : 0;
-}
-
-static bool is_quality_adaptive(const struct live_options *o)
-{
-    return o->adaptive == LIVE_ADAPTIVE ||
-           (o->adaptive == LIVE_ADAPTIVE_CAMERA &&
-            live_input_is_camera(o->input.camera.device) &&
-            o->drawing.line.settings.options.budget == 0);
 }
 
 static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
@@ -453,12 +458,63 @@ static void reload_config_and_lens(struct live *l)
     free(fresh);
 }
 
+/* Opens the lens and starts the bake of a missing model. Exact rays draw the
+ * frames until it ends. Without a process or a cache, bakes first. Returns an
+ * exit code. */
+static int open_lens_and_start_bake(struct live *l)
+{
+    struct drawing *const d = &l->o->drawing;
+    const int code = drawing_open(l->tool, d);
+    char text[320];
+
+    if (code != EXIT_OK || !d->files.has_lens || !d->files.lens.is_unbaked)
+        return code;
+    if (!live_bake_start(&l->bake, l->tool, &d->line.settings))
+        return drawing_open_model(l->tool, d);
+    snprintf(text, sizeof text,
+             "bakes the model of %s in the background; until it is baked, "
+             "exact rays draw fewer frames a second",
+             d->files.lens.table.name);
+    live_log_print_message(&l->log, text);
+    return EXIT_OK;
+}
+
+/* Replaces exact rays by the model when its bake has ended. Returns -1 to
+ * continue, or an exit code. */
+static int change_to_baked_model(struct live *l)
+{
+    struct drawing *const d = &l->o->drawing;
+    const enum live_bake_state state = live_bake_poll(&l->bake);
+    char text[320];
+    int code;
+
+    if (state != LIVE_BAKE_DONE && state != LIVE_BAKE_FAILED)
+        return -1;
+    l->tool->no_bake = true;
+    code = state == LIVE_BAKE_DONE ? drawing_open_model(l->tool, d)
+                                   : EXIT_LENS;
+    if (code == EXIT_OK) {
+        l->asked = glint_engine_dials(d->run.engine);
+        live_adapt_init(&l->adapt);
+        code = apply_quality_step(l);
+    }
+    snprintf(text, sizeof text,
+             code == EXIT_OK ? "the model of %s is baked"
+                             : "%s has no model; exact rays continue to draw",
+             d->files.lens.table.name);
+    live_log_print_message(&l->log, text);
+    return code == EXIT_OK || d->run.is_sized ? -1 : code;
+}
+
 static int run_frame_loop(struct live *l)
 {
     int code = -1;
 
     while (code < 0 && !live_signals_has_arrived(LIVE_STOP) &&
            (l->o->count == 0 || l->n_shown < l->o->count)) {
+        code = change_to_baked_model(l);
+        if (code >= 0)
+            break;
         if (live_signals_has_arrived(LIVE_RELOAD))
             reload_config_and_lens(l);
         if (!l->in.source) {
@@ -478,18 +534,25 @@ static int run_frame_loop(struct live *l)
 static int start_live_run(struct live *l)
 {
     const char *const device = l->o->input.camera.device;
+    struct settings *const settings = &l->o->drawing.line.settings;
     struct glint_error error = {""};
     enum glint_status status;
     int code = EXIT_OK;
 
-    if (live_output_accepts_any_size(&l->output))
+    /* Frames of fixed quality must not depend on the end of a bake. */
+    if (is_quality_adaptive(l->o))
+        settings->unbaked = settings_choose_method_without_model(settings);
+    if (settings->unbaked == SETTINGS_TRACE)
+        code = open_lens_and_start_bake(l);
+    if (code == EXIT_OK && live_output_accepts_any_size(&l->output))
         code = open_live_output(l, &(struct glint_image){.width = 0});
     if (code != EXIT_OK)
         return code;
     status = open_camera(l, &error);
     if (status != GLINT_OK)
         return live_input_report_error(&l->log, device, status, &error);
-    code = drawing_open(l->tool, &l->o->drawing);
+    if (settings->unbaked == SETTINGS_BAKE)
+        code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
     /* Before this call a signal ends the process at once. */
@@ -535,6 +598,7 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
         live_log_print_summary(&l->log, code == EXIT_OK, l->n_shown,
                                live_output_count_dropped_frames(&l->output));
     }
+    live_bake_stop(&l->bake);
     live_input_close(&l->in);
     status = live_output_close(&l->output, &error);
     if (status != GLINT_OK && code == EXIT_OK)

@@ -211,7 +211,8 @@ static bool are_rays_exact(const struct drawing *d)
 static void show_exact_ray_progress(const struct tool *tool, struct drawing *d,
                                     struct glint_engine_config *cfg)
 {
-    if (!tool->quiet && !d->line.is_still &&
+    if (!tool->quiet && !d->line.is_still && !d->line.is_live &&
+        d->line.settings.unbaked != SETTINGS_SEARCH &&
         !GLINT_OPTION_GIVEN(&d->line.settings.options, exposure))
         fprintf(stderr,
                 "glint %s: exact rays: measures the brightness of flares of %s "
@@ -640,27 +641,58 @@ enum glint_status drawing_detect_and_draw_scene(struct drawing *drawing,
     return scene->is_open ? draw_scene_on_image(drawing, image) : GLINT_OK;
 }
 
-int drawing_bake_for_lamps(const struct tool *tool, struct drawing *d,
-                           const struct glint_image *image)
+int drawing_open_model(const struct tool *tool, struct drawing *drawing)
 {
-    struct opened_lens *const lens = &d->files.lens;
-    struct settings *const s = &d->line.settings;
-    const enum glint_status status = find_image_lamps(d, image, 0);
+    struct opened_lens *const lens = &drawing->files.lens;
+    struct settings *const s = &drawing->line.settings;
+    struct drawing_run *const run = &drawing->run;
+    struct opened_lens fresh = {.tints = NULL};
+    struct glint_engine *const before = run->engine;
+    const int unbaked = s->unbaked;
     int code;
 
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, NULL);
-    if (d->run.n_lamps == 0)
-        return EXIT_OK;
-    if (!tool->quiet)
-        fprintf(stderr, "glint %s: %d light%s\n", tool->name, d->run.n_lamps,
-                d->run.n_lamps == 1 ? "" : "s");
     s->unbaked = SETTINGS_BAKE;
+    code = opened_lens_open(tool, &fresh, s, s->options.lens);
+    if (code != EXIT_OK) {
+        s->unbaked = unbaked;
+        opened_lens_close(&fresh);
+        return code;
+    }
     opened_lens_close(lens);
-    code = opened_lens_open(tool, lens, s, s->options.lens);
-    return code == EXIT_OK
-               ? drawing_allocate(tool, d, image->width, image->height)
-               : code;
+    *lens = fresh;
+    opened_lens_update_table_pointer(lens);
+    run->engine = NULL;
+    if (!before) /* The size of pictures is not known yet. */
+        return EXIT_OK;
+    code = drawing_allocate(tool, drawing, run->view.width, run->view.height);
+    if (code == EXIT_OK)
+        glint_engine_continue(run->engine, before);
+    glint_engine_destroy(before);
+    return code;
+}
+
+int drawing_fail(const struct tool *tool, const struct drawing *drawing,
+                 enum glint_status status)
+{
+    return drawing->run.code != EXIT_OK ? drawing->run.code
+                                        : tool_fail(tool, status, NULL);
+}
+
+/* Opens the model of a lens that waits for lamps (SETTINGS_SEARCH), if there
+ * are lamps. On failure run.code is set. */
+static enum glint_status open_model_for_lamps(struct drawing *d)
+{
+    const struct tool *const tool = d->files.scene.tool;
+    struct drawing_run *const run = &d->run;
+
+    if (run->n_lamps == 0 || !d->files.lens.is_unbaked ||
+        d->line.settings.unbaked != SETTINGS_SEARCH)
+        return GLINT_OK;
+    if (!tool->quiet)
+        fprintf(stderr, "glint %s: %d light%s\n", tool->name, run->n_lamps,
+                run->n_lamps == 1 ? "" : "s");
+    run->code = drawing_open_model(tool, d);
+    return run->code == EXIT_OK ? GLINT_OK : GLINT_E_LENS;
 }
 
 /* Prints the number of lamps of a single picture before their rays are traced
@@ -702,6 +734,9 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     enum glint_status status;
 
     save_frame_lamps(&drawing->files.save, run, get_lens_focal_mm(drawing));
+    status = open_model_for_lamps(drawing);
+    if (status != GLINT_OK)
+        return status;
     glint_engine_configure(&cfg, &drawing->line.settings.options);
     glint_engine_set_light(run->engine, &cfg.light);
     drawing_start_flare(drawing);

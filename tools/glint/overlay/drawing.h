@@ -28,6 +28,9 @@ struct drawing_run {
     struct tool_progress progress;
     bool is_progressing, is_sized;
     int n_frames;
+    /* exit code of a model that could not be opened for lamps; its reason has
+     * been printed */
+    int code;
 
     /* The caller sets both before drawing_detect_and_draw_scene(): the linear
      * light of white in the picture, and whether the picture stores lamps
@@ -66,10 +69,17 @@ int drawing_open_lens(const struct tool *tool, struct drawing *drawing);
 int drawing_allocate(const struct tool *tool, struct drawing *drawing,
                      int width, int height);
 
-/* If IMAGE has lamps, bakes the model of a lens that was opened without one
- * (SETTINGS_SEARCH), and allocates the engine again. Returns an exit code. */
-int drawing_bake_for_lamps(const struct tool *tool, struct drawing *drawing,
-                           const struct glint_image *image);
+/* Opens the model of a lens that was opened without one, and bakes it if
+ * necessary. Allocates an engine again that was allocated; tracked lamps and
+ * exposure continue.
+ * If the model cannot be opened, the drawing stays as it is. Returns an exit
+ * code. */
+int drawing_open_model(const struct tool *tool, struct drawing *drawing);
+
+/* Returns the exit code for STATUS, a failure of a function below. Prints the
+ * reason, unless it has been printed already. */
+int drawing_fail(const struct tool *tool, const struct drawing *drawing,
+                 enum glint_status status);
 
 /* Adds the flare to IMAGE, whose size must be that of drawing_allocate().
  * ELAPSED_US: microseconds since the previous frame; 0: IMAGE is an independent
@@ -104,7 +114,8 @@ void drawing_start_flare(struct drawing *drawing);
 void drawing_end_flare(struct drawing_run *run, double start);
 
 /* Writes the lamps to the file of --save-lights and sets the exposure of the
- * flare for IMAGE. Returns GLINT_E_MEMORY on failure. */
+ * flare for IMAGE. If there are lamps, first opens or bakes the model of a lens
+ * that waits for them (SETTINGS_SEARCH). drawing_fail() reports a failure. */
 enum glint_status drawing_set_exposure(struct drawing *drawing,
                                        const struct glint_image *image);
 

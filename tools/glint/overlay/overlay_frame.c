@@ -79,7 +79,7 @@ int overlay_find_lamps_only(struct tool *tool, struct overlay *o,
     }
     o->is_cut = drawing_has_exposure_restarted(drawing);
     drawing->run.n_frames++;
-    return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
+    return status == GLINT_OK ? EXIT_OK : drawing_fail(tool, drawing, status);
 }
 
 static void extend_value_range(struct overlay_span *of, double x)
@@ -112,14 +112,11 @@ int overlay_draw_frame_by_callback(struct tool *tool, struct overlay *o,
     drawing->line.is_still = o->elapsed_us == 0;
     if (!drawing->run.is_sized)
         code = drawing_allocate(tool, drawing, image->width, image->height);
-    if (code == EXIT_OK && drawing->files.lens.is_unbaked &&
-        drawing->line.settings.unbaked == SETTINGS_SEARCH)
-        code = drawing_bake_for_lamps(tool, drawing, image);
     if (code != EXIT_OK)
         return code;
     status = draw(ctx, drawing, image, o->elapsed_us);
     if (status != GLINT_OK)
-        return tool_fail(tool, status, NULL);
+        return drawing_fail(tool, drawing, status);
     code = layers_write(tool, &o->layers, drawing);
     if (code != EXIT_OK)
         return code;
