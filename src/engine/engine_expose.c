@@ -156,8 +156,8 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     if (!glint_engine_can_draw_on_image(engine, image, n))
         return GLINT_E_ARGUMENT;
     for (int i = 0; i < n; i++)
-        extent = fmax(extent,
-                      hypot(lamps[i].lamp.axis[0], lamps[i].lamp.axis[1]));
+        extent =
+            fmax(extent, hypot(lamps[i].lamp.axis[0], lamps[i].lamp.axis[1]));
     if (!x->light.by_hand && n > 0 && !is_drawn &&
         (x->response.n == 0 ||
          (!f->lens && !glint_response_has_extent(&x->response, extent))))

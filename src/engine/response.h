@@ -40,8 +40,8 @@ struct glint_response {
     /* log2 of the light at each angle; -100: no light */
     struct glint_response_light log2_of[GLINT_RESPONSE_ANGLES];
     /* For lamps of visible extent. extent: tangents of RMS radii, rising from
-     * 0, then 0 where nothing was measured. softened: log2 of (peak of the flare of such a lamp / peak of a point
-     * light's flare). */
+     * 0, then 0 where nothing was measured. softened: log2 of (peak of the
+     * flare of such a lamp / peak of a point light's flare). */
     double extent[GLINT_RESPONSE_EXTENTS],
         softened_log2[GLINT_RESPONSE_EXTENTS];
     double ms; /* duration of the measurement, ms */

@@ -14,7 +14,7 @@
 /* Bakes the lens of SETTINGS and ends the process. Only this thread exists in
  * the child process, so the bake has no workers. */
 static void bake_and_exit(const struct tool *tool,
-                                    const struct settings *settings)
+                          const struct settings *settings)
 {
     const int null = open("/dev/null", O_RDWR);
     struct opened_lens lens = {.tints = NULL};

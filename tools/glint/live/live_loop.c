@@ -491,8 +491,7 @@ static int change_to_baked_model(struct live *l)
     if (state != LIVE_BAKE_DONE && state != LIVE_BAKE_FAILED)
         return -1;
     l->tool->no_bake = true;
-    code = state == LIVE_BAKE_DONE ? drawing_open_model(l->tool, d)
-                                   : EXIT_LENS;
+    code = state == LIVE_BAKE_DONE ? drawing_open_model(l->tool, d) : EXIT_LENS;
     if (code == EXIT_OK) {
         l->asked = glint_engine_dials(d->run.engine);
         live_adapt_init(&l->adapt);
