@@ -494,7 +494,6 @@ static int change_to_baked_model(struct live *l)
     code = state == LIVE_BAKE_DONE ? drawing_open_model(l->tool, d) : EXIT_LENS;
     if (code == EXIT_OK) {
         l->asked = glint_engine_dials(d->run.engine);
-        live_adapt_init(&l->adapt);
         code = apply_quality_step(l);
     }
     snprintf(text, sizeof text,
