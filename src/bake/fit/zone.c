@@ -278,10 +278,9 @@ void glint_zone_cut_to_part(struct glint_zone *zone,
 #define ROOT_6 1.13472413840151949260
 
 /* Returns coordinate STEP of point K of a low-discrepancy sequence, -1 .. 1:
- * the fractional part of 1/2 + (K + 1) STEP, scaled. With STEP = 1 / g^i for i
- * = 1
- * .. n, where g is the root of x^(n + 1) = x + 1, points fill n dimensions
- * evenly. */
+ * the fractional part of 1/2 + (K + 1) STEP, scaled. Points fill n dimensions
+ * evenly if coordinate i has STEP 1 / g^i, where g is the root of
+ * x^(n + 1) = x + 1. */
 static double compute_sequence_coordinate(int k, double step)
 {
     const double x = 0.5 + (k + 1) * step;
