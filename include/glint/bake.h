@@ -106,6 +106,11 @@ enum glint_status glint_bake(const struct glint_prescription *lens,
                              struct glint_bake_report *report,
                              struct glint_error *error);
 
+/* Appends NOTE to the model *MODEL[*BYTES] of glint_bake(), which may move.
+ * Returns GLINT_E_MEMORY and changes nothing if there is no memory. */
+enum glint_status glint_bake_add_note(const struct glint_model_note *note,
+                                      unsigned char **model, size_t *bytes);
+
 /* A model of a zoom lens, and its zoom position along_q30, 0 .. 2^30. */
 struct glint_bake_model {
     unsigned char *data;

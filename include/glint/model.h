@@ -32,7 +32,7 @@
  *
  * The file: little-endian 32-bit words; offsets ("_at") are bytes from the
  * start of the file, multiples of 4. Header first, then in any order what it
- * points to, then, unless nobody compared pictures, struct glint_model_check.
+ * points to, then what glint_bake_add_note() appends, struct glint_model_note.
  */
 #ifndef GLINT_MODEL_H
 #define GLINT_MODEL_H
@@ -216,15 +216,17 @@ static inline uint64_t glint_model_error_q20(uint16_t e)
     return (uint64_t)(e & 2047) << (e >> 11);
 }
 
-/* The last bytes of a file whose pictures were compared with pictures by exact
- * rays: the light whose pictures differ most. The magic number exceeds all
- * values at this place in files without a check, bounds below 2^30. */
-#define GLINT_MODEL_CHECK_MAGIC UINT32_C(0x4b434c47) /* "GLCK" */
-struct glint_model_check {
-    uint32_t magic;
-    uint32_t n;        /* number of lights */
+/* The last bytes of a file that glint bake wrote. No value is used in drawing.
+ * The magic number exceeds all values at this place in files without a note,
+ * bounds below 2^30. */
+#define GLINT_MODEL_NOTE_MAGIC UINT32_C(0x4f4e4c47) /* "GLNO" */
+struct glint_model_note {
+    char coating[204]; /* value of --coating, terminated */
+    /* The light whose picture differs most from the picture by exact rays. */
+    uint32_t n;        /* number of lights compared; 0: none */
     uint32_t psnr_q8;  /* dB; 999: all pictures are identical */
     uint32_t angle_q8; /* angle of the light off the axis, degrees */
+    uint32_t magic;
 };
 
 struct glint_lens {

@@ -5,11 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/blob.h"
 #include "base/compiler.h"
+#include "glint/bake.h"
 
 STATIC_ASSERT(sizeof(struct glint_model_ghost) == 16);
 STATIC_ASSERT(sizeof(struct glint_model_system) == 40);
 STATIC_ASSERT(sizeof(struct glint_model_output) == 32);
+STATIC_ASSERT(sizeof(struct glint_model_note) == 220);
 
 static uint32_t append_output_terms(struct glint_draft *d,
                                     const struct glint_fitted_output *o,
@@ -214,4 +217,19 @@ void glint_draft_write_errors(struct glint_draft *draft, int system,
         o->p99 = encode_rounded_error(e->p99);
         o->max = encode_rounded_error(e->max);
     }
+}
+
+enum glint_status glint_bake_add_note(const struct glint_model_note *note,
+                                      unsigned char **model, size_t *bytes)
+{
+    const size_t n = *bytes + sizeof *note;
+    unsigned char *const file = realloc(*model, n);
+
+    if (!file)
+        return GLINT_E_MEMORY;
+    memcpy(file + *bytes, note, sizeof *note);
+    glint_blob_set_size_and_checksum(file, n);
+    *model = file;
+    *bytes = n;
+    return GLINT_OK;
 }

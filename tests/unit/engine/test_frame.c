@@ -540,8 +540,10 @@ TEST(points_of_wide_lamps_use_point_room)
 TEST_OPEN
 {
     settings_set_defaults(&opened.settings);
+    opened.settings.coating.kind = COATING_TABLE;
     opened.settings.max_deg = 15;
     settings_set_defaults(&exact_scene.settings);
+    exact_scene.settings.coating.kind = COATING_TABLE;
     exact_scene.settings.options.rays = GLINT_RAYS_EXACT;
     assert_ok(tool_start_threads(&tool));
     assert_ok(opened_lens_open(&tool, &exact_scene.lens, &exact_scene.settings,

@@ -28,6 +28,7 @@ static struct glint_image image = {.format = GLINT_RGB24,
 TEST_OPEN
 {
     settings_set_defaults(&opened.settings);
+    opened.settings.coating.kind = COATING_TABLE;
     opened.settings.options.starburst = 1;
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));

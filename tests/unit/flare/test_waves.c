@@ -369,6 +369,7 @@ TEST(sum_of_ghosts_of_a_white_lamp_is_white)
 static void open_lens_with_wavelengths(struct opened *opened, const char *waves)
 {
     settings_set_defaults(&opened->settings);
+    opened->settings.coating.kind = COATING_TABLE;
     assert_true(settings_set_text(&opened->settings, "wavelengths", waves));
     assert_ok(opened_lens_open(&tool, &opened->lens, &opened->settings,
                                "lenses/heliar-tronnier.lens"));

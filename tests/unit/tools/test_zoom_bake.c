@@ -28,7 +28,9 @@ static void bake_zoom_positions(const struct glint_bake_options *options,
 {
     static struct glint_zoom_lens zoom;
     struct tool tool = {.name = "test", .quiet = true};
+    const struct coating coating = {.kind = COATING_TABLE};
     const struct zoom_bake what = {.lens = &lens,
+                                   .coating = &coating,
                                    .options = options,
                                    .positions = 2,
                                    .halfway_db = halfway_db};

@@ -6,11 +6,12 @@
 int coating_parse_option(const struct tool *tool, struct coating *c,
                          const char *text)
 {
-    static const char *const words[] = {"table", "mixed", NULL};
+    static const char *const words[] = {"mixed", "table", NULL};
     struct glint_error error = {""};
     const int word = tool_find_word_index(text, words);
 
     c->given = true;
+    c->text = text;
     c->kind = word < 0 ? COATING_DEALT : (enum coating_kind)word;
     if (word >= 0 || glint_coatings_parse(c->coating, &c->n_coatings, text,
                                           &error) == GLINT_OK)
@@ -56,6 +57,11 @@ void coating_print(FILE *file, const struct glint_coating *c)
         fprintf(file, "%s%g:%g", i ? " " : " (", c->film[i].index,
                 c->film[i].quarters);
     fprintf(file, ")");
+}
+
+const char *coating_get_text(const struct coating *c)
+{
+    return c->text ? c->text : c->kind == COATING_TABLE ? "table" : "mixed";
 }
 
 void coating_apply(const struct coating *c, struct glint_prescription *lens)

@@ -7,31 +7,30 @@
 
 #include "options/tool.h"
 
-enum coating_kind { COATING_TABLE, COATING_MIXED, COATING_DEALT };
+enum coating_kind { COATING_MIXED, COATING_TABLE, COATING_DEALT };
 
 struct coating {
-    /* source of the films; by default the lens table */
+    /* source of the films; by default mixed */
     enum coating_kind kind;
+    const char *text; /* value of --coating; NULL: the default */
     /* whether --coating is on the command line, even with the default value */
     bool given;
     int n_coatings;
     struct glint_coating coating[GLINT_MAX_COATINGS];
 };
 
-#define COATING_HELP                                                           \
-    "  --coating C         coatings of surfaces between air and glass: "       \
-    "table, those\n"                                                           \
-    "                      of the table (default; not of overlay, live, "      \
-    "explain);\n"                                                              \
-    "                      mixed, films that differ from surface to surface\n" \
-    "                      (default of these three); none; or a list, "        \
-    "repeated\n"                                                               \
-    "                      from the front on: v-coat[/NM], "                   \
-    "broadband-3[/NM],\n"                                                      \
-    "                      broadband-4[/NM], NM[/INDEX[:QUARTERS]]...[,...] "  \
-    "with\n"                                                                   \
-    "                      100 to 5000 nm, index 1.01 to 4 (1.38), films "     \
-    "from\n"                                                                   \
+#define COATING_HELP                                                          \
+    "  --coating C         coatings of surfaces between air and glass: "      \
+    "mixed, films\n"                                                          \
+    "                      that differ from surface to surface (default); "   \
+    "table,\n"                                                                \
+    "                      those of the table; none; or a list, repeated\n"   \
+    "                      from the front on: v-coat[/NM], "                  \
+    "broadband-3[/NM],\n"                                                     \
+    "                      broadband-4[/NM], NM[/INDEX[:QUARTERS]]...[,...] " \
+    "with\n"                                                                  \
+    "                      100 to 5000 nm, index 1.01 to 4 (1.38), films "    \
+    "from\n"                                                                  \
     "                      the air on (glint coat plots them)\n"
 
 /* Parses TEXT, the value of --coating, into COATING. Returns -1, or an exit
@@ -42,6 +41,9 @@ int coating_parse_option(const struct tool *tool, struct coating *coating,
 /* Prints COATING: "none", or "550 nm, index 1.38" and further layers, if
  * any. */
 void coating_print(FILE *file, const struct glint_coating *coating);
+
+/* Returns the value of --coating that gives COATING. */
+const char *coating_get_text(const struct coating *coating);
 
 void coating_apply(const struct coating *coating,
                    struct glint_prescription *lens);

@@ -156,12 +156,14 @@ static int report_too_much_work(const struct tool *tool, const char *file)
 }
 
 /* Compares pictures by MODEL with pictures by exact rays of LENS, and stores
- * the result in MODEL. If they cannot be compared, MODEL stays without a
- * result. May return GLINT_E_MEMORY, so that the result does not depend on
- * memory. */
-static enum glint_status check_model_pictures(
-    const struct tool *tool, const struct glint_prescription *lens,
-    const struct glint_bake_options *options, struct model_file *model)
+ * the result and COATING in MODEL. If they cannot be compared, MODEL stays
+ * without a result. May return GLINT_E_MEMORY, so that the result does not
+ * depend on memory. */
+static enum glint_status
+check_model_pictures(const struct tool *tool,
+                     const struct glint_prescription *lens,
+                     const struct glint_bake_options *options,
+                     const struct coating *coating, struct model_file *model)
 {
     unsigned char *data = model->data;
     struct picture_check check;
@@ -170,10 +172,10 @@ static enum glint_status check_model_pictures(
     enum glint_status status =
         picture_check_run(tool, lens, &model->lens, options, &check, &error);
 
-    if (status == GLINT_OK)
-        status = picture_check_store(&check, &data, &model->bytes);
-    if (status != GLINT_OK)
-        return status == GLINT_E_MEMORY ? status : GLINT_OK;
+    if (status == GLINT_E_MEMORY ||
+        picture_check_store(status == GLINT_OK ? &check : NULL, coating, &data,
+                            &model->bytes) != GLINT_OK)
+        return GLINT_E_MEMORY;
     model->data = data;
     return glint_lens_open(&model->lens, data, model->bytes, &reason);
 }
@@ -183,7 +185,8 @@ static enum glint_status check_model_pictures(
  * exit code. */
 static int bake_model(const struct tool *tool,
                       const struct glint_prescription *lens, const char *file,
-                      struct glint_bake_options options, char *path,
+                      struct glint_bake_options options,
+                      const struct coating *coating, char *path,
                       struct model_file *model)
 {
     int work = 0;
@@ -216,7 +219,7 @@ static int bake_model(const struct tool *tool,
                      reason);
     }
     if (status == GLINT_OK)
-        status = check_model_pictures(tool, lens, &options, model);
+        status = check_model_pictures(tool, lens, &options, coating, model);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text[0] ? error.text : NULL);
     if (path)
@@ -251,7 +254,7 @@ static void report_bake_wait(void *ctx)
 int model_open_cached(const struct tool *tool,
                       const struct glint_prescription *lens, const char *file,
                       struct glint_bake_options options,
-                      struct model_file *model)
+                      const struct coating *coating, struct model_file *model)
 {
     const uint64_t key = glint_bake_key(lens, &options);
     struct wait wait = {tool, lens->name};
@@ -261,9 +264,9 @@ int model_open_cached(const struct tool *tool,
     if (load_installed_model(lens->name, key, model))
         return EXIT_OK;
     if (!make_model_path(path, sizeof path, lens->name, key))
-        return tool->no_bake
-                   ? report_bake_refused(tool, lens)
-                   : bake_model(tool, lens, file, options, NULL, model);
+        return tool->no_bake ? report_bake_refused(tool, lens)
+                             : bake_model(tool, lens, file, options, coating,
+                                          NULL, model);
     if (load_model_with_key(path, key, read_cached_model, model))
         return EXIT_OK;
     if (tool->no_bake)
@@ -272,7 +275,7 @@ int model_open_cached(const struct tool *tool,
      * process. */
     lock = cache_file_lock(path, report_bake_wait, &wait);
     if (!load_model_with_key(path, key, read_cached_model, model))
-        code = bake_model(tool, lens, file, options, path, model);
+        code = bake_model(tool, lens, file, options, coating, path, model);
     cache_file_unlock(path, lock);
     return code;
 }

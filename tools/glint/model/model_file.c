@@ -142,17 +142,28 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
     return GLINT_OK;
 }
 
-const struct glint_model_check *model_get_check(const struct glint_lens *lens)
+/* Returns whether TEXT[BYTES] is terminated and printable. */
+static bool is_printable_text(const char *text, size_t bytes)
+{
+    size_t n = 0;
+
+    while (n < bytes && text[n] >= ' ' && text[n] <= '~')
+        n++;
+    return n < bytes && text[n] == '\0';
+}
+
+const struct glint_model_note *model_get_note(const struct glint_lens *lens)
 {
     const struct glint_model_header *const h = lens->header;
-    const struct glint_model_check *check;
+    const struct glint_model_note *note;
 
-    if (lens->zoom || h->bytes % 4 || h->bytes < sizeof *h + sizeof *check)
+    if (h->bytes % 4 || h->bytes < sizeof *h + sizeof *note)
         return NULL;
-    check = (const void *)((const char *)h + h->bytes - sizeof *check);
-    return check->magic == GLINT_MODEL_CHECK_MAGIC && check->n - 1 < 1000 &&
-                   check->psnr_q8 <= 999 << 8 && check->angle_q8 <= 90 << 8
-               ? check
+    note = (const void *)((const char *)h + h->bytes - sizeof *note);
+    return note->magic == GLINT_MODEL_NOTE_MAGIC && note->n <= 1000 &&
+                   note->psnr_q8 <= 999 << 8 && note->angle_q8 <= 90 << 8 &&
+                   is_printable_text(note->coating, sizeof note->coating)
+               ? note
                : NULL;
 }
 

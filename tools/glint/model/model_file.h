@@ -48,9 +48,8 @@ enum glint_status model_file_set_zoom(struct model_file *model, double zoom,
 /* Returns the number of zoom positions at which all ghosts are baked. */
 int model_file_count_positions(const struct glint_zoom_lens *zoom);
 
-/* Returns the comparison of pictures that the file of LENS contains, or NULL.
- * It has none if nobody compared pictures, or if LENS is a zoom. */
-const struct glint_model_check *model_get_check(const struct glint_lens *lens);
+/* Returns the note at the end of the model of LENS, or NULL if it has none. */
+const struct glint_model_note *model_get_note(const struct glint_lens *lens);
 
 /* Closes MODEL; does nothing if it is closed. */
 void model_file_close(struct model_file *model);

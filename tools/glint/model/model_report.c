@@ -6,9 +6,6 @@
 #include "model/model_summary.h"
 #include "options/json_writer.h"
 
-/* PSNR of identical pictures, as in glint/measure.h. */
-#define IDENTICAL_DB 999
-
 /* -------------------------------------------------------------------- JSON */
 
 /* Writes the JSON member "errors": an object with the errors of each output. */
@@ -56,7 +53,7 @@ static void write_picture_check_json(struct json_writer *json, int n,
                                      double psnr_db, double angle_deg)
 {
     json_write(json, "pictures: %d", n);
-    if (n > 0 && psnr_db < IDENTICAL_DB)
+    if (n > 0 && psnr_db < PICTURE_IDENTICAL_DB)
         json_write(json, "worst_db: %.2f, worst_deg: %.4f", psnr_db, angle_deg);
 }
 
@@ -64,7 +61,7 @@ static void write_header_json(struct json_writer *json,
                               const struct model_file *model)
 {
     const struct glint_model_header *h = model->lens.header;
-    const struct glint_model_check *const check = model_get_check(&model->lens);
+    const struct glint_model_note *const note = model_get_note(&model->lens);
     const struct model_summary sum =
         model_compute_summary(&model->lens, model_get_full_span(&model->lens));
 
@@ -98,9 +95,11 @@ static void write_header_json(struct json_writer *json,
                model_convert_sine_to_deg(h->sine_hi_q30),
                model_convert_real_to_double(h->field_mm), h->n_systems,
                model_compute_mean_terms(&sum));
-    write_picture_check_json(json, check ? (int)check->n : 0,
-                             check ? ldexp(check->psnr_q8, -8) : 0,
-                             check ? ldexp(check->angle_q8, -8) : 0);
+    if (note)
+        json_write(json, "coating: %s", note->coating);
+    write_picture_check_json(json, note ? (int)note->n : 0,
+                             note ? ldexp(note->psnr_q8, -8) : 0,
+                             note ? ldexp(note->angle_q8, -8) : 0);
     write_errors_json(json, &sum);
     write_missed_targets_json(json, &model->lens);
 }
@@ -196,19 +195,21 @@ static void write_bake_json(const struct glint_lens *lens, double seconds,
     json_write(&json, "]}\n");
 }
 
-/* Prints the comparison of pictures that the file of LENS contains. */
-static void print_stored_check(const struct glint_lens *lens)
+/* Prints the coating and the comparison of pictures that the file of LENS
+ * contains. */
+static void print_model_note(const struct glint_lens *lens)
 {
-    const struct glint_model_check *const check = model_get_check(lens);
+    const struct glint_model_note *const note = model_get_note(lens);
 
-    if (!check)
+    printf("coating             %s\n", note ? note->coating : "not recorded");
+    if (!note || note->n == 0)
         puts("pictures            not checked against exact rays");
-    else if (check->psnr_q8 >= IDENTICAL_DB << 8)
+    else if (note->psnr_q8 >= PICTURE_IDENTICAL_DB << 8)
         puts("pictures            identical to those by exact rays");
     else
         printf("pictures            %6.1f dB PSNR against exact rays at worst, "
                "with the light %.1f degrees off the axis\n",
-               ldexp(check->psnr_q8, -8), ldexp(check->angle_q8, -8));
+               ldexp(note->psnr_q8, -8), ldexp(note->angle_q8, -8));
 }
 
 static void print_model_header(const struct model_file *model)
@@ -256,7 +257,7 @@ static void print_model_header(const struct model_file *model)
            (unsigned long)model_count_ghosts(&model->lens),
            (unsigned long)h->n_ghosts, (unsigned long)h->n_systems,
            model_compute_mean_terms(&sum));
-    print_stored_check(&model->lens);
+    print_model_note(&model->lens);
     if (model->zoom)
         printf("positions           %6d with all ghosts, %d more with some of "
                "them; all other values are those of the first\n",
@@ -454,7 +455,7 @@ static void print_picture_check(const struct picture_check *check)
 {
     if (check->n == 0)
         return;
-    if (check->psnr_db >= IDENTICAL_DB)
+    if (check->psnr_db >= PICTURE_IDENTICAL_DB)
         printf("%d pictures of the model are identical to those by exact "
                "rays\n",
                check->n);

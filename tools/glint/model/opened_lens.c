@@ -112,17 +112,18 @@ static void warn_of_small_field(const struct tool *tool,
 static void warn_of_inaccurate_model(const struct tool *tool,
                                      const struct opened_lens *lens)
 {
-    const struct glint_model_check *const check =
-        lens->model.data ? model_get_check(&lens->model.lens) : NULL;
-    const double psnr_db = check ? ldexp(check->psnr_q8, -8) : HUGE_VAL;
+    const struct glint_model_note *const note =
+        lens->model.data ? model_get_note(&lens->model.lens) : NULL;
+    const double psnr_db =
+        note && note->n > 0 ? ldexp(note->psnr_q8, -8) : HUGE_VAL;
 
-    if (check && !tool->quiet && psnr_db < PICTURE_CHECK_DB)
+    if (!tool->quiet && psnr_db < PICTURE_CHECK_DB)
         fprintf(stderr,
                 "glint %s: pictures by the model of %s have down to %.1f dB "
                 "PSNR against exact rays, with the light %.1f degrees off the "
                 "axis, below %g dB; use the lens table with --rays exact\n",
                 tool->name, lens->table.name, psnr_db,
-                ldexp(check->angle_q8, -8), PICTURE_CHECK_DB);
+                ldexp(note->angle_q8, -8), PICTURE_CHECK_DB);
 }
 
 /* Moves the zoom lens of the model PATH to the position that --zoom

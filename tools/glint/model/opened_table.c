@@ -136,9 +136,10 @@ static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
         return code == EXIT_OK ? set_table_f_number(tool, lens, settings)
                                : code;
     lens->is_unbaked = false;
-    return code == EXIT_OK ? model_open_cached(tool, &lens->table, name,
-                                               options, &lens->model)
-                           : code;
+    return code == EXIT_OK
+               ? model_open_cached(tool, &lens->table, name, options,
+                                   &settings->coating, &lens->model)
+               : code;
 }
 
 int opened_table_open(const struct tool *tool, struct opened_lens *lens,

@@ -2,7 +2,6 @@
 #include "model/picture_check.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -61,6 +60,7 @@ void picture_pair_close(struct picture_pair *pair)
 /* A light, and the result of the comparison of its images */
 struct light {
     double angle_deg, azimuth_deg;
+    bool is_black; /* whether no light reaches either image */
     struct glint_measure measure;
     struct glint_error error;
     enum glint_status status;
@@ -94,6 +94,16 @@ render_model_and_exact_pictures(const struct picture_pair *pair,
     return status;
 }
 
+static bool is_image_black(const struct glint_float_image *image)
+{
+    const size_t n = 3 * (size_t)image->width * (size_t)image->height;
+    size_t i = 0;
+
+    while (i < n && !(image->rgb[i] > 0))
+        i++;
+    return i == n;
+}
+
 static void compare_pictures_of_light(void *ctx, int i, int worker)
 {
     struct job *const job = ctx;
@@ -116,6 +126,9 @@ static void compare_pictures_of_light(void *ctx, int i, int worker)
     if (light->status == GLINT_OK &&
         !glint_measure_compare(&image[0], &image[1], false, &light->measure))
         light->status = GLINT_E_MEMORY;
+    if (light->status == GLINT_OK)
+        light->is_black =
+            is_image_black(&image[0]) && is_image_black(&image[1]);
     picture_pair_close(&pair);
     free(image[0].rgb);
     free(image[1].rgb);
@@ -190,12 +203,13 @@ static enum glint_status find_failed_light(const struct job *job,
 static void find_light_with_lowest_psnr(const struct job *job,
                                         struct picture_check *check)
 {
-    *check = (struct picture_check){.psnr_db = HUGE_VAL};
+    *check = (struct picture_check){.psnr_db = PICTURE_IDENTICAL_DB};
     for (int i = 0; i < job->n; i++) {
         const struct light *const light = &job->light[i];
 
-        check->n++;
-        if (light->measure.psnr_db < check->psnr_db) {
+        if (light->is_black)
+            continue;
+        if (check->n++ == 0 || light->measure.psnr_db < check->psnr_db) {
             check->psnr_db = light->measure.psnr_db;
             check->angle_deg = light->angle_deg;
         }
@@ -290,25 +304,17 @@ enum glint_status picture_check_run_random(
 }
 
 enum glint_status picture_check_store(const struct picture_check *check,
+                                      const struct coating *coating,
                                       unsigned char **data, size_t *bytes)
 {
-    const struct glint_model_check stored = {
-        GLINT_MODEL_CHECK_MAGIC, (uint32_t)check->n,
-        (uint32_t)ldexp(check->psnr_db, 8),
-        (uint32_t)ldexp(check->angle_deg, 8)};
-    const size_t n = *bytes + sizeof stored;
-    /* offset of the bytes that the checksum covers */
-    const size_t covered = offsetof(struct glint_model_header, basis);
-    unsigned char *const file = realloc(*data, n);
-    struct glint_model_header *header;
+    struct glint_model_note note = {.magic = GLINT_MODEL_NOTE_MAGIC};
 
-    if (!file)
-        return GLINT_E_MEMORY;
-    memcpy(file + *bytes, &stored, sizeof stored);
-    header = (void *)file; /* realloc() has aligned the file */
-    header->bytes = (uint32_t)n;
-    header->crc32 = glint_model_crc32(file + covered, n - covered);
-    *data = file;
-    *bytes = n;
-    return GLINT_OK;
+    snprintf(note.coating, sizeof note.coating, "%s",
+             coating_get_text(coating));
+    if (check) {
+        note.n = (uint32_t)check->n;
+        note.psnr_q8 = (uint32_t)ldexp(check->psnr_db, 8);
+        note.angle_q8 = (uint32_t)ldexp(check->angle_deg, 8);
+    }
+    return glint_bake_add_note(&note, data, bytes);
 }

@@ -7,6 +7,7 @@
 
 #include "glint/bake.h"
 #include "glint/engine.h"
+#include "model/coating.h"
 #include "model/model_file.h"
 
 /* Two engines for the same lens: one draws by a model, the other by exact
@@ -24,14 +25,18 @@ enum glint_status picture_pair_open(struct picture_pair *pair,
                                     struct glint_error *error);
 void picture_pair_close(struct picture_pair *pair);
 
+/* PSNR of identical images, dB, as in glint/measure.h */
+#define PICTURE_IDENTICAL_DB 999
+
 /* Result of picture_check_run(): the light with the lowest PSNR */
 struct picture_check {
-    /* PSNR of the sRGB codes, dB, at the exposure of glint compare; 999: the
-     * images are identical. Multiple of 2^-8, like the angle, so that the
-     * model stores both exactly. */
+    /* PSNR of the sRGB codes, dB, at the exposure of glint compare. Multiple of
+     * 2^-8, like the angle, so that the model stores both exactly. */
     double psnr_db;
     double angle_deg; /* angle of the light off the axis, degrees */
-    int n;            /* number of lights whose pictures were compared */
+    /* number of lights whose pictures were compared; pictures without any light
+     * are not */
+    int n;
 };
 
 /* Compares images by MODEL with images by exact rays, for up to ten lights: on
@@ -54,9 +59,11 @@ enum glint_status picture_check_run_random(
     const struct glint_lens *model, const struct glint_bake_options *baked,
     int n, double *psnr_db, struct glint_error *error);
 
-/* Appends the result of CHECK to the file DATA[BYTES], which may move. Returns
- * GLINT_E_MEMORY and changes nothing if there is no memory. */
+/* Appends a note with COATING and the result of CHECK (NULL: not compared) to
+ * the model DATA[BYTES], which may move. Returns GLINT_E_MEMORY and changes
+ * nothing if there is no memory. */
 enum glint_status picture_check_store(const struct picture_check *check,
+                                      const struct coating *coating,
                                       unsigned char **data, size_t *bytes);
 
 #endif

@@ -30,10 +30,9 @@ void settings_set_defaults(struct settings *settings)
 {
     struct glint_options *const o = &settings->options;
 
-    *settings = (struct settings){.coating.kind = COATING_TABLE};
+    *settings = (struct settings){.roundness = 0};
     glint_options_defaults(o);
     o->starburst = 0;
-    o->coating = "table";
     o->wavelengths = "650,532,450";
     compute_derived_settings(settings);
 }
@@ -42,7 +41,6 @@ void settings_set_photo_defaults(struct settings *settings)
 {
     settings_set_defaults(settings);
     glint_options_defaults(&settings->options);
-    settings->coating.kind = COATING_MIXED;
     settings->roundness = PHOTO_ROUNDNESS;
     compute_derived_settings(settings);
 }

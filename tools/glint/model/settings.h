@@ -62,7 +62,7 @@ struct settings {
     "  --json   -q   -v   --help   --help-all   --version\n"
 
 /* settings_set_defaults() sets the defaults for images of a lens alone: no
- * starburst, the table's coatings, straight blades, three wavelengths.
+ * starburst, straight blades, three wavelengths.
  * settings_set_photo_defaults() sets the defaults for photographs: those of the
  * option table, and blades of PHOTO_ROUNDNESS. Straight blades would make the
  * spikes thinner and longer than in photographs. */

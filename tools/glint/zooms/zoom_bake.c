@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "model/picture_check.h"
 #include "posix/error.h"
 #include "zooms/zoom_error.h"
 
@@ -120,6 +121,9 @@ static enum glint_status bake_zoom_position(struct run *run, int place,
     if (status == GLINT_OK)
         status = glint_bake(&run->lens, &options, &p->model.data,
                             &p->model.bytes, &report, run->error);
+    if (status == GLINT_OK)
+        status = picture_check_store(NULL, run->bake->coating, &p->model.data,
+                                     &p->model.bytes);
     tool_progress_end(&run->progress);
     p->model.along_q30 = (int32_t)lrint(place / (run->n_places - 1.0) * 0x1p30);
     for (int g = 0; g < run->n_ghosts; g++) {

@@ -11,6 +11,7 @@
 #define GLINT_TOOLS_ZOOMS_ZOOM_BAKE_H
 
 #include "glint/bake.h"
+#include "model/coating.h"
 #include "options/tool.h"
 
 /* Default min PSNR of images halfway between positions against exact rays,
@@ -20,6 +21,7 @@
 struct zoom_bake {
     /* zoom lens, as read from its table */
     const struct glint_prescription *lens;
+    const struct coating *coating; /* coating of LENS */
     /* bake options; the choice of ghosts in them is ignored */
     const struct glint_bake_options *options;
     /* focus distance, m, and f-number; 0: those of the table */

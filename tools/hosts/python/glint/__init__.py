@@ -4,7 +4,7 @@
     import glint
     glint.overlay(picture, lens="heliar-tronnier")        uint8 [height, width, 3], in place
     light = glint.render("nikon-zoom-mid", (540, 960), [glint.Lamp(12, 33)])     float32
-    model = glint.bake("heliar-tronnier")                 bytes, as of glint bake
+    model = glint.bake("heliar-tronnier")                 the bytes of a model file
 
 Pictures are drawn on where they lie; rows may have padding. Functions let go of Python's lock while
 they draw. Errors of lenses and arguments are ValueError, with the text that the command would say.
@@ -124,9 +124,9 @@ def _bake(table, options) -> bytes:
         _lib.free(model[0])
 
 
-def bake(lens: str, *, coating: str = "table", tolerance: float = 1.0, threads: int = 0) -> bytes:
-    """The model of LENS, a name or a .lens file: the bytes that glint bake writes. Takes seconds to minutes for narrow
-    stops, minutes to an hour for wide ones, and hours for anamorphic lenses. COATING as of --coating: table, mixed, none or a list."""
+def bake(lens: str, *, coating: str = "mixed", tolerance: float = 1.0, threads: int = 0) -> bytes:
+    """The model of LENS, a name or a .lens file: that of glint bake without the note at its end. Takes seconds to minutes for narrow
+    stops, minutes to an hour for wide ones, and hours for anamorphic lenses. COATING as of --coating: mixed, table, none or a list."""
     pool, options = _Pool(threads), _ffi.new("struct glint_bake_options *")
     _lib.glint_bake_defaults(options)
     options.tolerance, options.workers = tolerance, pool.workers
