@@ -200,9 +200,17 @@ bool glint_option_sensor(const char *text, double mm[2]);
  * struct glint_engine_search */
 bool glint_option_threshold(const char *text, double ev[2]);
 
-/* --light-at: x and y in pixels, and power in stops above a white pixel */
+/* --light-at */
 #define GLINT_LIGHT_AT_EV 16 /* default power: a street lamp at night */
-bool glint_option_light_at(const char *text, double xy_ev[3]);
+struct glint_light_at {
+    /* position from the top left corner, pixels; if IS_PERCENT, percent of the
+     * picture's width and height */
+    double xy[2];
+    bool is_percent[2];
+    bool has_ev; /* whether the text sets the power */
+    double ev;   /* power, stops above a white pixel */
+};
+bool glint_option_light_at(const char *text, struct glint_light_at *at);
 
 /* --light: a lamp, given by its angles */
 bool glint_option_light(const char *text, struct glint_lamp *lamp);

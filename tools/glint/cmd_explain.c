@@ -113,7 +113,7 @@ static int check_options(struct tool *tool, const struct explain_command *c)
         return tool_usage(tool, "--lens none without --scene leaves nothing to "
                                 "explain; add --scene FILE");
     if (!c->input && !c->drawing.line.settings.options.scene &&
-        c->drawing.line.n_hand == 0 && c->drawing.line.at.n == 0 &&
+        c->drawing.line.n_hand == 0 && c->drawing.line.n_at == 0 &&
         !c->drawing.line.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
     return -1;

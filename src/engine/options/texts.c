@@ -118,11 +118,24 @@ bool glint_option_threshold(const char *text, double ev[2])
     return true;
 }
 
-bool glint_option_light_at(const char *text, double xy_ev[3])
+bool glint_option_light_at(const char *text, struct glint_light_at *at)
 {
-    xy_ev[2] = GLINT_LIGHT_AT_EV;
-    return glint_option_numbers(text, xy_ev, 3) >= 2 && fabs(xy_ev[0]) <= 1e6 &&
-           fabs(xy_ev[1]) <= 1e6 && xy_ev[2] >= -40 && xy_ev[2] <= 90;
+    *at = (struct glint_light_at){.ev = GLINT_LIGHT_AT_EV};
+    for (int k = 0; k < 2; k++) {
+        const char *end;
+
+        at->xy[k] = glint_option_number(text, &end);
+        if (end == text || !(fabs(at->xy[k]) <= 1e6))
+            return false;
+        at->is_percent[k] = *end == '%';
+        text = end + at->is_percent[k];
+        if (k == 0 && *text++ != ',')
+            return false;
+    }
+    at->has_ev = *text == ',';
+    return at->has_ev ? glint_option_numbers(text + 1, &at->ev, 1) == 1 &&
+                            at->ev >= -40 && at->ev <= 90
+                      : *text == '\0';
 }
 
 bool glint_lamp_power_is_valid(double power, const double rgb[3])
@@ -154,6 +167,7 @@ bool glint_option_text_is_valid(enum glint_option_id id, const char *text)
 {
     struct glint_stop_shape stop;
     struct glint_waves waves;
+    struct glint_light_at at;
     struct glint_lamp lamp;
     double v[3];
     int seed;
@@ -171,7 +185,7 @@ bool glint_option_text_is_valid(enum glint_option_id id, const char *text)
     case GLINT_OPTION_OF_threshold:
         return glint_option_threshold(text, v);
     case GLINT_OPTION_OF_light_at:
-        return glint_option_light_at(text, v);
+        return glint_option_light_at(text, &at);
     case GLINT_OPTION_OF_light:
         return glint_option_light(text, &lamp);
     case GLINT_OPTION_OF_show:

@@ -141,7 +141,6 @@ void drawing_close(struct drawing *drawing)
 {
     destroy_sized_engine(&drawing->run);
     drawing_files_close(&drawing->files);
-    lamp_list_free(&drawing->line.at);
     free(drawing->run.lamp);
     drawing->run.lamp = NULL;
 }
@@ -283,16 +282,19 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
     return EXIT_OK;
 }
 
-/* Prints a warning for each lamp of --light-at outside the picture, WIDTH x
- * HEIGHT. */
-static void warn_of_off_screen_lamps(const struct tool *tool,
-                                     const struct lamp_list *at, int width,
-                                     int height)
+/* Sets the positions of the lamps of --light-at in a picture of WIDTH x HEIGHT.
+ * If WARNS, prints a warning for each lamp outside the picture. */
+static void place_lamps_at_pixels(const struct tool *tool, struct drawing *d,
+                                  int width, int height, bool warns)
 {
-    for (int i = 0; i < at->n && !tool->quiet; i++) {
-        const struct lamp_row *const row = &at->row[i];
+    for (int i = 0; i < d->line.n_at; i++) {
+        const struct glint_light_at *const at = &d->line.at[i];
+        struct lamp_row *const row = &d->files.list.row[d->files.first_at + i];
 
-        if (row->x < 0 || row->y < 0 || row->x > width || row->y > height)
+        row->x = at->xy[0] * (at->is_percent[0] ? width / 100.0 : 1);
+        row->y = at->xy[1] * (at->is_percent[1] ? height / 100.0 : 1);
+        if (warns &&
+            (row->x < 0 || row->y < 0 || row->x > width || row->y > height))
             fprintf(stderr,
                     "glint %s: --light-at %g,%g lies outside the picture of "
                     "%d x %d pixels; those of its ghosts that reach the "
@@ -308,10 +310,13 @@ int drawing_allocate(const struct tool *tool, struct drawing *drawing,
     int code;
 
     destroy_sized_engine(run);
-    if (drawing->files.has_lens &&
-        (!drawing->files.lens.is_unbaked ||
-         drawing->line.settings.unbaked != SETTINGS_SEARCH))
-        warn_of_off_screen_lamps(tool, &drawing->line.at, width, height);
+    run->is_at_set = false;
+    if (drawing->files.has_lens)
+        place_lamps_at_pixels(
+            tool, drawing, width, height,
+            !tool->quiet &&
+                (!drawing->files.lens.is_unbaked ||
+                 drawing->line.settings.unbaked != SETTINGS_SEARCH));
     run->view =
         drawing->files.has_lens
             ? opened_lens_compute_view(&drawing->files.lens,
@@ -413,54 +418,124 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Returns whether one of the N user-defined lamps GIVEN is at the position of
- * LAMP, a detected lamp: in LAMP's disc, or closer to this disc than 1 / 100 of
- * the picture's width, within which the detector merges lamps. */
-static bool is_at_given_lamp(const struct drawing_run *run, double focal_mm,
-                             const struct glint_engine_lamp *lamp,
-                             const struct glint_engine_lamp *given, int n)
+/* Returns the distance, pixels, of the user-defined lamp GIVEN from LAMP, a
+ * detected lamp, or HUGE_VAL unless it is at the position of LAMP: in LAMP's
+ * disc, or closer to this disc than 1 / 100 of the picture's width, within
+ * which the detector merges lamps. */
+static double
+compute_distance_within_reach(const struct drawing_run *run, double focal_mm,
+                              const struct glint_engine_lamp *lamp,
+                              const struct glint_engine_lamp *given)
 {
     const double reach_px =
         sqrt(2) * lamp->track.size_q8 / 256.0 + run->view.width / 100.0;
+    double x, y, distance;
+
+    glint_view_to_pixel(&run->view, focal_mm, &given->lamp, &x, &y);
+    distance =
+        hypot(x - lamp->track.x_q8 / 256.0, y - lamp->track.y_q8 / 256.0);
+    return distance <= reach_px ? distance : HUGE_VAL;
+}
+
+/* Returns the id of the nearest of N detected lamps at the position of GIVEN,
+ * or 0 if there is none. */
+static uint32_t find_lamp_under(const struct drawing_run *run, double focal_mm,
+                                const struct glint_engine_lamp *lamp, int n,
+                                const struct glint_engine_lamp *given)
+{
+    double least = HUGE_VAL;
+    uint32_t id = 0;
 
     for (int i = 0; i < n; i++) {
-        double x, y;
+        const double distance =
+            compute_distance_within_reach(run, focal_mm, &lamp[i], given);
 
-        glint_view_to_pixel(&run->view, focal_mm, &given[i].lamp, &x, &y);
-        if (hypot(x - lamp->track.x_q8 / 256.0, y - lamp->track.y_q8 / 256.0) <=
-            reach_px)
-            return true;
+        if (distance < least) {
+            least = distance;
+            id = lamp[i].id;
+        }
     }
+    return id;
+}
+
+/* Returns whether a lamp of GIVEN[N] that follows no detected lamp is at the
+ * position of LAMP. */
+static bool is_lamp_replaced(const struct drawing_run *run, double focal_mm,
+                             const struct glint_engine_lamp *lamp,
+                             const struct glint_engine_lamp *given, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (given[i].id == 0 && compute_distance_within_reach(
+                                    run, focal_mm, lamp, &given[i]) < HUGE_VAL)
+            return true;
     return false;
 }
 
+/* Sets the ids of the user-defined lamps GIVEN[N]. Those of --light-at come
+ * first; the id is that of the detected lamp, of LAMP[N_FOUND], that the lamp
+ * follows, from the first frame of a video on. Other ids are 0. */
+static void follow_detected_lamps(struct drawing *d, bool is_video,
+                                  const struct glint_engine_lamp *lamp,
+                                  int n_found, struct glint_engine_lamp *given,
+                                  int n)
+{
+    struct drawing_run *const run = &d->run;
+
+    for (int i = 0; i < n; i++) {
+        if (i < d->line.n_at && !run->is_at_set)
+            run->at_id[i] = find_lamp_under(run, get_lens_focal_mm(d), lamp,
+                                            n_found, &given[i]);
+        given[i].id = i < d->line.n_at ? run->at_id[i] : 0;
+    }
+    run->is_at_set = is_video;
+}
+
+/* Gives detected lamps the power that --light-at sets. */
+static void set_powers_at_pixels(struct drawing *d)
+{
+    struct drawing_run *const run = &d->run;
+
+    for (int k = 0; k < d->line.n_at && !d->files.is_listed; k++)
+        for (int i = 0; i < run->n_found && d->line.at[k].has_ev; i++)
+            if (run->lamp[i].id == run->at_id[k]) {
+                run->lamp[i].lamp.power =
+                    exp2(d->line.at[k].ev) * run->lamp[i].level;
+                run->lamp[i].seen_px = 0;
+            }
+}
+
 /* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN.
- * Omits detected lamps at the position of a user-defined lamp. Returns the
- * total number. */
+ * Omits user-defined lamps that follow a detected lamp, and detected lamps at
+ * the position of another user-defined lamp. Returns the total number. */
 static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                            int32_t elapsed_us, int n)
 {
     struct drawing_run *const run = &d->run;
     struct glint_engine_lamp *const lamp = run->lamp;
     struct glint_engine_lamp *const given = lamp + GLINT_ENGINE_MAX_LAMPS;
-    int n_found;
+    int n_found, n_all;
 
     memmove(given, lamp, (size_t)n * sizeof *lamp);
     n_found = glint_engine_find(run->engine, image, elapsed_us, lamp,
                                 GLINT_ENGINE_MAX_LAMPS);
+    follow_detected_lamps(d, elapsed_us > 0, lamp, n_found, given, n);
     run->n_found = 0;
     for (int i = 0; i < n_found; i++)
-        if (!is_at_given_lamp(run, get_lens_focal_mm(d), &lamp[i], given, n))
+        if (!is_lamp_replaced(run, get_lens_focal_mm(d), &lamp[i], given, n))
             lamp[run->n_found++] = lamp[i];
+    n_all = run->n_found;
     for (int i = 0; i < n; i++) {
+        if (given[i].id != 0)
+            continue;
         /* The ids of detected lamps start at 1, so user-defined lamps get other
          * ids, from LAMP_ID_TEXT on. */
         given[i].id = LAMP_ID_TEXT + (uint32_t)i;
-        lamp[run->n_found + i] = given[i];
+        lamp[n_all++] = given[i];
     }
     for (int i = 0; i < run->n_found && run->is_measured; i++)
         lamp[i].seen_px = 0;
-    return run->n_found + n;
+    set_powers_at_pixels(d);
+    return n_all;
 }
 
 /* Collects the lamps of IMAGE: those defined by angle, by pixel, by key frames
@@ -512,10 +587,11 @@ static enum glint_status find_image_lamps(struct drawing *d,
 void drawing_measure_clipped_lamps(struct drawing *drawing,
                                    const struct glint_samples *samples)
 {
-    const struct drawing_run *const run = &drawing->run;
+    struct drawing_run *const run = &drawing->run;
 
     add_lamp_excess(run->lamp, run->n_found, samples, run->white, &run->view,
                     get_lens_focal_mm(drawing));
+    set_powers_at_pixels(drawing);
 }
 
 /* Returns the row of lamp I for --save-lights. The row's position is where the

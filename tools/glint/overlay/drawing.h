@@ -46,6 +46,10 @@ struct drawing_run {
      * and those of options and lists; n_lamps: number of all lamps */
     int n_lamps, n_own, n_found;
     bool is_followed; /* whether lamps are tracked from frame to frame */
+    /* ids of the detected lamps that the lamps of --light-at follow; 0: none */
+    uint32_t at_id[SETTINGS_MAX_LAMPS];
+    /* whether at_id is set, in a video */
+    bool is_at_set;
     double find_ms, flare_ms;
     struct glint_engine_report report;
 };

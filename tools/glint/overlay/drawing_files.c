@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "overlay/drawing_files.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -210,8 +211,9 @@ static int check_table_zoom_keys(const struct tool *tool,
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Reads the list of lamps and appends the lamps of --light-at. With
- * --interpolate links the rows of each lamp. */
+/* Reads the list of lamps and appends the lamps of --light-at, whose positions
+ * are set when the picture's size is known. With --interpolate links the rows
+ * of each lamp. */
 static enum glint_status open_lamp_list(const struct drawing_line *line,
                                         struct drawing_files *f,
                                         struct glint_error *error)
@@ -223,8 +225,17 @@ static enum glint_status open_lamp_list(const struct drawing_line *line,
         status = lamp_list_read(&f->list, o->lights, error);
     if (status == GLINT_OK && o->interpolate)
         status = lamp_keys_link_rows(&f->list);
-    for (int i = 0; i < line->at.n && status == GLINT_OK; i++)
-        status = lamp_list_add(&f->list, &line->at.row[i]);
+    f->first_at = f->list.n;
+    for (int i = 0; i < line->n_at && status == GLINT_OK; i++) {
+        const struct lamp_row row = {.frame = -1,
+                                     .power = exp2(line->at[i].ev),
+                                     .rgb = {1, 1, 1},
+                                     .shape = 1,
+                                     .level = 1,
+                                     .next = -1};
+
+        status = lamp_list_add(&f->list, &row);
+    }
     f->is_listed = o->lights || line->is_unsearched;
     return status;
 }

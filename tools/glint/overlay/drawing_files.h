@@ -21,6 +21,7 @@ struct drawing_files {
     /* whether --lights sets the lamps, so that none are detected */
     bool is_listed;
     struct lamp_list list; /* lamps of --lights, --light-at and key frames */
+    int first_at;          /* index in LIST of the first lamp of --light-at */
     struct keys keys;
     /* "FILE:LINE" of the key frame that sets the f-number of the lens */
     char keys_line[224];

@@ -19,30 +19,23 @@ static bool add_lamp_by_angle(struct drawing_line *line, const char *text)
     return true;
 }
 
-bool drawing_line_add_light(struct drawing_line *line, double x, double y,
-                            double ev)
+bool drawing_line_add_light(struct drawing_line *line,
+                            const struct glint_light_at *at)
 {
-    const struct lamp_row row = {.frame = -1,
-                                 .x = x,
-                                 .y = y,
-                                 .power = exp2(ev),
-                                 .rgb = {1, 1, 1},
-                                 .shape = 1,
-                                 .level = 1,
-                                 .next = -1};
-
-    return line->at.n < SETTINGS_MAX_LAMPS &&
-           lamp_list_add(&line->at, &row) == GLINT_OK;
+    if (line->n_at == SETTINGS_MAX_LAMPS)
+        return false;
+    line->at[line->n_at++] = *at;
+    return true;
 }
 
 /* Adds a lamp by the value of --light-at, TEXT, which must be valid. Returns
  * false if there are too many lamps. */
 static bool add_lamp_by_pixel(struct drawing_line *line, const char *text)
 {
-    double v[3];
+    struct glint_light_at at;
 
-    glint_option_light_at(text, v);
-    return drawing_line_add_light(line, v[0], v[1], v[2]);
+    glint_option_light_at(text, &at);
+    return drawing_line_add_light(line, &at);
 }
 
 static bool is_text_option(const char *text, const char *word)

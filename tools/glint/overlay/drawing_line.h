@@ -24,8 +24,9 @@ struct drawing_line {
     /* quality parameters of the scene that options set; the size of the picture
      * and the camera are set later */
     struct scene_dials scene_dials;
-    struct lamp_list at; /* lamps of --light-at */
-    int n_hand;          /* number of lamps given by --light */
+    int n_at; /* number of lamps given by --light-at */
+    struct glint_light_at at[SETTINGS_MAX_LAMPS];
+    int n_hand; /* number of lamps given by --light */
     struct glint_lamp hand[SETTINGS_MAX_LAMPS];
     /* bytes allocated for drawing at the start; 0: as many as needed */
     size_t reserve_bytes;
@@ -59,11 +60,10 @@ int drawing_line_set_text(const struct tool *tool, struct drawing_line *line,
 int drawing_line_set_number(const struct tool *tool, struct drawing_line *line,
                             const char *name, double value);
 
-/* Adds to all frames a lamp at pixel (X, Y) that is EV stops brighter than
- * white, like --light-at. Returns false if there is no memory or there are too
- * many lamps. */
-bool drawing_line_add_light(struct drawing_line *line, double x, double y,
-                            double ev);
+/* Adds the lamp AT to all frames, like --light-at. Returns false if there are
+ * too many lamps. */
+bool drawing_line_add_light(struct drawing_line *line,
+                            const struct glint_light_at *at);
 
 /* Sets all options of the style NAME. Returns -1 or an exit code. */
 int drawing_line_apply_style(const struct tool *tool, struct drawing_line *line,

@@ -113,6 +113,9 @@ static int set_filter_option(struct filter *f, const struct filter_parameter *p,
 static int set_filter_options(struct filter *f)
 {
     const struct filter_values *const v = &f->values;
+    const struct glint_light_at at = {
+        .xy = {v->number[FILTER_X] * f->width, v->number[FILTER_Y] * f->height},
+        .ev = GLINT_LIGHT_AT_EV};
     struct filter_parameter p;
     int code = -1;
 
@@ -124,9 +127,7 @@ static int set_filter_options(struct filter *f)
         code =
             drawing_line_set_text(&f->tool, &f->drawing.line, "lights", "none");
     if (code == -1 && v->number[FILTER_AUTO] < 0.5 &&
-        !drawing_line_add_light(
-            &f->drawing.line, v->number[FILTER_X] * f->width,
-            v->number[FILTER_Y] * f->height, GLINT_LIGHT_AT_EV))
+        !drawing_line_add_light(&f->drawing.line, &at))
         code = tool_fail(&f->tool, GLINT_E_MEMORY, NULL);
     return code;
 }
