@@ -13,6 +13,7 @@
 #include "desk/ghost_sheet.h"
 #include "overlay/drawing.h"
 #include "overlay/overlay_line.h"
+#include "overlay/show_lights.h"
 #include "glint/measure.h"
 #include "options/command_line.h"
 #include "formats/picture.h"
@@ -41,7 +42,9 @@ static const char help[] =
     "--lens none lists these only.\n"
     "\n"
     "  -o, --output OUT    write a picture: tiles with flare shaded, ghosts\n"
-    "                      outlined and numbered, a legend; with --scene the\n"
+    "                      outlined and numbered, a legend, and white boxes\n"
+    "                      around up to three rejected regions; with --scene "
+    "the\n"
     "                      objects, coloured by their cost per pixel\n"
     "  --save-ghosts FILE  write the ghosts for --ghosts FILE of overlay, "
     "live\n"
@@ -108,6 +111,9 @@ static int check_options(struct tool *tool, const struct explain_command *c)
 {
     if (c->input && c->width)
         return tool_usage(tool, "needs one input picture, or --size WxH");
+    if (c->drawing.line.show_lights)
+        return tool_usage(tool, "--show lights applies to overlay and live "
+                                "only");
     if (!c->drawing.line.settings.options.scene &&
         strcmp(c->drawing.line.settings.options.lens, "none") == 0)
         return tool_usage(tool, "--lens none without --scene leaves nothing to "
@@ -233,10 +239,15 @@ static int save_picture(struct tool *tool, const struct explain_command *c,
 {
     struct glint_error error = {""};
     struct glint_image marked = {.plane = {NULL}};
+    struct glint_spot spot;
     enum glint_status status =
         scene ? explain_scene_draw_marks(scene, &c->image, &marked)
               : explain_draw_marks(e, title, &c->image, &marked);
 
+    for (int i = 0;
+         status == GLINT_OK && drawing_get_candidate(&c->drawing, i, &spot);
+         i++)
+        show_candidate_mark(&marked, &spot);
     if (status == GLINT_OK)
         status = glint_picture_save(c->output, &marked, &error);
     free(marked.plane[0]);

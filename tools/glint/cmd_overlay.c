@@ -416,8 +416,8 @@ static int check_output_file(struct tool *tool, struct overlay *o)
 }
 
 /* Disables the bake and the brightness measurement in S, because --list-shots
- * draws nothing. Does nothing if key frames, control lines or a zoom
- * (IS_ZOOMED) may change the lens. */
+ * and --show lights draw no flare. Does nothing if key frames, control lines or
+ * a zoom (IS_ZOOMED) may change the lens. */
 static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
 {
     struct glint_options *const o = &s->options;
@@ -454,7 +454,7 @@ static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
 {
     int code = check_output_file(tool, o);
 
-    if (o->lists_shots)
+    if (o->lists_shots || o->drawing.line.show_lights)
         disable_bake_and_metering(&o->drawing.line.settings, o->zoom.is_asked);
     if (code == EXIT_OK && o->is_video)
         code = overlay_check_ffmpeg(tool, o);

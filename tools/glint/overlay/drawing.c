@@ -124,10 +124,13 @@ int drawing_open(const struct tool *tool, struct drawing *drawing)
 
 int drawing_open_lens(const struct tool *tool, struct drawing *drawing)
 {
-    return strcmp(drawing->line.settings.options.lens, "none") == 0
-               ? tool_usage(tool,
-                            "--lens none applies to overlay and live only")
-               : drawing_open(tool, drawing);
+    const bool has_lens =
+        strcmp(drawing->line.settings.options.lens, "none") != 0;
+
+    return has_lens && !drawing->line.show_lights
+               ? drawing_open(tool, drawing)
+               : tool_usage(tool, "%s applies to overlay and live only",
+                            has_lens ? "--show lights" : "--lens none");
 }
 
 static void destroy_sized_engine(struct drawing_run *run)
@@ -266,7 +269,7 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
             line->reserve_bytes > scene ? line->reserve_bytes - scene : 1;
     run->cache = response_cache_callbacks(tool);
     cfg.cache = &run->cache;
-    run->is_progressing = are_rays_exact(d);
+    run->is_progressing = are_rays_exact(d) && !line->show_lights;
     if (run->is_progressing)
         show_exact_ray_progress(tool, d, &cfg);
     status = glint_engine_create(&run->engine, &cfg, &error);
@@ -418,28 +421,45 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
 
 /* -------------------------------------------------------------------- lamps */
 
-/* Returns the distance, pixels, of the user-defined lamp GIVEN from LAMP, a
- * detected lamp, or HUGE_VAL unless it is at the position of LAMP: in LAMP's
- * disc, or closer to this disc than 1 / 100 of the picture's width, within
- * which the detector merges lamps. */
+bool drawing_get_candidate(const struct drawing *drawing, int i,
+                           struct glint_spot *spot)
+{
+    return i < 3 && drawing->run.engine && !drawing->files.is_listed &&
+           drawing->line.n_hand == 0 && drawing->line.is_still &&
+           glint_engine_doubtful(drawing->run.engine, i, spot);
+}
+
+/* Returns the distance, pixels, of the user-defined lamp GIVEN from a region at
+ * (X, Y), pixels, with the RMS radius SIZE_Q8. Returns HUGE_VAL unless GIVEN is
+ * in the disc of the region, or closer to this disc than 1 / 100 of the
+ * picture's width, within which the detector merges lamps. */
 static double
-compute_distance_within_reach(const struct drawing_run *run, double focal_mm,
-                              const struct glint_engine_lamp *lamp,
+compute_distance_within_reach(const struct drawing *d, double x, double y,
+                              int32_t size_q8,
                               const struct glint_engine_lamp *given)
 {
-    const double reach_px =
-        sqrt(2) * lamp->track.size_q8 / 256.0 + run->view.width / 100.0;
-    double x, y, distance;
+    const struct glint_view *const view = &d->run.view;
+    const double reach_px = sqrt(2) * size_q8 / 256.0 + view->width / 100.0;
+    double at[2], distance;
 
-    glint_view_to_pixel(&run->view, focal_mm, &given->lamp, &x, &y);
-    distance =
-        hypot(x - lamp->track.x_q8 / 256.0, y - lamp->track.y_q8 / 256.0);
+    glint_view_to_pixel(view, get_lens_focal_mm(d), &given->lamp, &at[0],
+                        &at[1]);
+    distance = hypot(x - at[0], y - at[1]);
     return distance <= reach_px ? distance : HUGE_VAL;
+}
+
+static double compute_distance_from_lamp(const struct drawing *d,
+                                         const struct glint_engine_lamp *lamp,
+                                         const struct glint_engine_lamp *given)
+{
+    return compute_distance_within_reach(d, lamp->track.x_q8 / 256.0,
+                                         lamp->track.y_q8 / 256.0,
+                                         lamp->track.size_q8, given);
 }
 
 /* Returns the id of the nearest of N detected lamps at the position of GIVEN,
  * or 0 if there is none. */
-static uint32_t find_lamp_under(const struct drawing_run *run, double focal_mm,
+static uint32_t find_lamp_under(const struct drawing *d,
                                 const struct glint_engine_lamp *lamp, int n,
                                 const struct glint_engine_lamp *given)
 {
@@ -447,8 +467,7 @@ static uint32_t find_lamp_under(const struct drawing_run *run, double focal_mm,
     uint32_t id = 0;
 
     for (int i = 0; i < n; i++) {
-        const double distance =
-            compute_distance_within_reach(run, focal_mm, &lamp[i], given);
+        const double distance = compute_distance_from_lamp(d, &lamp[i], given);
 
         if (distance < least) {
             least = distance;
@@ -460,15 +479,42 @@ static uint32_t find_lamp_under(const struct drawing_run *run, double focal_mm,
 
 /* Returns whether a lamp of GIVEN[N] that follows no detected lamp is at the
  * position of LAMP. */
-static bool is_lamp_replaced(const struct drawing_run *run, double focal_mm,
+static bool is_lamp_replaced(const struct drawing *d,
                              const struct glint_engine_lamp *lamp,
                              const struct glint_engine_lamp *given, int n)
 {
     for (int i = 0; i < n; i++)
-        if (given[i].id == 0 && compute_distance_within_reach(
-                                    run, focal_mm, lamp, &given[i]) < HUGE_VAL)
+        if (given[i].id == 0 &&
+            compute_distance_from_lamp(d, lamp, &given[i]) < HUGE_VAL)
             return true;
     return false;
+}
+
+/* If a candidate is at the position of GIVEN, a lamp of --light-at, gives GIVEN
+ * the candidate's centre, colour and extent. */
+static void snap_to_candidate(const struct drawing *d,
+                              struct glint_engine_lamp *given)
+{
+    const struct glint_view *const view = &d->run.view;
+    struct glint_lamp *const lamp = &given->lamp;
+    struct glint_spot spot;
+
+    for (int i = 0; drawing_get_candidate(d, i, &spot); i++) {
+        const double x = spot.x_q8 / 256.0, y = spot.y_q8 / 256.0;
+
+        if (!(compute_distance_within_reach(d, x, y, spot.size_q8, given) <
+              HUGE_VAL))
+            continue;
+        glint_view_to_angles(view, get_lens_focal_mm(d), x, y, lamp);
+        for (int k = 0; k < 2; k++)
+            lamp->axis[k] =
+                glint_view_pixel_tangent(view, get_lens_focal_mm(d)) *
+                fmax(spot.axis_q8[k], spot.size_q8 / 6.0) / 256;
+        lamp->turn_deg = atan2(-spot.sin_q15, spot.cos_q15) * 180 / GLINT_PI;
+        for (int c = 0; c < 3; c++)
+            lamp->rgb[c] = spot.rgb_q15[c] / 32768.0;
+        return;
+    }
 }
 
 /* Sets the ids of the user-defined lamps GIVEN[N]. Those of --light-at come
@@ -483,8 +529,7 @@ static void follow_detected_lamps(struct drawing *d, bool is_video,
 
     for (int i = 0; i < n; i++) {
         if (i < d->line.n_at && !run->is_at_set)
-            run->at_id[i] = find_lamp_under(run, get_lens_focal_mm(d), lamp,
-                                            n_found, &given[i]);
+            run->at_id[i] = find_lamp_under(d, lamp, n_found, &given[i]);
         given[i].id = i < d->line.n_at ? run->at_id[i] : 0;
     }
     run->is_at_set = is_video;
@@ -521,12 +566,14 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
     follow_detected_lamps(d, elapsed_us > 0, lamp, n_found, given, n);
     run->n_found = 0;
     for (int i = 0; i < n_found; i++)
-        if (!is_lamp_replaced(run, get_lens_focal_mm(d), &lamp[i], given, n))
+        if (!is_lamp_replaced(d, &lamp[i], given, n))
             lamp[run->n_found++] = lamp[i];
     n_all = run->n_found;
     for (int i = 0; i < n; i++) {
         if (given[i].id != 0)
             continue;
+        if (i < d->line.n_at)
+            snap_to_candidate(d, &given[i]);
         /* The ids of detected lamps start at 1, so user-defined lamps get other
          * ids, from LAMP_ID_TEXT on. */
         given[i].id = LAMP_ID_TEXT + (uint32_t)i;
@@ -814,6 +861,10 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
     if (status != GLINT_OK)
         return status;
     glint_engine_configure(&cfg, &drawing->line.settings.options);
+    if (drawing->line.show_lights) {
+        cfg.light.by_hand = 1;
+        cfg.light.gain = 0;
+    }
     glint_engine_set_light(run->engine, &cfg.light);
     drawing_start_flare(drawing);
     status = glint_engine_expose(run->engine, run->lamp, run->n_lamps, image,
@@ -857,8 +908,9 @@ static enum glint_status draw_exposed_flare(struct drawing *d,
         return status;
     if (d->line.settings.options.layer != GLINT_LAYER_COMPOSITE)
         paint_set_image_black(image);
-    status = glint_engine_draw(run->engine, run->lamp, run->n_lamps, image,
-                               &run->report);
+    if (!d->line.show_lights)
+        status = glint_engine_draw(run->engine, run->lamp, run->n_lamps, image,
+                                   &run->report);
     drawing_end_flare(run, start);
     return status;
 }
@@ -903,6 +955,9 @@ void drawing_draw_marks(const struct drawing *drawing,
 {
     const struct drawing_line *const line = &drawing->line;
     const struct drawing_run *const run = &drawing->run;
+    struct glint_spot spot;
+    int n_candidates = 0;
+
     if (run->engine && line->settings.options.preview)
         /* Without memory the numbers are omitted. */
         preview_draw_ghost_numbers(run->engine, run->lamp, run->n_lamps,
@@ -913,7 +968,12 @@ void drawing_draw_marks(const struct drawing *drawing,
         return;
     for (int i = 0; i < run->n_lamps; i++)
         draw_lamp_mark(run, get_lens_focal_mm(drawing), i, image);
-    show_mark_legend(image, run->n_found > 0 && run->is_followed);
+    while (drawing_get_candidate(drawing, n_candidates, &spot)) {
+        show_candidate_mark(image, &spot);
+        n_candidates++;
+    }
+    show_mark_legend(image, run->n_found > 0 && run->is_followed,
+                     n_candidates > 0);
 }
 
 bool drawing_has_marks(const struct drawing_line *line)

@@ -65,7 +65,7 @@ struct drawing {
  * Returns an exit code. */
 int drawing_open(const struct tool *tool, struct drawing *drawing);
 
-/* Same as drawing_open(), but rejects --lens none. */
+/* Same as drawing_open(), but rejects --lens none and --show lights. */
 int drawing_open_lens(const struct tool *tool, struct drawing *drawing);
 
 /* Allocates the engine and the scene for pictures of WIDTH x HEIGHT pixels.
@@ -85,9 +85,10 @@ int drawing_open_model(const struct tool *tool, struct drawing *drawing);
 int drawing_fail(const struct tool *tool, const struct drawing *drawing,
                  enum glint_status status);
 
-/* Adds the flare to IMAGE, whose size must be that of drawing_allocate().
- * ELAPSED_US: microseconds since the previous frame; 0: IMAGE is an independent
- * picture. Returns GLINT_E_MEMORY on failure. */
+/* Adds the flare, or with --show lights marks of the lamps, to IMAGE, whose
+ * size must be that of drawing_allocate(). ELAPSED_US: microseconds since the
+ * previous frame; 0: IMAGE is an independent picture. Returns GLINT_E_MEMORY on
+ * failure. */
 enum glint_status drawing_draw_flare(struct drawing *drawing,
                                      const struct glint_image *image,
                                      int32_t elapsed_us);
@@ -129,8 +130,14 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
 enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
                                      float *rgb);
 
-/* Draws on IMAGE the marks of lamps and the time line of a recorded motion, as
- * far as the options request them. */
+/* Sets SPOT to candidate I of the last picture, 0 .. 2: a region that looks
+ * like a lamp but was rejected. Returns false if there is none. Frames of a
+ * video have no candidates. */
+bool drawing_get_candidate(const struct drawing *drawing, int i,
+                           struct glint_spot *spot);
+
+/* Draws on IMAGE the marks of lamps and candidates and the time line of a
+ * recorded motion, as far as the options request them. */
 void drawing_draw_marks(const struct drawing *drawing,
                         const struct glint_image *image);
 

@@ -276,15 +276,15 @@ static void print_hidden_lamps(const struct drawing *drawing, int most,
             describe_picture_without_lamps(drawing));
 }
 
-/* Prints up to three --light-at options that add lamps at the brightest regions
- * that detection rejected. */
-static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
+/* Prints the --light-at options that add lamps at the candidates, of which
+ * there must be one. */
+static void print_lamp_candidates(const struct drawing *drawing, FILE *to)
 {
     struct glint_spot next;
-    const bool is_one = !glint_engine_doubtful(engine, 1, &next);
+    const bool is_one = !drawing_get_candidate(drawing, 1, &next);
 
     fprintf(to, "brightest candidate%s:", is_one ? "" : "s");
-    for (int i = 0; i < 3 && glint_engine_doubtful(engine, i, &next); i++)
+    for (int i = 0; drawing_get_candidate(drawing, i, &next); i++)
         fprintf(to, " --light-at %.0f,%.0f", next.x_q8 / 256.0,
                 next.y_q8 / 256.0);
 }
@@ -292,24 +292,37 @@ static void print_lamp_candidates(const struct glint_engine *engine, FILE *to)
 void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
                                  FILE *to)
 {
-    const bool is_found =
-        !drawing->files.is_listed && drawing->line.n_hand == 0;
     struct glint_spot next;
-    const bool is_next = drawing->run.engine && is_found &&
-                         drawing->run.n_frames <= 1 &&
-                         glint_engine_doubtful(drawing->run.engine, 0, &next);
+    const bool is_next =
+        drawing->run.n_frames <= 1 && drawing_get_candidate(drawing, 0, &next);
 
     fprintf(to, "no light was found, so %s was drawn%s; ",
             describe_picture_without_lamps(drawing),
             is_copied ? " and the file was copied" : "");
     if (is_next)
-        print_lamp_candidates(drawing->run.engine, to);
+        print_lamp_candidates(drawing, to);
     else
         fputs("lower --threshold, or place a lamp by --light-at X,Y", to);
     if (over_scene_has_lights_without_flare(&drawing->files.scene))
         fputs("; 'flare lights' in the scene file makes its lights visible to "
               "the lens",
               to);
+    fputc('\n', to);
+}
+
+/* Prints how many lamps --show lights marked, and the candidates. */
+static void print_marked_lamps(const struct overlay *o, FILE *to)
+{
+    const struct drawing *const drawing = &o->drawing;
+    struct glint_spot next;
+
+    print_lights(drawing, o->figures.most_lights, to);
+    fputs(o->figures.most_lights == 1 ? ", marked" : ", all marked", to);
+    if (drawing->run.n_frames <= 1 &&
+        drawing_get_candidate(drawing, 0, &next)) {
+        fputs("; ", to);
+        print_lamp_candidates(drawing, to);
+    }
     fputc('\n', to);
 }
 
@@ -333,6 +346,10 @@ void overlay_print_summary(const struct overlay *o,
         fputs(", ", to);
     if (o->figures.most_lights == 0) {
         overlay_print_no_lamp_found(drawing, o->is_copied, to);
+        return;
+    }
+    if (drawing->line.show_lights) {
+        print_marked_lamps(o, to);
         return;
     }
     if (are_all_lamps_hidden(drawing, light)) {

@@ -57,7 +57,7 @@ static void draw_lamp_number(const struct paint *p, int x, int y, int half,
     paint_text(p, left, top + 7 * p->line, stops);
 }
 
-static void draw_mark_strokes(const struct paint *p, int x, int y, int half,
+static void draw_lamp_strokes(const struct paint *p, int x, int y, int half,
                               uint32_t id, const char *stops)
 {
     char number[16];
@@ -68,6 +68,12 @@ static void draw_mark_strokes(const struct paint *p, int x, int y, int half,
     draw_lamp_number(p, x, y, half, number, stops);
 }
 
+/* Returns half the width of the box of a lamp with the RMS radius SIZE_Q8. */
+static int compute_half_box(const struct paint *p, int32_t size_q8)
+{
+    return 4 * p->line + (size_q8 >> 7);
+}
+
 /* Draws a mark with a black shadow, by which it is visible on bright lamps. */
 static void draw_shadowed_mark(const struct glint_image *image,
                                const struct glint_lamp_track *track,
@@ -75,12 +81,12 @@ static void draw_shadowed_mark(const struct glint_image *image,
 {
     struct paint p = {.image = image, .line = compute_line_width(image)};
     const int x = track->x_q8 >> 8, y = track->y_q8 >> 8;
-    const int half = 4 * p.line + (track->size_q8 >> 7);
+    const int half = compute_half_box(&p, track->size_q8);
 
     paint_set_colour(&p, 0, 0, 0);
-    draw_mark_strokes(&p, x + p.line, y + p.line, half, track->id, stops);
+    draw_lamp_strokes(&p, x + p.line, y + p.line, half, track->id, stops);
     set_colour_of_state(&p, track->state);
-    draw_mark_strokes(&p, x, y, half, track->id, stops);
+    draw_lamp_strokes(&p, x, y, half, track->id, stops);
 }
 
 void show_lamp_mark(const struct glint_image *image,
@@ -100,6 +106,25 @@ void show_lamp_mark_with_power(const struct glint_image *image,
     draw_shadowed_mark(image, track, stops);
 }
 
+void show_candidate_mark(const struct glint_image *image,
+                         const struct glint_spot *spot)
+{
+    struct paint p = {.image = image, .line = compute_line_width(image)};
+    const int x = spot->x_q8 >> 8, y = spot->y_q8 >> 8;
+    const int half = compute_half_box(&p, spot->size_q8);
+    char place[32];
+
+    snprintf(place, sizeof place, "%.0f,%.0f", spot->x_q8 / 256.0,
+             spot->y_q8 / 256.0);
+    for (int shift = p.line; shift >= 0; shift -= p.line) {
+        const uint8_t code = shift ? 0 : 255;
+
+        paint_set_colour(&p, code, code, code);
+        paint_square_outline(&p, x + shift, y + shift, half);
+        draw_lamp_number(&p, x + shift, y + shift, half, place, "");
+    }
+}
+
 /* ------------------------------------------------------------------ legend */
 
 static const struct {
@@ -111,13 +136,15 @@ static const struct {
               {"LEFT THE PICTURE", GLINT_LAMP_LEAVING}};
 
 static const char words[] = "NUMBER, EV: STOPS OVER A WHITE PIXEL";
+static const char candidate[] = "NO CROSS: CANDIDATE, LIGHT-AT";
 
-void show_mark_legend(const struct glint_image *image, bool followed)
+void show_mark_legend(const struct glint_image *image, bool followed,
+                      bool has_candidates)
 {
     struct paint p = {.image = image, .line = compute_line_width(image)};
     const int margin = 3 * p.line, row = 8 * p.line;
     const int width = paint_text_width(&p, words) + 2 * margin;
-    const int height = (followed ? 3 : 1) * row + margin;
+    const int height = (1 + 2 * followed + has_candidates) * row + margin;
     int x = margin, y = image->height - height + margin;
 
     if (width > image->width || 3 * height > image->height)
@@ -126,6 +153,8 @@ void show_mark_legend(const struct glint_image *image, bool followed)
     paint_fill_rectangle(&p, 0, image->height - height, width, image->height);
     paint_set_colour(&p, 255, 255, 255);
     paint_text(&p, x, y, words);
+    if (has_candidates)
+        paint_text(&p, x, y += row, candidate);
     for (int i = 0; followed && i < 4; i++) {
         if (i % 3 == 0) {
             x = margin;

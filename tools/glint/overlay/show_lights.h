@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Marks lamps on pictures by a cross, a box and a number. Half the width of the
- * box is twice the RMS radius of the lamp plus four line widths.
+ * Marks lamps on pictures by a cross, a box and a number, and candidates by a
+ * box. Half the width of the box is twice the RMS radius of the lamp plus four
+ * line widths.
  */
 #ifndef GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
 #define GLINT_TOOLS_OVERLAY_SHOW_LIGHTS_H
@@ -9,6 +10,7 @@
 #include <stdbool.h>
 
 #include "glint/image.h"
+#include "glint/lamps.h"
 #include "glint/lamp_tracker.h"
 
 /* Draws the mark of TRACK on IMAGE, of any 8-bit format. It is green if the
@@ -23,9 +25,15 @@ void show_lamp_mark_with_power(const struct glint_image *image,
                                const struct glint_lamp_track *track,
                                double power);
 
+/* Draws the mark of SPOT, which may be a lamp, in white: a box, and the
+ * position for --light-at beside it. */
+void show_candidate_mark(const struct glint_image *image,
+                         const struct glint_spot *spot);
+
 /* Draws a legend in the lower left corner: the meaning of the numbers and, if
- * FOLLOWED (lamps are tracked), of the colours. Draws nothing if the picture is
- * too small. */
-void show_mark_legend(const struct glint_image *image, bool followed);
+ * FOLLOWED (lamps are tracked), of the colours, and, if HAS_CANDIDATES, of
+ * boxes without a cross. Draws nothing if the picture is too small. */
+void show_mark_legend(const struct glint_image *image, bool followed,
+                      bool has_candidates);
 
 #endif
