@@ -70,7 +70,7 @@ struct glint_explain_part {
     /* Light in the picture (flux), and its fraction of the light of the frame
      * (share). */
     double flux, share;
-    double brightest; /* light of the brightest pixel, mean of R, G and B */
+    double brightest; /* light of the brightest pixel, in its largest channel */
     /* Bounding box of the pixels that receive light; x0 > x1: there are none.
      */
     int x0, y0, x1, y1;

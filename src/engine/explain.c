@@ -151,14 +151,15 @@ static void measure_part_light(struct glint_explain *e,
 {
     const struct glint_view *view = &e->frame->view;
     const int32_t *px = e->linear_q20;
-    int64_t sum = 0, most = 0;
+    int64_t sum = 0;
+    int32_t most = 0;
 
     part->x0 = view->width;
     part->y0 = view->height;
     part->x1 = part->y1 = -1;
     for (int y = 0; y < view->height; y++)
         for (int x = 0; x < view->width; x++, px += 3) {
-            const int64_t here = (int64_t)px[0] + px[1] + px[2];
+            const int32_t here = max_int(px[0], max_int(px[1], px[2]));
 
             if ((px[0] | px[1] | px[2]) == 0)
                 continue;
@@ -167,12 +168,12 @@ static void measure_part_light(struct glint_explain *e,
             part->y0 = min_int(part->y0, y);
             part->x1 = max_int(part->x1, x);
             part->y1 = max_int(part->y1, y);
-            sum += here;
+            sum += (int64_t)px[0] + px[1] + px[2];
             most = here > most ? here : most;
         }
     part->tiles = e->lens ? glint_flare_tiles(e->frame->memory.flare) : 0;
     part->flux = (double)sum / 3 * 0x1p-20 * e->unit;
-    part->brightest = (double)most / 3 * 0x1p-20 * e->unit;
+    part->brightest = most * 0x1p-20 * e->unit;
 }
 
 /* Progress of drawing the parts of a frame one by one. */
@@ -247,20 +248,31 @@ static enum glint_status measure_ghosts_and_sum(struct parts *p)
     return status;
 }
 
-/* Draws and measures the lights of lamp LAMP, and measures their sum. */
+/* Draws and measures the lights of lamp LAMP, and measures their sum. A single
+ * light is its own sum, and the light of a single lamp is that of the frame. */
 static enum glint_status measure_lights_of_lamp(struct parts *p, int lamp)
 {
     struct glint_explain *const e = p->e;
     enum glint_status status = GLINT_OK;
+    int n = 0;
+    bool has_sum;
 
-    memset(p->sum, 0, count_frame_samples(e) * sizeof *p->sum);
+    for (int i = 0; i < e->n_lights; i++)
+        n += e->lamp_of[i] == lamp;
+    has_sum = n > 1 && e->n_lamps > 1;
+    if (has_sum)
+        memset(p->sum, 0, count_frame_samples(e) * sizeof *p->sum);
     for (int i = 0; i < e->n_lights && status == GLINT_OK; i++) {
         if (e->lamp_of[i] != lamp)
             continue;
         status = draw_and_measure_part(p, &e->light[i], -1, i, -1);
-        add_part_to_sum(p, &e->light[i]);
+        if (has_sum)
+            add_part_to_sum(p, &e->light[i]);
+        else if (n == 1)
+            e->lamp[lamp] = e->light[i];
     }
-    measure_sum_of_parts(p, &e->lamp[lamp]);
+    if (has_sum)
+        measure_sum_of_parts(p, &e->lamp[lamp]);
     return status;
 }
 
@@ -284,14 +296,16 @@ static enum glint_status draw_and_measure_all_parts(struct parts *p)
                count_drawn_parts(e->wave, e->n_waves) + (e->lens ? 1 : 0);
     status = measure_ghosts_and_sum(p);
     if (is_only_light)
-        e->light[0] = e->lamp[0] = e->all;
+        e->light[0] = e->all;
     for (int i = 0; i < e->n_lamps && !is_only_light && status == GLINT_OK; i++)
         status = measure_lights_of_lamp(p, i);
     for (int i = 0; i < e->n_waves && status == GLINT_OK; i++)
         status = draw_and_measure_part(p, &e->wave[i], -1, -1, i);
-    if (!e->lens || status != GLINT_OK)
-        return status;
-    return draw_and_measure_part(p, &e->all, -1, -1, -1);
+    if (e->lens && status == GLINT_OK)
+        status = draw_and_measure_part(p, &e->all, -1, -1, -1);
+    if (e->n_lamps == 1)
+        e->lamp[0] = e->all;
+    return status;
 }
 
 static void set_part_fractions_of_total(const struct glint_explain *e,

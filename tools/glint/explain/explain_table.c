@@ -32,7 +32,7 @@ static const struct {
     [GLINT_OUTCOME_OTHER_SET] = {"other_set",
                                  "drawn with another set of wavelengths"},
     [GLINT_OUTCOME_SHARED] = {"shared",
-                              "faint: drawn with the rays of a nearby light"},
+                              "drawn with the rays of a nearby light"},
 };
 
 const char *explain_outcome_reason(enum glint_outcome outcome)
@@ -162,6 +162,9 @@ static void print_ghost_rows(const struct glint_explain *e,
 {
     int n = 0;
 
+    if (e->n_lamps > 1)
+        printf("\nsize and centre span the images that a ghost forms of all "
+               "lights\n");
     print_table_heading(e, "ghost surfaces  size, pixels       centre");
     for (int i = 0; i < e->n_ghosts; i++) {
         const struct glint_explain_part *p = &e->ghost[ghosts[i]];
@@ -203,22 +206,32 @@ static void print_ghost_numbers(const struct glint_explain *e,
     printf("\n");
 }
 
+/* Prints the ghosts with OUTCOME, if there are any. */
+static void print_ghosts_with_outcome(const struct glint_explain *e,
+                                      enum glint_outcome outcome)
+{
+    int n = 0;
+
+    for (int i = 0; i < e->n_ghosts; i++)
+        n += e->ghost[i].of[outcome] > 0;
+    if (e->all.of[outcome] == 0)
+        return;
+    printf("%-41s %7d ", outcomes[outcome].reason, n);
+    print_ghost_numbers(e, outcome, WIDE - 50);
+}
+
 static void print_ghosts_left_out(const struct glint_explain *e)
 {
     printf("\n%-41s %7s\n",
            e->n_lights > 1 ? "not drawn, for one light or more" : "not drawn",
            "ghosts");
-    for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES;
-         outcome++) {
-        int n = 0;
-
-        for (int i = 0; i < e->n_ghosts; i++)
-            n += e->ghost[i].of[outcome] > 0;
-        if (e->all.of[outcome] == 0)
-            continue;
-        printf("%-41s %7d ", outcomes[outcome].reason, n);
-        print_ghost_numbers(e, (enum glint_outcome)outcome, WIDE - 50);
-    }
+    for (int outcome = GLINT_OUTCOME_EMPTY; outcome < GLINT_OUTCOMES; outcome++)
+        if (outcome != GLINT_OUTCOME_SHARED)
+            print_ghosts_with_outcome(e, (enum glint_outcome)outcome);
+    if (e->all.of[GLINT_OUTCOME_SHARED])
+        printf("\n%-41s %7s\n", "drawn, but faint, for one light or more",
+               "ghosts");
+    print_ghosts_with_outcome(e, GLINT_OUTCOME_SHARED);
 }
 
 static void print_invalid_lights(const struct glint_explain *e,
