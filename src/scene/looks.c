@@ -116,7 +116,7 @@ enum glint_status glint_scene_set_material(struct glint_scene *scene,
     if (!has_translucency_map(&scene->model, p, (uint32_t)material))
         return GLINT_E_ARGUMENT;
     p->material = (uint32_t)material;
-    p->is_split = m->reflect_q15 || m->pass_q15;
+    p->is_split = !p->is_catcher && (m->reflect_q15 || m->pass_q15);
     scene->has_split |= p->is_split;
     return GLINT_OK;
 }

@@ -155,16 +155,6 @@ static void count_shading_work_of_point(const struct account *a, uint32_t id,
         count_secondary_rays(s, &ray, &surface, part);
 }
 
-/* Returns whether object or triangle ID is shaded at each sample, not once per
- * pixel. */
-static int is_shaded_per_sample(const struct glint_scene *s, uint32_t id)
-{
-    const struct glint_scene_material *m =
-        &s->model.material[s->placed[id >> 20].material];
-
-    return m->reflect_q15 || m->pass_q15;
-}
-
 static int do_ids_name_same_object(uint32_t a, uint32_t b)
 {
     return a != GLINT_NOTHING && (a ^ b) >> 20 == 0;
@@ -218,9 +208,9 @@ static void count_work_of_pixel(const struct account *a,
         if (i == k)
             a->objects[id[k] >> 20].count[GLINT_SCENE_COVERING]++;
         if (quad ? k > 0 || ((x | y) & 1)
-                 : i != k && !is_shaded_per_sample(s, id[k]))
+                 : i != k && !s->placed[id[k] >> 20].is_split)
             continue;
-        if (is_shaded_per_sample(s, id[k]) && !quad)
+        if (s->placed[id[k] >> 20].is_split && !quad)
             count_shading_work_of_point(a, id[k],
                                         x_q8 + glint_sample_offset_q8(s, k, 0),
                                         y_q8 + glint_sample_offset_q8(s, k, 1));

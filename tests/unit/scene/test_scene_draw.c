@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "glint/flare.h"
+#include "glint/scene/account.h"
 #include "scene/state.h"
 #include "support/model_builder.h"
 #include "support/models/scene_builder.h"
@@ -766,4 +767,29 @@ TEST(shadows_hide_no_lamps)
     for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
         n_dark += px[i] < alone[i];
     assert_true(n_dark > 100);
+}
+
+/* Checks that a shadow catcher, which has no material, does not depend on the
+ * material at index 0: neither in the image nor in the number of shaded
+ * points. */
+TEST(catcher_has_no_material)
+{
+    static uint8_t px[2][BYTES];
+    int64_t shaded[2];
+
+    make_scene_of_all_objects();
+    file.object[2].catcher_q15 = 32768;
+    for (int k = 0; k < 2; k++) {
+        struct glint_scene_config cfg = make_scene_config();
+        static struct glint_scene_part objects[SCENE_PARTS], all;
+
+        file.object[2].material = k ? 1 : 0;
+        draw_scene(cfg, GLINT_RGB24, 1, 1, px[k]);
+        glint_scene_account(scene_init_renderer(&file, &cfg, NULL), objects,
+                            &all, NULL);
+        shaded[k] = objects[2].count[GLINT_SCENE_SHADED];
+    }
+    assert_true(shaded[0] > 100);
+    assert_int_equal(shaded[0], shaded[1]);
+    assert_memory_equal(px[0], px[1], BYTES);
 }
