@@ -181,6 +181,27 @@ void glint_scene_aim_at_light_point(struct glint_scene_ray *ray, int32_t t,
     aim_at_disc_point(ray, u_q30, v_q30, t, radius, i, n);
 }
 
+/* Returns whether no object can hide any point of the disc of a light from
+ * SURFACE, and all of its points are in front of SURFACE. AXIS is the ray from
+ * SURFACE to the middle of the disc. */
+static int is_disc_fully_visible(const struct glint_scene *scene,
+                                 const struct glint_met_surface *surface,
+                                 const struct glint_scene_ray *axis,
+                                 int32_t distance, int32_t radius)
+{
+    enum { SLACK = 16 }; /* tolerance for rounding errors, 2^-30 */
+    int32_t slope_q30;
+
+    if (radius >= distance)
+        return 0;
+    slope_q30 =
+        glint_divide_rounded((uint64_t)radius << 30, (uint64_t)distance) + 1;
+    return v3_cosine_q30(axis->toward_q30, surface->face_q30) >
+               slope_q30 + SLACK &&
+           !glint_scene_can_cone_be_blocked(scene, axis, surface->object,
+                                            distance, slope_q30);
+}
+
 int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
                                 const struct glint_met_surface *surface,
                                 const struct glint_lit *lit)
@@ -196,8 +217,11 @@ int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
     glint_scene_set_ray_start(scene, surface, middle.at);
     distance = glint_scene_compute_light_at(scene, lit, middle.at,
                                             middle.toward_q30, level_q15);
-    if (n > 1)
+    if (n > 1) {
+        if (is_disc_fully_visible(scene, surface, &middle, distance, radius))
+            return GLINT_SCENE_ONE_Q15;
         glint_scene_find_perpendicular_vectors(middle.toward_q30, u_q30, v_q30);
+    }
     for (int i = 0; i < n; i++) {
         struct glint_scene_ray to = middle;
 

@@ -347,6 +347,14 @@ int glint_scene_is_ray_blocked(const struct glint_scene *scene,
                                uint32_t object, uint32_t triangle,
                                int32_t limit);
 
+/* Returns 0 if no object can block any ray of a cone. The cone starts at AXIS,
+ * ends at distance T along it, and has the half angle atan(SLOPE_Q30), at most
+ * 45 degrees. Skips the same objects as glint_scene_find_nearest_hit(). */
+int glint_scene_can_cone_be_blocked(const struct glint_scene *scene,
+                                    const struct glint_scene_ray *axis,
+                                    uint32_t object, int32_t t,
+                                    int32_t slope_q30);
+
 /* Returns whether RAY hits any plane that casts shadows, other than OBJECT. */
 int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
                                         const struct glint_scene_ray *ray,

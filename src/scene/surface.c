@@ -102,6 +102,49 @@ int glint_scene_is_ray_blocked(const struct glint_scene *scene,
     return 0;
 }
 
+/* Returns whether object P may touch the cone of rays (state.h). P's bounding
+ * sphere decides; its distance from the cone's axis is |L x D|, where L is the
+ * vector from the cone's tip to the sphere's centre, and D the axis. */
+static int can_object_touch_cone(const struct glint_placed *p,
+                                 const struct glint_scene_ray *axis, int32_t t,
+                                 int32_t slope_q30)
+{
+    enum { SLACK = 16 }; /* tolerance for rounding errors, steps */
+    const int64_t reach = p->reach + SLACK;
+    int64_t across_q30[3], along, limit, square = 0;
+    int32_t to[3];
+
+    if (p->object->kind == GLINT_OBJECT_PLANE)
+        return 1;
+    v3_subtract(p->centre, axis->at, to);
+    along = q_shift(v3_dot(to, axis->toward_q30), 30);
+    if (along + reach < 0 || along - reach > t)
+        return 0;
+    limit = reach + q_shift((along + reach) * slope_q30, 30);
+    v3_cross(to, axis->toward_q30, across_q30);
+    for (int k = 0; k < 3; k++) {
+        const int64_t x = q_shift(across_q30[k], 30);
+
+        square += x * x; /* below 3 * 2^60 */
+    }
+    return square <= limit * limit; /* LIMIT is below 2^31 */
+}
+
+int glint_scene_can_cone_be_blocked(const struct glint_scene *scene,
+                                    const struct glint_scene_ray *axis,
+                                    uint32_t object, int32_t t,
+                                    int32_t slope_q30)
+{
+    const uint32_t n = scene->model.header->n_objects;
+
+    glint_scene_count_ray_tests(scene, n);
+    for (uint32_t i = 0; i < n; i++)
+        if (can_ray_hit_object(scene, i, object) &&
+            can_object_touch_cone(&scene->placed[i], axis, t, slope_q30))
+            return 1;
+    return 0;
+}
+
 int glint_scene_is_ray_blocked_by_plane(const struct glint_scene *scene,
                                         const struct glint_scene_ray *ray,
                                         uint32_t object)

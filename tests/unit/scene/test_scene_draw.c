@@ -503,6 +503,51 @@ TEST(shadow_grid_equals_brute_force)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
+/* Checks that the visible fraction of a lamp equals that of rays to all points
+ * of the lamp, also where a single test finds that no object can hide the lamp.
+ */
+TEST(lamp_is_as_visible_as_its_points)
+{
+    struct glint_scene_config cfg = make_scene_config();
+    struct glint_scene_stats stats;
+    uint32_t seed = 1;
+    int lit = 0, partly = 0;
+
+    make_scene_of_all_objects();
+    file.object[2].catcher_q15 = 20000;
+    file.light[1].radius = UNIT;
+    for (cfg.shadow_points = 4; cfg.shadow_points <= 16;
+         cfg.shadow_points *= 4) {
+        const struct glint_scene *s = scene_init_renderer(&file, &cfg, &stats);
+        const int n = cfg.shadow_points;
+
+        for (int i = 0; i < 20000; i++) {
+            struct glint_met_surface surface;
+            struct glint_scene_ray ray = {.at = {0}};
+            int32_t level_q15[3], share_q15, t;
+            int reached = 0;
+
+            set_random_surface_point(&seed, &surface);
+            memcpy(ray.at, surface.place, sizeof ray.at);
+            t = glint_scene_compute_light_at(s, &s->lit[1], ray.at,
+                                             ray.toward_q30, level_q15);
+            for (int k = 0; k < n; k++) {
+                struct glint_scene_ray to = ray;
+
+                glint_scene_aim_at_light_point(&to, t, UNIT, k, n);
+                reached += v3_dot(to.toward_q30, surface.face_q30) > 0 &&
+                           !glint_scene_is_ray_blocked(s, &to, 2, 0, t);
+            }
+            share_q15 = glint_scene_lit_fraction(s, &surface, &s->lit[1]);
+            assert_int_equal(share_q15, 32768 / n * reached);
+            lit += reached == n;
+            partly += reached > 0 && reached < n;
+        }
+    }
+    print_message("%d lit, %d partly\n", lit, partly);
+    assert_true(lit > 10000 && partly > 1000);
+}
+
 /* Checks a square mesh perpendicular to each axis in turn, which coincides with
  * a side of its triangle grid. For points behind it, on either side, it must
  * occlude a lamp. */
