@@ -3,20 +3,40 @@
  * Traces reflected and transmitted rays: one reflection per ray, and at most
  * eight transmitting surfaces in a row.
  *
- * A ray that enters a sphere leaves it at the other end of its chord, at the
- * angle of entry, so total reflection inside does not occur. If the refractive
- * index is 1, rays are not bent. Behind the last object such rays let the
- * picture show through unchanged. Bent and reflected rays see the background's
- * colour, the environment, or the camera's picture. The picture is extended to
- * all directions: directions outside the field of view read it mirrored at its
- * edge. */
+ * A ray that has entered a sphere continues to the nearest surface: an object
+ * inside the sphere, or the sphere's far side. Light and transmittance of a
+ * sphere are those of the surface by which the ray enters. Snell's law takes
+ * the refractive index on each side of a surface from the objects that the ray
+ * has entered and not left. Behind the last object, rays that were never bent
+ * let the picture show through unchanged. Bent and reflected rays see the
+ * background's colour, the environment, or the camera's picture. The picture is
+ * extended to all directions: directions outside the field of view read it
+ * mirrored at its edge. */
 #include "scene/parts.h"
 #include "scene/state.h"
+
+enum {
+    AIR_Q16 = 1 << 16, /* refractive index outside all objects */
+    /* Min half length, in the unit of chords, of a chord whose ends lie clearly
+     * on both sides of its middle. */
+    LEAST_HALF = 8
+};
+
+/* The objects that a ray has entered and not left, in the order of entry. The
+ * ray runs in the medium of the last one. */
+struct media {
+    int n;
+    uint32_t object[GLINT_SCENE_PASSES];
+    int32_t index_q16[GLINT_SCENE_PASSES]; /* refractive indices */
+};
 
 /* A ray after reflection or refraction, and the surface that it starts from. */
 struct passing {
     struct glint_scene_ray ray;
     uint32_t object, triangle;
+    int is_in_sphere; /* 1: the ray starts on the sphere OBJECT and runs through
+                         the sphere's inside */
+    struct media media;
     int32_t weight_q15; /* fraction of this ray's light that reaches the
                            pixel */
     int is_bent; /* 1: its direction differs from that of the primary ray */
@@ -29,16 +49,18 @@ static void start_secondary_ray(const struct glint_scene *s,
                                 const struct glint_met_surface *surface,
                                 int beyond, struct passing *p)
 {
-    const int is_mesh =
-        s->placed[surface->object].object->kind == GLINT_OBJECT_MESH;
-    const int lift =
-        is_mesh ? beyond ? -GLINT_SCENE_LIFT : GLINT_SCENE_LIFT : 0;
+    const uint32_t kind = s->placed[surface->object].object->kind;
+    const int lift = kind != GLINT_OBJECT_MESH ? 0
+                     : beyond                  ? -GLINT_SCENE_LIFT
+                                               : GLINT_SCENE_LIFT;
 
     for (int k = 0; k < 3; k++)
         p->ray.at[k] =
             surface->place[k] + q_mul(surface->face_q30[k], lift, 30);
     p->object = surface->object;
     p->triangle = surface->triangle;
+    p->is_in_sphere =
+        kind == GLINT_OBJECT_SPHERE && surface->is_inside != beyond;
 }
 
 /* Sets RGB to the light of the camera's picture in the direction of P. Let (x,
@@ -56,7 +78,7 @@ static void sample_camera_picture(const struct glint_scene *s,
     const int64_t tan_y_q24 = q_shift(v->step_q56[1] * v->height, 25);
     const int64_t both_q24 = q_shift(tan_x_q24 * tan_y_q24, 24);
     int64_t x, y, z, most, over;
-    int32_t seen_q30[3], half_q15[2];
+    int32_t seen_q30[3] = {0}, half_q15[2];
 
     v3_rotate(&v->turn, p->ray.toward_q30, seen_q30);
     /* x, y and z are multiplied by both tangents, which scales x and y without
@@ -93,85 +115,158 @@ static void add_background_light(const struct glint_scene *s,
             GLINT_SCENE_MOST_LIGHT);
 }
 
-static int find_next_surface(const struct glint_scene *s,
-                             const struct passing *p,
-                             struct glint_met_surface *next)
-{
-    struct glint_met met;
+/* ------------------------------------------------------------------- media */
 
-    return glint_scene_find_nearest_hit(s, &p->ray, p->object, p->triangle,
-                                        &met) &&
-           glint_scene_find_surface_at_hit(s, &p->ray, &met, next);
+static int32_t get_refractive_index_q16(const struct media *media)
+{
+    return media->n ? media->index_q16[media->n - 1] : AIR_Q16;
 }
 
-/* Refracts the ray P at SURFACE and returns 0; or, at total reflection,
- * reflects P and returns 1. */
-static int refract_ray(const struct glint_met_surface *surface,
-                       uint32_t index_q16, struct passing *p)
+/* Returns the position of OBJECT in MEDIA, or -1 if it is not there. */
+static int find_entered_object(const struct media *media, uint32_t object)
 {
-    /* refractive index in front of the surface / index behind it: 1 / INDEX if
-     * the ray enters the object, INDEX if it leaves */
-    const uint32_t eta_q28 =
-        surface->is_inside
-            ? index_q16 << 12
-            : (uint32_t)glint_divide_rounded(UINT64_C(1) << 44, index_q16);
-    int32_t to_q30[3];
+    int i = media->n - 1;
 
-    if (!glint_bend(p->ray.toward_q30, surface->normal_q30, eta_q28, to_q30)) {
-        glint_reflect_direction(p->ray.toward_q30, surface->normal_q30,
-                                p->ray.toward_q30);
+    while (i >= 0 && media->object[i] != object)
+        i--;
+    return i;
+}
+
+/* MEDIA must have room: a ray enters at most GLINT_SCENE_PASSES objects. */
+static void enter_object(struct media *media, uint32_t object,
+                         int32_t index_q16)
+{
+    media->object[media->n] = object;
+    media->index_q16[media->n++] = index_q16;
+}
+
+/* Removes the object at position AT; does nothing if AT is -1. */
+static void leave_object(struct media *media, int at)
+{
+    if (at < 0)
+        return;
+    for (media->n--; at < media->n; at++) {
+        media->object[at] = media->object[at + 1];
+        media->index_q16[at] = media->index_q16[at + 1];
+    }
+}
+
+/* Returns whether SURFACE is the inner side of a sphere that P has entered. P
+ * leaves it without loss, and gets no light there. */
+static int does_ray_leave_sphere(const struct glint_scene *s,
+                                 const struct passing *p,
+                                 const struct glint_met_surface *surface)
+{
+    return surface->is_inside &&
+           s->placed[surface->object].object->kind == GLINT_OBJECT_SPHERE &&
+           find_entered_object(&p->media, surface->object) >= 0;
+}
+
+/* --------------------------------------------------------- transmitted rays */
+
+/* Finds the far side of the sphere through which P runs. If P only grazes the
+ * sphere, returns 0, and P leaves the sphere unbent. */
+static int find_far_side_of_sphere(const struct glint_scene *s,
+                                   struct passing *p, struct glint_met *met)
+{
+    const struct glint_placed *ball = &s->placed[p->object];
+
+    *met = (struct glint_met){.object = p->object, .end = 1};
+    if (glint_ray_intersect_sphere(&p->ray, ball->at, ball->radius,
+                                   &met->chord) &&
+        met->chord.half >= LEAST_HALF) {
+        met->t = met->chord.t[1];
         return 1;
     }
-    for (int k = 0; k < 3; k++)
-        p->ray.toward_q30[k] = to_q30[k];
+    leave_object(&p->media, find_entered_object(&p->media, p->object));
     return 0;
 }
 
-/* Moves P through the sphere that it has entered to the point where it leaves
- * the sphere. */
-static void move_ray_through_sphere(const struct glint_scene *s,
-                                    const struct glint_met_surface *surface,
-                                    int is_straight, struct passing *p)
+static int find_next_surface(const struct glint_scene *s, struct passing *p,
+                             struct glint_met_surface *next)
 {
-    const struct glint_placed *ball = &s->placed[surface->object];
-    struct glint_met_surface end = *surface;
-    struct glint_chord chord;
+    struct glint_met met, end;
+    int any =
+        glint_scene_find_nearest_hit(s, &p->ray, p->object, p->triangle, &met);
 
-    if (!glint_ray_intersect_sphere(&p->ray, ball->at, ball->radius, &chord))
-        return; /* a grazing ray leaves the sphere at the point where it
-                   enters */
-    glint_chord_set_end_point_and_normal(&chord, &p->ray, ball->at, 1,
-                                         end.place, end.normal_q30);
-    for (int k = 0; k < 3; k++)
-        end.normal_q30[k] = -end.normal_q30[k];
-    end.is_inside = 1;
-    if (!is_straight)
-        refract_ray(&end, (uint32_t)surface->material->index_q16, p);
-    start_secondary_ray(s, &end, 1, p);
+    if (p->is_in_sphere && find_far_side_of_sphere(s, p, &end) &&
+        (!any || end.t <= met.t)) {
+        met = end;
+        any = 1;
+    }
+    return any && glint_scene_find_surface_at_hit(s, &p->ray, &met, next);
 }
 
-/* Continues the ray P behind SURFACE, or in front of it after total reflection,
- * and multiplies its weight by the transmitted fraction. */
-static void continue_ray_behind_surface(const struct glint_scene *s,
-                                        const struct glint_met_surface *surface,
-                                        struct passing *p)
+/* Refracts P at SURFACE, between media of the given refractive indices, and
+ * returns 1; at total reflection reflects P and returns 0. */
+static int refract_ray(const struct glint_met_surface *surface,
+                       int32_t before_q16, int32_t behind_q16,
+                       struct passing *p)
 {
-    const struct glint_scene_material *m = surface->material;
-    const int is_straight = m->index_q16 == 1 << 16;
-    const int is_sphere =
-        s->placed[surface->object].object->kind == GLINT_OBJECT_SPHERE;
-    int is_mirrored = 0;
+    /* Both indices are 1/4 to 4, so their quotient is at most 16. */
+    const int64_t eta_q28 = q_shift(
+        (int64_t)glint_divide_rounded(UINT64_C(1) << 44, (uint64_t)behind_q16) *
+            before_q16,
+        16);
+    int32_t to_q30[3];
 
-    p->weight_q15 = q_mul(p->weight_q15, m->pass_q15, 15);
-    p->is_bent |= !is_straight;
-    if (!is_straight)
-        is_mirrored = refract_ray(surface, (uint32_t)m->index_q16, p);
-    start_secondary_ray(s, surface, !is_mirrored, p);
-    if (is_sphere && surface->is_inside && is_mirrored)
-        /* light that is totally reflected never leaves a ball */
-        p->weight_q15 = 0;
-    else if (is_sphere && !surface->is_inside && !is_mirrored)
-        move_ray_through_sphere(s, surface, is_straight, p);
+    p->is_bent = 1;
+    if (!glint_bend(p->ray.toward_q30, surface->normal_q30,
+                    eta_q28 < UINT32_MAX ? (uint32_t)eta_q28 : UINT32_MAX,
+                    to_q30)) {
+        glint_reflect_direction(p->ray.toward_q30, surface->normal_q30,
+                                p->ray.toward_q30);
+        return 0;
+    }
+    for (int k = 0; k < 3; k++)
+        p->ray.toward_q30[k] = to_q30[k];
+    return 1;
+}
+
+/* Moves P to the medium behind SURFACE and returns 1; at total reflection
+ * returns 0. If P leaves an object other than the one that it entered last, the
+ * medium stays the same. */
+static int cross_surface(const struct glint_met_surface *surface,
+                         struct passing *p)
+{
+    const int at = find_entered_object(&p->media, surface->object);
+    const int32_t index_q16 = surface->material->index_q16;
+    struct media behind = p->media;
+    int32_t before_q16 = get_refractive_index_q16(&behind), behind_q16;
+
+    if (!surface->is_inside) {
+        enter_object(&behind, surface->object, index_q16);
+    } else {
+        leave_object(&behind, at);
+        if (at < 0)
+            before_q16 = index_q16;
+    }
+    behind_q16 = get_refractive_index_q16(&behind);
+    if (before_q16 != behind_q16 &&
+        !refract_ray(surface, before_q16, behind_q16, p)) {
+        if (surface->is_inside && at < 0)
+            enter_object(&p->media, surface->object, index_q16);
+        return 0;
+    }
+    p->media = behind;
+    return 1;
+}
+
+/* Continues the ray P behind SURFACE, and multiplies its weight by the
+ * transmitted fraction; or in front of it after total reflection, which loses
+ * no light. Returns 1 if P leaves a sphere, which does not count as a
+ * transmitting surface. */
+static int continue_ray_at_surface(const struct glint_scene *s,
+                                   const struct glint_met_surface *surface,
+                                   struct passing *p)
+{
+    const int is_end = does_ray_leave_sphere(s, p, surface);
+    const int is_beyond = cross_surface(surface, p);
+
+    if (is_beyond && !is_end)
+        p->weight_q15 = q_mul(p->weight_q15, surface->material->pass_q15, 15);
+    start_secondary_ray(s, surface, is_beyond, p);
+    return is_end && is_beyond;
 }
 
 /* Returns the angular variance of a pixel's rays, radians^2, after reflection
@@ -219,8 +314,9 @@ static void add_secondary_light(const struct glint_scene *s,
 
     if (at.material->reflect_q15)
         trace_reflected_ray(s, &p, &at, shade->rgb_q15);
-    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
-        continue_ray_behind_surface(s, &at, &p);
+    for (int i = 0, is_end = 0;
+         i < GLINT_SCENE_PASSES + is_end && at.material->pass_q15;) {
+        i += !continue_ray_at_surface(s, &at, &p);
         if (p.weight_q15 == 0)
             return;
         if (!find_next_surface(s, &p, &at)) {
@@ -233,8 +329,10 @@ static void add_secondary_light(const struct glint_scene *s,
                 add_background_light(s, &p, shade->rgb_q15);
             return;
         }
-        glint_scene_add_phong_light(s, &p.ray, &at, p.weight_q15,
-                                    shade->rgb_q15);
+        is_end = does_ray_leave_sphere(s, &p, &at);
+        if (!is_end)
+            glint_scene_add_phong_light(s, &p.ray, &at, p.weight_q15,
+                                        shade->rgb_q15);
     }
 }
 

@@ -122,9 +122,15 @@ static void count_secondary_rays(const struct glint_scene *s,
         at = *surface;
         on = *ray;
     }
-    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++)
+    for (int i = 0; i < GLINT_SCENE_PASSES && at.material->pass_q15; i++) {
+        /* a ray that enters a sphere searches for a surface inside it, too */
+        if (s->placed[at.object].object->kind == GLINT_OBJECT_SPHERE) {
+            part->count[GLINT_SCENE_BOUNCED]++;
+            glint_scene_count_ray_tests(s, s->model.header->n_objects);
+        }
         if (!trace_ray_to_next_surface(s, &on, &at, part))
             return;
+    }
 }
 
 /* Counts the work of shading object or triangle ID at position (X, Y), pixels

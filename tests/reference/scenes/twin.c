@@ -280,69 +280,111 @@ static void reflect_direction(const double d[3], const double n[3],
     vec_add_scaled(d, -2 * vec_dot(d, n), n, to);
 }
 
+/* Transparent objects in which a ray may be at once; it enters at most eight.
+ */
+#define MAX_ENTERED 8
+
 /* A ray on its way through transparent objects. */
 struct passing {
     struct twin_ray ray;
     /* fraction of the next object's light that reaches the viewer */
     double weight;
     bool is_bent; /* true: refraction has changed the ray's direction */
+    /* Objects that the ray is in, and their refractive indices. The medium is
+     * that of the last one. */
+    int n_entered, entered[MAX_ENTERED];
+    double index[MAX_ENTERED];
 };
 
-/* Refracts RAY at a surface; at total reflection mirrors it instead. Returns
- * whether it was mirrored. */
-static bool refract_or_reflect(struct twin_ray *ray, const double normal[3],
-                               double eta)
+static double get_medium_index(const struct passing *p)
 {
-    const double d[3] = {ray->toward[0], ray->toward[1], ray->toward[2]};
-
-    if (refract_direction(d, normal, eta, ray->toward))
-        return false;
-    reflect_direction(d, normal, ray->toward);
-    return true;
+    return p->n_entered > 0 ? p->index[p->n_entered - 1] : 1;
 }
 
-/* Moves P from HIT, where it enters a ball, to the point where it leaves the
- * ball. */
-static void move_to_ball_exit(const struct twin *twin,
-                              const struct twin_hit *hit, double index,
-                              struct passing *p)
+static bool is_inside_object(const struct passing *p, int object)
 {
-    const struct glint_described_object *o = &twin->scene->object[hit->object];
-    const double inward = -vec_dot(p->ray.toward, hit->normal);
-    double back[3];
-
-    vec_add_scaled(hit->place, 2 * inward * o->radius, p->ray.toward,
-                   p->ray.from);
-    vec_add_scaled(o->at, -1, p->ray.from, back);
-    vec_normalise(back);
-    if (index != 1)
-        refract_or_reflect(&p->ray, back, index);
+    for (int i = 0; i < p->n_entered; i++)
+        if (p->entered[i] == object)
+            return true;
+    return false;
 }
 
-/* Moves P through the surface at HIT: for a ball, to the point where P leaves
- * it; otherwise just behind the surface. */
-static void pass_through_surface(const struct twin *twin,
+static void enter_object(struct passing *p, int object, double index)
+{
+    p->entered[p->n_entered] = object;
+    p->index[p->n_entered++] = index;
+}
+
+/* Removes the last entry of OBJECT. */
+static void leave_object(struct passing *p, int object)
+{
+    int at = p->n_entered - 1;
+
+    while (at > 0 && p->entered[at] != object)
+        at--;
+    p->n_entered--;
+    for (; at < p->n_entered; at++) {
+        p->entered[at] = p->entered[at + 1];
+        p->index[at] = p->index[at + 1];
+    }
+}
+
+/* Returns whether HIT is the inner side of a ball that P has entered: P leaves
+ * it without loss. */
+static bool is_ball_exit(const struct twin *twin, const struct passing *p,
+                         const struct twin_hit *hit)
+{
+    return hit->inside &&
+           twin->scene->object[hit->object].kind == GLINT_DESCRIBED_SPHERE &&
+           is_inside_object(p, hit->object);
+}
+
+/* Moves P through the surface at HIT, or mirrors it there. Returns whether P
+ * has left a ball. */
+static bool pass_through_surface(const struct twin *twin,
                                  const struct twin_hit *hit, struct passing *p)
 {
     const struct glint_described_material *m =
         &twin->scene->material[hit->material];
+    const bool is_ball =
+        twin->scene->object[hit->object].kind == GLINT_DESCRIBED_SPHERE;
+    const bool is_exit = is_ball_exit(twin, p, hit);
+    const bool was_inside = is_inside_object(p, hit->object);
+    const double d[3] = {p->ray.toward[0], p->ray.toward[1], p->ray.toward[2]};
+    const struct passing before = *p;
+    double index = get_medium_index(p);
     bool is_mirrored = false;
 
-    p->weight *= m->pass;
-    p->is_bent = p->is_bent || m->index != 1;
-    if (m->index != 1)
-        is_mirrored = refract_or_reflect(&p->ray, hit->shading,
-                                         hit->inside ? m->index : 1 / m->index);
+    if (!hit->inside) {
+        enter_object(p, hit->object, m->index);
+    } else if (!was_inside) {
+        index = m->index;
+    } else {
+        const bool is_last = p->entered[p->n_entered - 1] == hit->object;
+
+        leave_object(p, hit->object);
+        index = is_last ? m->index : get_medium_index(p);
+    }
+    if (index != get_medium_index(p)) {
+        p->is_bent = true;
+        is_mirrored = !refract_direction(
+            d, hit->shading, index / get_medium_index(p), p->ray.toward);
+    }
+    if (is_mirrored) {
+        reflect_direction(d, hit->shading, p->ray.toward);
+        p->n_entered = before.n_entered;
+        memcpy(p->entered, before.entered, sizeof p->entered);
+        memcpy(p->index, before.index, sizeof p->index);
+        if (hit->inside && !was_inside)
+            enter_object(p, hit->object, m->index);
+    } else if (!is_exit) {
+        p->weight *= m->pass;
+    }
     memcpy(p->ray.from, hit->place, sizeof p->ray.from);
     p->ray.skip_object = hit->object;
     p->ray.skip_triangle = hit->triangle;
-    if (twin->scene->object[hit->object].kind != GLINT_DESCRIBED_SPHERE)
-        return;
-    /* light that is totally reflected inside a ball never leaves it */
-    if (is_mirrored && hit->inside)
-        p->weight = 0;
-    else if (!is_mirrored && !hit->inside)
-        move_to_ball_exit(twin, hit, m->index, p);
+    p->ray.is_in_ball = is_ball && hit->inside == is_mirrored;
+    return is_exit && !is_mirrored;
 }
 
 static void add_light_source(struct twin_pixel *pixel, double share,
@@ -359,8 +401,11 @@ static void add_mirrored_light(const struct twin *twin,
                                const struct twin_hit *hit,
                                struct twin_pixel *pixel)
 {
-    struct twin_ray next = {.skip_object = hit->object,
-                            .skip_triangle = hit->triangle};
+    struct twin_ray next = {
+        .skip_object = hit->object,
+        .skip_triangle = hit->triangle,
+        .is_in_ball = hit->inside && twin->scene->object[hit->object].kind ==
+                                         GLINT_DESCRIBED_SPHERE};
     struct twin_hit met;
     double rgb[3];
 
@@ -385,13 +430,15 @@ static void add_transmitted_light(const struct twin *twin,
                                   struct twin_pixel *pixel)
 {
     const struct glint_description *s = twin->scene;
-    struct passing p = {*ray, 1, false};
+    struct passing p = {.ray = *ray, .weight = 1};
     struct twin_hit at = *hit;
+    bool is_exit = false;
 
-    for (int i = 0; i < 8 && s->material[at.material].pass > 0; i++) {
+    for (int i = 0;
+         (i < 8 || (i == 8 && is_exit)) && s->material[at.material].pass > 0;) {
         double rgb[3];
 
-        pass_through_surface(twin, &at, &p);
+        i += !pass_through_surface(twin, &at, &p);
         if (!reference_intersect_scene(twin, &p.ray, HUGE_VAL, &at)) {
             if (s->background == GLINT_BEHIND_CAMERA && !p.is_bent)
                 pixel->cover -= (float)p.weight;
@@ -400,6 +447,9 @@ static void add_transmitted_light(const struct twin *twin,
             add_light_source(pixel, p.weight, rgb);
             return;
         }
+        is_exit = is_ball_exit(twin, &p, &at);
+        if (is_exit)
+            continue;
         compute_phong_terms(twin, &at, p.ray.toward, rgb);
         add_light_source(pixel, p.weight, rgb);
     }

@@ -71,6 +71,8 @@ struct twin_ray {
      * skip_triangle */
     int skip_object;
     int skip_triangle;
+    bool is_in_ball; /* true: the ray starts on the ball skip_object, runs
+                        through it, and hits its far side */
 };
 
 /* The point where a ray hits an object. */

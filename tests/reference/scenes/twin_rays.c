@@ -15,10 +15,11 @@
 /* ------------------------------------------------------ spheres and planes */
 
 /* With L the vector from the ray's origin to the centre, d the ray's direction
- * and s = L.d, the ray hits if |L - s d|^2 <= r^2. */
+ * and s = L.d, the ray hits if |L - s d|^2 <= r^2. INSIDE: the ray starts on
+ * the ball's surface and runs into it. */
 static bool intersect_sphere(const struct glint_described_object *o,
-                             const struct twin_ray *ray, double most,
-                             struct twin_hit *hit)
+                             const struct twin_ray *ray, bool inside,
+                             double most, struct twin_hit *hit)
 {
     double l[3], q[3], s, half;
 
@@ -29,7 +30,7 @@ static bool intersect_sphere(const struct glint_described_object *o,
     if (half < 0)
         return false;
     half = sqrt(half);
-    hit->inside = vec_dot(l, l) < o->radius * o->radius;
+    hit->inside = inside || vec_dot(l, l) < o->radius * o->radius;
     hit->t = hit->inside ? s + half : s - half;
     if (hit->t <= 0 || hit->t >= most)
         return false;
@@ -164,9 +165,10 @@ bool reference_intersect_object(const struct twin *twin, int object,
             return false;
     } else {
         const bool is_ball = o->kind == GLINT_DESCRIBED_SPHERE;
+        const bool is_own = ray->skip_object == object;
 
-        if (ray->skip_object == object ||
-            !(is_ball ? intersect_sphere(o, ray, most, hit)
+        if ((is_own && !ray->is_in_ball) ||
+            !(is_ball ? intersect_sphere(o, ray, is_own, most, hit)
                       : intersect_plane(o, ray, most, hit)))
             return false;
         if (o->material >= 0 && (s->material[o->material].texture >= 0 ||

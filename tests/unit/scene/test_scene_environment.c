@@ -117,6 +117,18 @@ TEST(image_equals_the_reference)
         {"mirrors", STAGE "environment 9e5\nbackground environment\n"
                           "sphere a at -1 .5 0 radius .5 material mirror\n"
                           "sphere b at 1 .5 0 radius .5 material glass\n"},
+        {"inside glass",
+         STAGE "material water phong 0 0 0 pass 1 refract 1.2\n"
+               "material air phong 0 0 0 pass 1\n"
+               "environment 9e5\nbackground environment\n"
+               "sphere a at -1.2 .5 0 radius .7 material glass\n"
+               "sphere b at -1.1 .6 0 radius .4 material steel\n"
+               "sphere c at .4 .5 0 radius .8 material glass\n"
+               "sphere d at .3 .6 .1 radius .5 material water\n"
+               "sphere e at .3 .7 .2 radius .2 material air\n"
+               "sphere f at 1.7 .5 0 radius .5 material air\n"
+               "sphere g at 1.7 .7 0 radius .4 material glass\n"
+               "plane p at 0 -.3 0 normal 0 1 0 material white\n"},
         {"lights alone", STAGE "light lamp at 1 3 2 colour 4 4 4 radius .2\n"
                                "light sun direction -1 1 .5 colour 2e4 2e4 "
                                "2e4\n" BALLS "old\n"}};

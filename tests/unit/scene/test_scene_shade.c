@@ -367,8 +367,8 @@ static void make_material_transparent(struct glint_scene_material *m)
     m->pass_q15 = 32768;
 }
 
-/* Checks that a fully transparent ball hides neither a ball behind it nor the
- * image. */
+/* Checks that a fully transparent ball hides neither a ball behind it, nor a
+ * ball inside it, nor the image. */
 TEST(a11_transparent_ball_occludes_nothing)
 {
     const int32_t up[3] = {0, ONE_Q30, 0};
@@ -382,6 +382,8 @@ TEST(a11_transparent_ball_occludes_nothing)
         &file.material[scene_add_material(&file, "clear")]);
     scene_add_sphere(&file, "far", 0, UNIT / 2, UNIT / 3, 20 * UNIT, 3 * UNIT);
     scene_add_sphere(&file, "near", 1, 0, 0, 10 * UNIT, 2 * UNIT);
+    scene_add_sphere(&file, "inside", 0, UNIT / 4, -UNIT / 4, 10 * UNIT,
+                     UNIT / 2);
     scene_add_sun(&file, up);
     s = start_renderer(1);
     for (int i = 0; i < 20000; i++) {
@@ -484,14 +486,56 @@ TEST(a11_ray_leaves_a_ball_once)
     assert_true(farther > 0);
 }
 
-/* Checks that a glass ball refracts rays as computed in double precision, by
- * the texture coordinate that is visible behind the ball. */
-TEST(a12_glass_ball_refracts)
+enum { GLASS_RADIUS = 2, GLASS_AT = 10, WALL_AT = 30 };
+
+/* Computes in double precision the path of a ray in the plane y = 0, from the
+ * origin along (DX, 0, 1), through a ball of refractive index 1.5 with a ball
+ * of index INNER and radius RADIUS in its middle. Returns the x at which the
+ * ray meets the wall, and sets HEADING to its angle from the z axis there; to
+ * HUGE_VAL if it grazes the inner ball.
+ *
+ * With q the ray's distance from the middle, its angle to the normal at radius
+ * r in a medium of index n has the sine q / (n r). */
+static double trace_exact_path(double dx, double inner, double radius,
+                               double *heading)
 {
+    const double angle = atan(dx), q = GLASS_AT * sin(angle);
+    const double t =
+        GLASS_AT * cos(angle) - sqrt(GLASS_RADIUS * GLASS_RADIUS - q * q);
+    const double in = asin(q / GLASS_RADIUS),
+                 out = asin(q / 1.5 / GLASS_RADIUS);
+    double round = 3.14159265358979 - 2 * out, turn = 2 * (in - out);
+
+    if (fabs(q / 1.5) < radius) {
+        const double before = asin(q / 1.5 / radius);
+        const double sine = q / inner / radius;
+
+        round = 2 * (before - out);
+        if (fabs(sine) < 1) {
+            round += 3.14159265358979 - 2 * asin(sine);
+            turn += 2 * (before - asin(sine));
+        } else { /* total reflection */
+            turn -= copysign(3.14159265358979, q) - 2 * before;
+        }
+    }
+    round += atan2(t * sin(angle), GLASS_AT - t * cos(angle));
+    *heading =
+        fabs(fabs(q / 1.5) - radius) < .02 * radius ? HUGE_VAL : angle - turn;
+    return GLASS_RADIUS * sin(round) +
+           (WALL_AT - GLASS_AT + GLASS_RADIUS * cos(round)) * tan(angle - turn);
+}
+
+/* Checks that a glass ball, and a ball inside it, refract rays as computed in
+ * double precision, by the texture coordinate that is visible behind them. */
+TEST(a12_glass_balls_refract)
+{
+    static const struct {
+        double index, radius;
+        int least;
+    } inner[] = {{1.5, .5, 2500}, {1.25, 1, 2500}, {1, .6, 1500}};
     uint8_t rgb[3 * 256];
     struct glint_scene *s;
     uint32_t seed = 1;
-    int n = 0;
 
     for (int i = 0; i < 256; i++)
         rgb[3 * i] = rgb[3 * i + 1] = rgb[3 * i + 2] = (uint8_t)i;
@@ -504,42 +548,43 @@ TEST(a12_glass_ball_refracts)
     file.material[0].texture = scene_add_texture(&file, rgb, 8, 0);
     make_material_transparent(
         &file.material[scene_add_material(&file, "glass")]);
+    make_material_transparent(
+        &file.material[scene_add_material(&file, "inner")]);
     file.material[1].index_q16 = 3 << 15;
     /* a wall behind the ball: the floor rotated by 90 degrees about x; its
      * texture repeats once per unit */
     scene_add_plane(&file, "wall", 0, 0);
-    file.object[0].at[2] = 30 * UNIT;
+    file.object[0].at[2] = WALL_AT * UNIT;
     file.object[0].turn_q30[0] = 759250125;
     file.object[0].turn_q30[1] = -759250125;
-    scene_add_sphere(&file, "ball", 1, 0, 0, 10 * UNIT, 2 * UNIT);
-    s = start_renderer(1);
-    for (int i = 0; i < 3000; i++) {
-        const double dx = rng_unit(&seed) * .2 - .1;
-        const double cosine0 = cos(atan(dx));
-        /* The expected path of the ray is in the x-z plane: its entry point,
-         * its path in the ball, and its exit point. */
-        const double b = 10 * cosine0, q = 10 * sin(atan(dx));
-        const double t = b - sqrt(4 - q * q);
-        const double px = t * sin(atan(dx)), pz = t * cosine0 - 10;
-        const double in = asin(q / 2), out = asin(q / 3);
-        const double turn = 2 * (in - out);
-        const double phi = atan2(px, -pz);
-        const double phi_out = phi + (3.14159265358979 - 2 * out);
-        const double x = 2 * sin(phi_out), z = 10 - 2 * cos(phi_out);
-        const double heading = atan(dx) - turn;
-        const double at = x + (30 - z) * tan(heading);
-        struct glint_scene_ray ray = make_ray_from_doubles(0, 0, 0, dx, 0, 1);
-        struct glint_met_shade to;
-        double u = at - floor(at), code;
+    scene_add_sphere(&file, "ball", 1, 0, 0, GLASS_AT * UNIT,
+                     GLASS_RADIUS * UNIT);
+    scene_add_sphere(&file, "inner", 2, 0, 0, GLASS_AT * UNIT, UNIT);
+    for (size_t k = 0; k < sizeof inner / sizeof *inner; k++) {
+        int n = 0;
 
-        if (u < .02 || u > .98)
-            continue;
-        assert_true(intersect_and_shade_ray(s, &ray, &to));
-        code = canvas_encode_srgb_exactly(to.rgb_q15[0] / 32768.);
-        assert_true(fabs(code - (256 * u - .5)) < 1.6);
-        n++;
+        file.material[2].index_q16 = (int32_t)(65536 * inner[k].index);
+        file.object[2].radius = (int32_t)(UNIT * inner[k].radius);
+        s = start_renderer(1);
+        for (int i = 0; i < 3000; i++) {
+            const double dx = rng_unit(&seed) * .2 - .1;
+            double heading, u, code;
+            struct glint_scene_ray ray =
+                make_ray_from_doubles(0, 0, 0, dx, 0, 1);
+            struct glint_met_shade to;
+
+            u = trace_exact_path(dx, inner[k].index, inner[k].radius, &heading);
+            u -= floor(u);
+            if (u < .02 || u > .98 || fabs(heading) > .8)
+                continue;
+            assert_true(intersect_and_shade_ray(s, &ray, &to));
+            code = canvas_encode_srgb_exactly(to.rgb_q15[0] / 32768.);
+            assert_true(fabs(code - (256 * u - .5)) < 1.6);
+            n++;
+        }
+        print_message("index %g: %d rays\n", inner[k].index, n);
+        assert_true(n > inner[k].least);
     }
-    assert_true(n > 2500);
 }
 
 /* Checks that rays inside a ball of refractive index 1.5 that hit its surface
