@@ -325,30 +325,39 @@ bool glint_describe_check_translucent_object(
 /* default angular radius of a sun, degrees */
 #define SUN_DEG 0.267
 
-/* Warns if the colour of SUN seems to be an irradiance instead of a radiance.
- * The sun's light would then be below one 8-bit code. */
-static void check_sun_radiance(struct glint_describer *d,
-                               const struct glint_described_light *sun)
+/* Light of a sun on a white surface, display white, below which it changes no
+ * 8-bit code, and above which it saturates nearly all colours. */
+#define FAINT_SUN  (1. / 256)
+#define BRIGHT_SUN 10.
+
+/* Warns if the light of SUN on a surface is far from display white, which often
+ * means that its colour is an irradiance or that its radius was changed. */
+static void check_sun_light(struct glint_describer *d,
+                            const struct glint_described_light *sun)
 {
     const double sine = sin(sun->radius_deg * GLINT_PI / 180);
     const double most =
         fmax(sun->colour[0], fmax(sun->colour[1], sun->colour[2]));
     const double white = most * sine * sine;
 
-    if (white > 0 && white < 1. / 256 && !d->scene->warning[0])
+    if (white > 0 && (white < FAINT_SUN || white > BRIGHT_SUN) &&
+        !d->scene->warning[0])
         snprintf(
             d->scene->warning, sizeof d->scene->warning,
             "light sun: colour is the radiance of its disc; with this radius, "
-            "%.3g lights a white surface to %.2g, and %.3g would light it to 1",
+            "%.3g lights a white surface to %.2g, and %.3g would light it to "
+            "1, as does 'white 1 1 1' with any radius",
             most, white, most / white);
 }
 
 static bool read_sun_light(struct glint_describer *d,
                            struct glint_described_light *light)
 {
+    double white[3] = {0}, sine;
     struct glint_clause clause[] = {
         {"direction", 3, -REACH, REACH, .value = light->at, .required = true},
-        {"colour", 3, 0, MAX_LIGHT, .value = light->colour, .required = true},
+        {"colour", 3, 0, MAX_LIGHT, .value = light->colour},
+        {"white", 3, 0, MAX_LIGHT, .value = white},
         {"radius", 1, 0.01, 30, .value = &light->radius_deg},
         {0}};
 
@@ -356,7 +365,15 @@ static bool read_sun_light(struct glint_describer *d,
     light->radius_deg = SUN_DEG;
     if (!glint_clauses_read(&d->text, "light sun", clause))
         return false;
-    check_sun_radiance(d, light);
+    if (!clause[1].place.line == !clause[2].place.line)
+        return glint_text_set_error(&d->text,
+                                    clause[clause[2].place.line ? 2 : 0].place,
+                                    "light sun needs 'colour' or 'white'%s",
+                                    clause[2].place.line ? ", not both" : "");
+    sine = sin(light->radius_deg * GLINT_PI / 180);
+    for (int k = 0; clause[2].place.line && k < 3; k++)
+        light->colour[k] = white[k] / (sine * sine);
+    check_sun_light(d, light);
     return glint_describe_normalise_vector(light->at) ||
            glint_text_set_error(&d->text, clause[0].place,
                                 "the direction to the sun must not be 0 0 0");

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "glint/scene/description.h"
+#include "glint/view.h"
 #include "bake/scene/mesh.h"
 #include "support/test.h"
 
@@ -250,6 +251,10 @@ static const struct mistake {
     {3, "sphree b", "3:1: unknown word 'sphree'; did you mean 'sphere'?"},
     {3, "xyzzy", "3:1: unknown word 'xyzzy'"},
     {4, "light sun colour 1 1 1", "4:23: light sun needs 'direction'"},
+    {4, "light sun direction 0 1 0 radius 1",
+     "4:11: light sun needs 'colour' or 'white'"},
+    {4, "light sun direction 0 1 0 colour 1 1 1 white 1 1 1",
+     "4:40: light sun needs 'colour' or 'white', not both"},
     {4, "light sun direction 0 0 0 colour 1 1 1",
      "4:11: the direction to the sun must not be 0 0 0"},
     {4, "light bulb at 0 0 0",
@@ -446,7 +451,32 @@ TEST(parses_or_rejects_mesh_texts)
     free(mesh);
 }
 
-/* Checks that the parser warns of a sun that is too faint for any code, and of
+/* Checks that a sun of given 'white' lights a surface to that value, whatever
+ * its radius. */
+TEST(white_of_a_sun_does_not_depend_on_its_radius)
+{
+    static const char *const text[] = {
+        "light sun direction 0 1 0 white 1 .5 .25",
+        "light sun direction 0 1 0 white 1 .5 .25 radius 5"};
+    struct glint_description *s = malloc(sizeof *s);
+    struct glint_error error;
+
+    assert_non_null(s);
+    for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
+        double sine;
+
+        assert_ok(parse_text_with_line(s, 4, text[i], &error));
+        sine = sin(s->light[0].radius_deg * GLINT_PI / 180);
+        for (int c = 0; c < 3; c++)
+            assert_true(fabs(s->light[0].colour[c] * sine * sine -
+                             1. / (1 << c)) < 1e-12);
+        glint_description_free(s);
+    }
+    free(s);
+}
+
+/* Checks that the parser warns of a sun that is too faint for any code or far
+ * above white, and of
  * weights that make objects dark, but not of usual values. */
 TEST(warns_of_invisible_settings)
 {
@@ -457,6 +487,10 @@ TEST(warns_of_invisible_settings)
         {4, "light sun direction 0 1 0 colour 3 2 1 radius .27", "4.5e+04"},
         {4, "light sun direction 0 1 0 colour 500 2 1 radius .27", ""},
         {4, "light sun direction 0 1 0 colour 0 0 0", ""},
+        {4, "light sun direction 0 1 0 colour 5e4 5e4 5e4 radius 5",
+         "lights a white surface to 3.8e+02, and 132"},
+        {4, "light sun direction 0 1 0 white 9 9 9 radius 5", ""},
+        {4, "light sun direction 0 1 0 white 11 9 9", "surface to 11,"},
         {7, "material red phong .1 .2 .1", "0.4; the surface absorbs"}};
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
