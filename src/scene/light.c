@@ -210,7 +210,7 @@ int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
     const int n = radius ? scene->cfg.shadow_points : 1;
     struct glint_scene_ray middle = {.at = {0}};
     int32_t u_q30[3] = {0}, v_q30[3] = {0}, level_q15[3], distance;
-    int reached = 0;
+    int32_t reached_q15 = 0;
 
     if (!scene->model.header->shadow)
         return GLINT_SCENE_ONE_Q15;
@@ -227,9 +227,9 @@ int32_t glint_trace_shadow_rays(const struct glint_scene *scene,
 
         if (n > 1)
             aim_at_disc_point(&to, u_q30, v_q30, distance, radius, i, n);
-        reached += v3_dot(to.toward_q30, surface->face_q30) > 0 &&
-                   !glint_scene_is_ray_blocked(scene, &to, surface->object,
-                                               surface->triangle, distance);
+        if (v3_dot(to.toward_q30, surface->face_q30) > 0)
+            reached_q15 += glint_scene_compute_unblocked_light(
+                scene, &to, surface->object, surface->triangle, distance);
     }
-    return reached << (n == 1 ? 15 : n == 4 ? 13 : 11);
+    return reached_q15 >> (n == 1 ? 0 : n == 4 ? 2 : 4);
 }

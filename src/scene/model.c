@@ -256,6 +256,8 @@ static const char *check_object(const struct check *check,
         return "damaged scene: a sphere's radius is out of range";
     if (o->catcher_q15 < 0 || o->catcher_q15 > (is_plane ? 1 << 15 : 0))
         return "damaged scene: the shadow strength of a plane is not 0 .. 1";
+    if (!glint_scene_is_number_in_range(o->unblocked_q15, 0, 1 << 15))
+        return "damaged scene: the light in an object's shadow is not 0 .. 1";
     if (o->hidden > 1 || !glint_scene_is_unit_vector(o->turn_q30, 4))
         return "damaged scene: an object's rotation is not a unit quaternion";
     return glint_scene_is_object_in_range(&check->model, o, o->at)
@@ -406,7 +408,7 @@ STATIC_ASSERT(sizeof(struct glint_scene_texture) == 12);
 STATIC_ASSERT(sizeof(struct glint_scene_material) == 80);
 STATIC_ASSERT(sizeof(struct glint_scene_triangle) == 16);
 STATIC_ASSERT(sizeof(struct glint_scene_mesh) == 76);
-STATIC_ASSERT(sizeof(struct glint_scene_object) == 84);
+STATIC_ASSERT(sizeof(struct glint_scene_object) == 88);
 STATIC_ASSERT(sizeof(struct glint_scene_ward) == 24);
 STATIC_ASSERT(sizeof(struct glint_scene_motion) == 96);
 STATIC_ASSERT(sizeof(struct glint_scene_stone) == 16);

@@ -98,6 +98,16 @@ static size_t count_shadow_casters(const struct glint_scene_model *m)
     return n;
 }
 
+/* Returns whether all shadows are black, as those of a grid. */
+static int are_shadows_black(const struct glint_scene_model *m)
+{
+    int32_t any = 0;
+
+    for (uint32_t i = 0; i < m->header->n_objects; i++)
+        any |= m->object[i].unblocked_q15;
+    return any == 0;
+}
+
 /* Allocates the shadow grids of suns. Not inlined, as the dummy grid that is
  * used to count bytes is large on the stack. */
 static NEVER_INLINE void allocate_shadow_grids(struct glint_scene *s,
@@ -106,14 +116,15 @@ static NEVER_INLINE void allocate_shadow_grids(struct glint_scene *s,
     const size_t cells = (size_t)1 << 2 * GLINT_SHADOW_CELLS_LOG2;
     const size_t n_vertices = count_vertices(&s->model);
     const size_t n_refs = 12 * count_shadow_casters(&s->model) + 64;
+    const int has_grids =
+        s->model.header->shadow && are_shadows_black(&s->model);
 
     for (uint32_t i = 0; i < s->model.header->n_lights; i++) {
         struct glint_shadow measured, *m;
 
         if (s->lit)
             s->lit[i].shadow = NULL;
-        if (!s->model.header->shadow ||
-            s->model.light[i].kind != GLINT_LIGHT_SUN)
+        if (!has_grids || s->model.light[i].kind != GLINT_LIGHT_SUN)
             continue;
         m = glint_arena_allocate(a, 1, sizeof *m);
         if (s->lit)

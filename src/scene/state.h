@@ -347,7 +347,15 @@ int glint_scene_is_ray_blocked(const struct glint_scene *scene,
                                uint32_t object, uint32_t triangle,
                                int32_t limit);
 
-/* Returns 0 if no object can block any ray of a cone. The cone starts at AXIS,
+/* Returns the fraction of a light at distance LIMIT along RAY, _q15, that
+ * objects let through to the start of RAY. Skips the same objects as
+ * glint_scene_find_nearest_hit(). */
+int32_t glint_scene_compute_unblocked_light(const struct glint_scene *scene,
+                                            const struct glint_scene_ray *ray,
+                                            uint32_t object, uint32_t triangle,
+                                            int32_t limit);
+
+/* Returns 0 if no object can shadow any ray of a cone. The cone starts at AXIS,
  * ends at distance T along it, and has the half angle atan(SLOPE_Q30), at most
  * 45 degrees. Skips the same objects as glint_scene_find_nearest_hit(). */
 int glint_scene_can_cone_be_blocked(const struct glint_scene *scene,

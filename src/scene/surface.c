@@ -102,6 +102,40 @@ int glint_scene_is_ray_blocked(const struct glint_scene *scene,
     return 0;
 }
 
+/* Returns whether object I casts a shadow on points of OBJECT. */
+static int can_object_shadow(const struct glint_scene *s, uint32_t i,
+                             uint32_t object)
+{
+    return can_ray_hit_object(s, i, object) &&
+           s->placed[i].object->unblocked_q15 < GLINT_SCENE_ONE_Q15;
+}
+
+int32_t glint_scene_compute_unblocked_light(const struct glint_scene *scene,
+                                            const struct glint_scene_ray *ray,
+                                            uint32_t object, uint32_t triangle,
+                                            int32_t limit)
+{
+    const uint32_t n = scene->model.header->n_objects;
+    int32_t share_q15 = GLINT_SCENE_ONE_Q15;
+
+    for (uint32_t i = 0; i < n; i++) {
+        struct glint_met met = {.t = limit};
+
+        if (!can_object_shadow(scene, i, object) ||
+            !intersect_object(scene, i, ray,
+                              i == object ? triangle : GLINT_NOTHING, 1, &met))
+            continue;
+        share_q15 =
+            q_mul(share_q15, scene->placed[i].object->unblocked_q15, 15);
+        if (share_q15 == 0) {
+            glint_scene_count_ray_tests(scene, i + 1);
+            return 0;
+        }
+    }
+    glint_scene_count_ray_tests(scene, n);
+    return share_q15;
+}
+
 /* Returns whether object P may touch the cone of rays (state.h). P's bounding
  * sphere decides; its distance from the cone's axis is |L x D|, where L is the
  * vector from the cone's tip to the sphere's centre, and D the axis. */
@@ -139,7 +173,7 @@ int glint_scene_can_cone_be_blocked(const struct glint_scene *scene,
 
     glint_scene_count_ray_tests(scene, n);
     for (uint32_t i = 0; i < n; i++)
-        if (can_ray_hit_object(scene, i, object) &&
+        if (can_object_shadow(scene, i, object) &&
             can_object_touch_cone(&scene->placed[i], axis, t, slope_q30))
             return 1;
     return 0;

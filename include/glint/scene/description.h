@@ -183,6 +183,8 @@ struct glint_described_object {
      * scene's. */
     double turn[4];
     double radius; /* radius of a sphere, scene units */
+    /* Fraction by which the object's shadow darkens a light, 0 .. 1 */
+    double shadow;
     /* Normal of a plane: a unit vector in the object's own axes. */
     double normal[3];
     /* Fraction by which a shadow darkens the picture behind a plane; 0: the

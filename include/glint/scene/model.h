@@ -42,7 +42,7 @@ extern "C" {
 #endif
 
 #define GLINT_SCENE_MAGIC   UINT32_C(0x53544e47) /* "GNTS" */
-#define GLINT_SCENE_VERSION 5
+#define GLINT_SCENE_VERSION 6
 #define GLINT_SCENE_NONE    UINT32_C(0xffffffff) /* stands for no index */
 
 enum {
@@ -259,6 +259,11 @@ struct glint_scene_object {
     int32_t at[3];       /* position, steps; the whole object must be within
                             GLINT_SCENE_SPAN */
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
+    /* Fraction of a light that the object lets through to the surfaces in its
+     * shadow, 0 .. 32768. 0: the shadow is black; 32768: there is none. If it
+     * is not 0 for all objects, shadows of suns are found by rays, not by a
+     * grid. */
+    int32_t unblocked_q15;
 };
 
 struct glint_scene_environment {

@@ -45,6 +45,7 @@ glint_describe_append_object(struct glint_describer *d,
     *o = (struct glint_described_object){.kind = kind,
                                          .turn = {1, 0, 0, 0},
                                          .material = -1,
+                                         .shadow = 1,
                                          .first_triangle = s->n_triangles};
     snprintf(o->name, sizeof o->name, "%s", name);
     s->n_objects++;
@@ -107,6 +108,7 @@ bool glint_describe_parse_sphere(struct glint_describer *d)
          .required = true},
         {"material", .name = &material, .required = true},
         {"turn", 4, -REACH, REACH, .value = turn},
+        {"shadow", 1, 0, 1, .value = o ? &o->shadow : NULL},
         {0}};
 
     return o && glint_clauses_read(&d->text, "sphere", clause) &&
@@ -154,6 +156,7 @@ bool glint_describe_parse_triangle(struct glint_describer *d)
     struct glint_clause clause[] = {
         {"uv", 6, -REACH, REACH, .value = t.uv[0]},
         {"material", .name = &material, .required = true},
+        {"shadow", 1, 0, 1, .value = o ? &o->shadow : NULL},
         {0}};
 
     if (!o ||
@@ -332,6 +335,7 @@ bool glint_describe_parse_mesh(struct glint_describer *d)
         {"scale", 1, 1e-9, 1e9, .value = &scale},
         {"material", .name = &material},
         {"turn", 4, -REACH, REACH, .value = turn},
+        {"shadow", 1, 0, 1, .value = o ? &o->shadow : NULL},
         {0}};
 
     if (!o)

@@ -256,6 +256,7 @@ static bool convert_object(const struct writer *w,
     memcpy(o->name, from->name, sizeof o->name);
     memcpy(turn, from->turn, sizeof turn);
     o->material = (uint32_t)(from->material < 0 ? 0 : from->material);
+    o->unblocked_q15 = ONE_Q15 - convert_to_q15(from->shadow);
     glint_steps_convert_position(&w->steps, from->at, o->at);
     switch (from->kind) {
     case GLINT_DESCRIBED_SPHERE:

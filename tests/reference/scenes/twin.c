@@ -155,7 +155,7 @@ compute_light_visibility(const struct twin *twin, const struct twin_hit *hit,
     const bool has_extent =
         light->kind == GLINT_DESCRIBED_SUN || light->radius > 0;
     const int n = has_extent ? twin->shadow_points : 1;
-    int reached = 0;
+    double reached = 0;
 
     if (!twin->scene->has_shadows)
         return 1;
@@ -166,10 +166,10 @@ compute_light_visibility(const struct twin *twin, const struct twin_hit *hit,
         memcpy(ray.from, hit->place, sizeof ray.from);
         memcpy(ray.toward, toward, sizeof ray.toward);
         aim_at_light_disc(twin->scene, light, ray.toward, distance, i, n);
-        reached += vec_dot(hit->normal, ray.toward) > 0 &&
-                   !reference_is_occluded(twin, &ray, distance);
+        if (vec_dot(hit->normal, ray.toward) > 0)
+            reached += reference_compute_unblocked_light(twin, &ray, distance);
     }
-    return (double)reached / n;
+    return reached / n;
 }
 
 double reference_compute_light_at_hit(const struct twin *twin,

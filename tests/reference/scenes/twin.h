@@ -119,10 +119,11 @@ bool reference_intersect_scene(const struct twin *twin,
                                const struct twin_ray *ray, double most,
                                struct twin_hit *hit);
 
-/* Returns whether RAY hits any object, except shadow catchers, before the
- * distance MOST. */
-bool reference_is_occluded(const struct twin *twin, const struct twin_ray *ray,
-                           double most);
+/* Returns the fraction of a light at distance MOST along RAY that the shadows
+ * of objects leave. */
+double reference_compute_unblocked_light(const struct twin *twin,
+                                         const struct twin_ray *ray,
+                                         double most);
 
 /* Like reference_intersect_scene(), for a single object, which may be a shadow
  * catcher. */

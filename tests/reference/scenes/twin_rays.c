@@ -207,16 +207,21 @@ bool reference_intersect_scene(const struct twin *twin,
     return found;
 }
 
-bool reference_is_occluded(const struct twin *twin, const struct twin_ray *ray,
-                           double most)
+double reference_compute_unblocked_light(const struct twin *twin,
+                                         const struct twin_ray *ray,
+                                         double most)
 {
-    struct twin_hit hit;
+    double share = 1;
 
-    for (int i = 0; i < twin->scene->n_objects; i++)
-        if (!(twin->scene->object[i].catcher > 0) &&
+    for (int i = 0; share > 0 && i < twin->scene->n_objects; i++) {
+        const struct glint_described_object *o = &twin->scene->object[i];
+        struct twin_hit hit;
+
+        if (!(o->catcher > 0) &&
             reference_intersect_object(twin, i, ray, most, &hit))
-            return true;
-    return false;
+            share *= 1 - o->shadow;
+    }
+    return share;
 }
 
 void reference_make_camera_ray(const struct twin *twin,

@@ -29,7 +29,7 @@ static const char *const good[] = {
     "triangle t 0 0 0 1 0 0 0 1 0 uv 0 0 1 0 0 1 material oak", /* line 11 */
     "plane floor at 0 0 0 normal 0 2 0 catcher .6",             /* line 12 */
     /* line 13 */
-    "mesh cup cup.obj scale .5 at 1 0 0 turn 0 2 0 90 material red",
+    "mesh cup cup.obj scale .5 at 1 0 0 turn 0 2 0 90 material red shadow .25",
     "shadow on",                 /* line 14 */
     "flare lights highlights 3", /* line 15 */
 };
@@ -170,6 +170,7 @@ TEST(quad_becomes_two_scaled_triangles)
     o = &s->object[3];
     assert_int_equal(o->first_triangle, 1);
     assert_int_equal(o->n_triangles, 3);
+    assert_true(o->shadow == .25 && s->object[0].shadow == 1);
     assert_true(fabs(o->turn[0] - sqrt(.5)) < 1e-12 &&
                 fabs(o->turn[2] - sqrt(.5)) < 1e-12);
     check_vector_is_near(s->triangle[2].place[1], 1, 1, 0);
@@ -337,6 +338,8 @@ static const struct mistake {
      "13:27: the axis of a rotation must not be 0 0 0"},
     {13, "mesh cup cup.obj at 0 0 0 scale 1e9 material red",
      "13:10: the mesh extends 2e+09 from its origin; the limit is 1e+06"},
+    {10, "sphere ball at 0 .5 0 radius .5 material red shadow 2",
+     "10:53: shadow must be 0 .. 1, not 2"},
     {14, "shadow soft", "14:8: shadow accepts on or off, not 'soft'"},
     {15, "flare lights highlights 2.5",
      "15:14: 'highlights' must be a whole number, 0 to 8"},

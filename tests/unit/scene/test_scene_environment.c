@@ -129,6 +129,14 @@ TEST(image_equals_the_reference)
                "sphere f at 1.7 .5 0 radius .5 material air\n"
                "sphere g at 1.7 .7 0 radius .4 material glass\n"
                "plane p at 0 -.3 0 normal 0 1 0 material white\n"},
+        {"shadows of glass",
+         STAGE "light lamp at 1 3 2 colour 8 8 8\nshadow on\n"
+               "light sun direction -1 1 .5 white .5 .5 .5\n"
+               "background colour .2 .3 .4\n"
+               "sphere a at -1.2 .5 0 radius .5 material glass shadow .2\n"
+               "sphere b at -1.2 .5 0 radius .3 material mirror shadow 0\n"
+               "sphere c at 1.2 .7 0 radius .5 material white\n"
+               "plane p at 0 0 0 normal 0 1 0 material white\n"},
         {"lights alone", STAGE "light lamp at 1 3 2 colour 4 4 4 radius .2\n"
                                "light sun direction -1 1 .5 colour 2e4 2e4 "
                                "2e4\n" BALLS "old\n"}};

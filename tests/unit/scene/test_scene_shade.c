@@ -359,6 +359,46 @@ TEST(a10_penumbra_is_monotone)
         shade_ray_red_q15(s, make_ray_from_doubles(.1, .2, 10, 0, -1, 0)), 0);
 }
 
+/* Checks that the light behind objects is multiplied by the fractions that they
+ * let through in shadows: none, a part or all. */
+TEST(objects_let_a_fraction_of_light_through)
+{
+    static const struct {
+        int32_t unblocked_q15[2], light_q15;
+    } row[] = {{{0, 32768}, 0},
+               {{8192, 32768}, 8192},
+               {{8192, 16384}, 4096},
+               {{32768, 32768}, 32768}};
+    const int32_t up[3] = {0, ONE_Q30, 0}, lamp[3] = {0, 20 * UNIT, 10 * UNIT};
+
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        for (int points = 1; points <= 16; points *= 4)
+            for (int is_sun = 0; is_sun < 2; is_sun++) {
+                struct glint_scene *s;
+
+                scene_begin_header(&file);
+                file.header.shadow = 1;
+                scene_add_material(&file, "m");
+                scene_add_plane(&file, "floor", 0, 0);
+                for (int k = 0; k < 2; k++) {
+                    scene_add_sphere(&file, "ball", 0, 0, (4 + 4 * k) * UNIT,
+                                     10 * UNIT, UNIT);
+                    file.object[1 + k].unblocked_q15 = row[i].unblocked_q15[k];
+                }
+                if (is_sun)
+                    scene_add_sun(&file, up);
+                else
+                    scene_add_lamp(&file, lamp, 20 * UNIT);
+                file.light[0].radius = is_sun ? ONE_Q30 / 100 : UNIT / 10;
+                s = start_renderer(points);
+                assert_int_equal(s->lit[0].shadow != NULL, 0);
+                assert_in_range(shade_ray_red_q15(s, make_ray_from_doubles(
+                                                         0, .2, 10, 0, -1, 0)) +
+                                    4,
+                                row[i].light_q15, row[i].light_q15 + 8);
+            }
+}
+
 /* ---------------------------------- transparency and refraction (A11, A12) */
 
 static void make_material_transparent(struct glint_scene_material *m)
