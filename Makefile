@@ -67,6 +67,7 @@ sets_x86_64 := sse41 avx2
 sets_aarch64 := neon
 sets_armv7 := neon
 sets_armv7-neon := neon
+sets_wasm32 := sse41
 absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/*/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c

@@ -26,6 +26,9 @@
     ((sets)&GLINT_SET_AVX2    ? name##avx2  \
      : (sets)&GLINT_SET_SSE41 ? name##sse41 \
                               : name##c)
+#elif defined(__wasm_simd128__) /* *_sse41.c with wasm/smmintrin.h */
+#define KERNEL_SETS(X)      X(c) X(sse41)
+#define BEST_OF(sets, name) ((sets)&GLINT_SET_SSE41 ? name##sse41 : name##c)
 #elif defined(KERNELS_NEON)
 #define KERNEL_SETS(X)      X(c) X(neon)
 #define BEST_OF(sets, name) ((sets)&GLINT_SET_NEON ? name##neon : name##c)

@@ -7,6 +7,8 @@ unsigned glint_sets_built(void)
 {
 #if defined(__x86_64__)
     return GLINT_SET_SSE41 | GLINT_SET_AVX2;
+#elif defined(__wasm_simd128__)
+    return GLINT_SET_SSE41;
 #elif defined(KERNELS_NEON)
     return GLINT_SET_NEON;
 #else
@@ -41,18 +43,16 @@ unsigned glint_sets_here(void)
     return sets;
 }
 
-#elif defined(__ARM_NEON)
-
-unsigned glint_sets_here(void)
-{
-    return GLINT_SET_NEON;
-}
-
 #else
 
+/* The compiler's target is all that is known. */
 unsigned glint_sets_here(void)
 {
+#if defined(__ARM_NEON) || defined(__wasm_simd128__)
+    return glint_sets_built();
+#else
     return 0;
+#endif
 }
 
 #endif

@@ -42,7 +42,7 @@ endif
 $(core_o): CFLAGS += -ffreestanding -ffunction-sections -Wframe-larger-than=1024 \
         -fno-asynchronous-unwind-tables -fno-unwind-tables
 # An instruction set is a file-name suffix; nothing else may use its flags.
-$(OUT)/src/%_sse41.o: CFLAGS += -msse4.1
+$(OUT)/src/%_sse41.o: CFLAGS += $(if $(filter wasm32,$(ARCH)),-Isrc/kernels/wasm,-msse4.1)
 $(OUT)/src/%_avx2.o: CFLAGS += -mavx2
 ifeq ($(ARCH),armv7)
 $(OUT)/src/%_neon.o: CFLAGS += -mfpu=neon

@@ -3,6 +3,7 @@
 
 WEB_PACKAGES := clang lld llvm wasi-libc libclang-rt-dev-wasm32
 wasm := build/wasm32/glint.wasm
+wasm_tests := build/wasm32/test_kernels.wasm build/wasm32/test_ward_kernels.wasm
 web_files := $(wildcard $(addprefix tools/hosts/web/*.,html css js svg))
 web:
 	@tools/make/deps "the page" $(WEB_PACKAGES)
@@ -13,7 +14,7 @@ web:
 # The module alone. Objects of another machine, as those of boards.
 wasm:
 	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi -msimd128' OUT=build/wasm32 LDFLAGS=-static \
-	        WITH_JPEG=no WITH_INIH=no WITH_JANSSON=no WITH_EXPAT=no $(wasm)
+	        WITH_JPEG=no WITH_INIH=no WITH_JANSSON=no WITH_EXPAT=no $(wasm) $(wasm_tests)
 # Pictures of the module are those of the program.
 check-web: build/glint
 	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs
@@ -29,6 +30,9 @@ $(OUT)/web_lens.o: $(OUT)/web_lens.c
 $(wasm): $(core_o) $(engine_o) $(bake_o) $(web_o)
 	$(say) LD $@
 	$(Q)$(CC) -mexec-model=reactor -Wl,-s,--gc-sections,-z,stack-size=1048576 $(filter %.o,$^) -o $@
+$(wasm_tests): build/wasm32/%.wasm: build/wasm32/tests/unit/kernels/%.o $(OUT)/platform/linux/sets.o $(core_o)
+	$(say) LD $@
+	$(Q)$(CC) -Wl,--gc-sections $(filter %.o,$^) -o $@
 ifeq ($(ARCH),wasm32)
 # NAN of this C library is a float.
 $(engine_o): CFLAGS += -Wno-double-promotion

@@ -7,8 +7,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <time.h>
+#ifdef __wasm__
+#define mprotect(mem, bytes, protection) 0 /* WebAssembly has no pages */
+#else
+#include <sys/mman.h>
+#endif
 
 #include "support/rng.h"
 #include "glint/kernels.h"

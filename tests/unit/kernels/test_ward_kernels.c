@@ -10,7 +10,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __wasm__
+#define mprotect(mem, bytes, protection) 0 /* WebAssembly has no pages */
+#else
 #include <sys/mman.h>
+#endif
 #include <time.h>
 
 #include "glint/kernels.h"
