@@ -30,6 +30,7 @@
 #                 abi REF=REVISION: what has changed of them since, by abidiff
 #   make man      manual pages, into build/man
 #   make web      the page of tools/hosts/web, for browsers, into build/web;  check-web: 200 pictures of it
+#   make npm      the WebAssembly module as a package for npm, into build/npm
 #   make frei0r, gstreamer, obs   plug-ins for hosts of video;  check-frei0r-threads, check-gstreamer, check-obs
 #   make bench    what a frame costs;  figure NAME=frame: in instructions
 #   make size     bytes of the run-time library, and of programs with parts of it

@@ -6,7 +6,7 @@
 import {execFileSync} from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
-import {Glint, ghostFile, lampFile} from "../../tools/hosts/web/glint.js";
+import {ghostFile, init, lampFile} from "../../tools/hosts/web/glint.js";
 
 const [program, wasm, folder, first, count] = process.argv.slice(2);
 
@@ -74,7 +74,7 @@ function compare(name, want, got) {
         throw new Error(`${name}: pictures differ`);
 }
 
-const glint = await Glint.make(fs.readFileSync(wasm));
+const glint = await init(fs.readFileSync(wasm));
 let failed = 0;
 for (let k = +first; k < +first + +count; k++) {
     state = (k + 1) * 2654435761 >>> 0;

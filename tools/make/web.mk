@@ -11,15 +11,23 @@ web:
 	@mkdir -p build/web
 	$(Q)cp $(wasm) $(web_files) build/web && cp tests/data/bridge.jpg build/web/sample.jpg
 	@echo "build/web/glint.wasm: $$(wc -c <build/web/glint.wasm) bytes, $$(gzip -9c build/web/glint.wasm | wc -c) by gzip"
+# The package for npm, in build/npm.
+npm:
+	@tools/make/deps "the package for npm" $(WEB_PACKAGES) nodejs
+	@$(MAKE) --no-print-directory wasm
+	@mkdir -p build/npm
+	$(Q)cp $(wasm) tools/hosts/web/glint.js tools/hosts/web/npm/example.js build/npm
+	$(Q)sed 's/"private"/"version": "$(VERSION)",\n  &/' tools/hosts/web/package.json >build/npm/package.json
+	$(Q)node tools/hosts/web/npm/types.js $(wasm) >build/npm/glint.d.ts
 # The module alone. Objects of another machine, as those of boards.
 wasm:
 	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi -msimd128' OUT=build/wasm32 LDFLAGS=-static \
 	        WITH_JPEG=no WITH_INIH=no WITH_JANSSON=no WITH_EXPAT=no $(wasm) $(wasm_tests)
 # Pictures of the module are those of the program.
 check-web: build/glint
-	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs
+	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs node-typescript
 	@XDG_CACHE_HOME=$(CURDIR)/build/cache GLINT=build/glint tests/hosts/web --all
-.PHONY: web wasm check-web
+.PHONY: web npm wasm check-web
 web_o := $(patsubst %,$(OUT)/%.o,tools/hosts/web/glint_web tools/hosts/web/tables tools/glint/desk/styles web_lens)
 $(OUT)/web_lens.c: tools/hosts/web/lens_tables $(wildcard lenses/*.lens lenses/*/*.lens)
 	@mkdir -p $(@D)

@@ -1,33 +1,51 @@
 // SPDX-License-Identifier: MIT
 //
-// glint.js - the WebAssembly module as a JavaScript class, for browsers and Node.
+// glint.js - draws flares by the WebAssembly module, in browsers and in Node. npm/types.js declares the types.
 //
-//     const glint = await Glint.make(bytesOfGlintWasm);
-//     glint.options({lens: "heliar-tronnier", strength: "0.7"});
-//     glint.size(width, height);
-//     const lamps = glint.find(rgba);
-//     glint.draw(rgba);        or glint.draw(rgba, lamps)
+//     import {init} from "glint-flare";
+//
+//     const engine = await init();
+//     engine.options({lens: "heliar-tronnier", strength: 0.7});
+//     engine.size(width, height);
+//     engine.pixels.set(rgba);
+//     const lamps = engine.find(engine.pixels);
+//     engine.draw(engine.pixels);        or engine.draw(engine.pixels, lamps)
 //
 // Failures throw an Error with the text that the command would print.
 
-export const COLUMNS = ["x", "y", "power", "r", "g", "b", "size", "shape", "turn", "level", "seen"];
+// A lamp: the columns of glint overlay --lights, and their defaults.
+const LAMP = {x: 0, y: 0, power: 65536, r: 1, g: 1, b: 1, size: 0, shape: 1, turn: 0, level: 1, seen: 0};
+const COLUMNS = Object.keys(LAMP), MAX_LAMPS = 1024;
 const ENOSYS = 52;
 const FOUND = -1;
 
-export class Glint {
-    static async make(wasm) {
-        const module = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm);
-        // The library prints nothing; its C library refers to these.
-        const files = {fd_close: () => ENOSYS, fd_seek: () => ENOSYS, fd_write: () => ENOSYS};
-        const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: files});
-        instance.exports._initialize();
-        return new Glint(instance.exports);
-    }
+async function load(url) {
+    if (url.protocol === "file:")
+        return (await import("node:fs/promises")).readFile(url);
+    const answer = await fetch(url);
+    if (!answer.ok)
+        throw new Error(`${url}: ${answer.status} ${answer.statusText}`);
+    return answer.arrayBuffer();
+}
 
+// Returns an engine with a memory of its own. WASM: the bytes of glint.wasm, or its WebAssembly.Module; by default
+// the bytes of the file beside this one.
+export async function init(wasm) {
+    wasm ??= await load(new URL("glint.wasm", import.meta.url));
+    const module = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm);
+    // The library prints nothing; its C library refers to these.
+    const files = {fd_close: () => ENOSYS, fd_seek: () => ENOSYS, fd_write: () => ENOSYS};
+    const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: files});
+    instance.exports._initialize();
+    return new Engine(instance.exports);
+}
+
+export class Engine {
     constructor(exports) {
         this.c = exports;
-        this.pixels = 0;
+        this.at = 0; // of the pixels, in the module's memory
         this.room = 0;
+        this.length = 0;
         this.c.web_reset();
     }
 
@@ -65,7 +83,7 @@ export class Glint {
 
     set(name, value) {
         const encode = text => this.take(new TextEncoder().encode(text + "\0"));
-        const a = encode(name), b = encode(String(value));
+        const a = encode(name), b = encode(String(typeof value === "boolean" ? Number(value) : value));
         try {
             this.check(this.c.web_set(a, b));
         } finally {
@@ -82,23 +100,39 @@ export class Glint {
             this.set(name, value);
     }
 
+    // Opens the lens of the options, for pictures of this size.
     size(width, height) {
+        this.length = 0;
+        if (![width, height].every(Number.isInteger))
+            throw new Error(`width and height must be integers, not ${width} and ${height}`);
         this.check(this.c.web_size(width, height));
+        const length = 4 * width * height;
+        if (length > this.room) {
+            this.c.web_free(this.at);
+            this.at = this.c.web_take(length);
+            this.room = this.at ? length : 0;
+        }
+        if (!this.at)
+            throw new Error("no memory for a picture of this size");
+        this.length = length;
     }
 
-    // Runs WORK with RGBA in the module's memory; copies it back if it is to be drawn on.
+    // The picture in the module's memory, in the layout of ImageData. find() and draw() copy other arrays to it and back,
+    // but not this one. Memory that grows detaches the array, so read it again after each call.
+    get pixels() {
+        return new Uint8ClampedArray(this.c.memory.buffer, this.at, this.length);
+    }
+
+    // Runs WORK on RGBA in the module's memory; copies it back if WORK draws.
     with(rgba, draws, work) {
-        if (rgba.length > this.room) {
-            this.c.web_free(this.pixels);
-            this.pixels = this.c.web_take(rgba.length);
-            this.room = this.pixels ? rgba.length : 0;
-        }
-        if (!this.pixels)
-            throw new Error("no memory for a picture of this size");
-        this.bytes(this.pixels, rgba.length).set(rgba);
-        const value = work(this.pixels);
-        if (draws)
-            rgba.set(this.bytes(this.pixels, rgba.length));
+        if (rgba.length !== this.length)
+            throw new Error(`the picture has ${rgba.length} bytes, not the ${this.length} of size(width, height)`);
+        const copies = rgba.buffer !== this.c.memory.buffer;
+        if (copies)
+            this.pixels.set(rgba);
+        const value = work(this.at);
+        if (draws && copies)
+            rgba.set(this.pixels);
         return value;
     }
 
@@ -127,8 +161,8 @@ export class Glint {
 
     // Draws the flare of LAMPS, or of those that find() found, into RGBA.
     draw(rgba, lamps = null) {
-        if (lamps)
-            this.rows(lamps.length).set(lamps.flatMap(lamp => COLUMNS.map(name => lamp[name])));
+        if (lamps && lamps.length <= MAX_LAMPS)
+            this.rows(lamps.length).set(lamps.flatMap(lamp => COLUMNS.map(name => lamp[name] ?? LAMP[name])));
         this.with(rgba, true, at => this.check(this.c.web_draw(at, lamps ? lamps.length : FOUND)));
     }
 

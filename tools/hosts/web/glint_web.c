@@ -87,6 +87,12 @@ int web_mute(int ghost)
     return 1;
 }
 
+bool web_has_option(const struct glint_option *row)
+{
+    return row->scope != GLINT_OPTION_PROGRAM &&
+           row != glint_option(GLINT_OPTION_OF_rays);
+}
+
 int web_set(const char *name, const char *text)
 {
     const struct glint_option *const row = glint_option_named(name);
@@ -94,7 +100,7 @@ int web_set(const char *name, const char *text)
     char *copy;
 
     web.error.text[0] = '\0';
-    if (!row || row->scope == GLINT_OPTION_PROGRAM) {
+    if (!row || !web_has_option(row)) {
         snprintf(web.error.text, sizeof web.error.text, "no option %s", name);
         return 0;
     }

@@ -15,6 +15,7 @@
 #ifndef GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
 #define GLINT_TOOLS_HOSTS_WEB_GLINT_WEB_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -54,9 +55,14 @@ WEB_EXPORT(web_free) void web_free(void *mem);
 /* Returns the cause of the last failed call. */
 WEB_EXPORT(web_error) const char *web_error(void);
 
+/* Returns whether web_set() accepts the option ROW: files, scenes and --budget
+ * are for programs, and rays are always exact. */
+struct glint_option;
+bool web_has_option(const struct glint_option *row);
+
 /* web_options(), web_styles() and web_lenses() return JSON texts: the table of
- * options, the styles, and the lenses with their surfaces. A text is valid
- * until the next of these calls. */
+ * options that web_set() accepts, the styles, and the lenses with their
+ * surfaces. A text is valid until the next of these calls. */
 WEB_EXPORT(web_options) const char *web_options(void);
 WEB_EXPORT(web_styles) const char *web_styles(void);
 WEB_EXPORT(web_lenses) const char *web_lenses(void);
@@ -64,8 +70,7 @@ WEB_EXPORT(web_lenses) const char *web_lenses(void);
 /* Sets all options to the defaults of glint overlay. */
 WEB_EXPORT(web_reset) void web_reset(void);
 
-/* Sets option NAME to TEXT, as on a command line. Rejects files, scenes and
- * --budget. */
+/* Sets option NAME to TEXT, as on a command line. */
 WEB_EXPORT(web_set) int web_set(const char *name, const char *text);
 
 /* Leaves out a ghost, which has the number that glint explain prints.

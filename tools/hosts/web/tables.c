@@ -78,6 +78,8 @@ const char *web_options(void)
 
     begin_json();
     for (int i = 0; (row = glint_option(i)) != NULL; i++) {
+        if (!web_has_option(row))
+            continue;
         append("{");
         append_json_text("name", row->name);
         append_json_text("value", row->value);

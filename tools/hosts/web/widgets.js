@@ -2,10 +2,9 @@
 //
 // widgets.js - controls made from the table of options, and drawings of lenses.
 
-// Options shown first; those of the command alone are not shown.
+// Options shown first, and those not shown.
 const MAIN = ["strength", "f-number", "stop", "starburst", "coating", "veil", "haze", "dust", "front-dust"];
-const HIDDEN = ["lens", "lights", "interpolate", "light-at", "save-lights", "light", "no-tracking", "show", "layer", "style", "preview",
-    "mask", "edge-fade", "keys", "still", "stop-mask", "ghosts", "front-mask", "budget", "rays", "memory", "half"];
+const HIDDEN = ["lens", "memory", "half"];
 const GROUPS = ["lamps", "lens", "brightness", "speed"];
 const COATINGS = ["mixed", "table", "none", "v-coat", "broadband-3", "broadband-4"];
 const STEPS = 1000; // of a slider

@@ -9,15 +9,14 @@
 //
 // muted: numbers of ghosts. lamps null: as they are found. draft: quickly, with a part of the light.
 // ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
-import {Glint} from "./glint.js";
+import {init} from "./glint.js";
 
 // Options that an engine takes up from picture to picture.
 const LIGHT = ["strength", "exposure", "gain", "starburst"];
 // Drafts have the options of --preview, and only the strongest lamps, as time grows with the number of lamps.
 const DRAFT = {quality: "draft", "area-samples": "1"}, DRAFT_LAMPS = 4;
 
-const urlOf = path => new URL(path, import.meta.url);
-const glint = fetch(urlOf("glint.wasm")).then(answer => answer.arrayBuffer()).then(bytes => Glint.make(bytes));
+const engine = init();
 let picture = null;
 let sized = "", found = null;
 
@@ -61,7 +60,7 @@ let queue = Promise.resolve();
 onmessage = ({data}) => {
     queue = queue.then(async () => {
         try {
-            const g = await glint;
+            const g = await engine;
             if (data.kind === "tables")
                 postMessage({kind: "tables", ...g.tables()});
             else if (data.kind === "picture") {
