@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// command.js - the command line that gives the picture of the page.
-import {ghostFile, lampFile} from "./glint.js";
+// command.js - the command line that gives the picture of the page: printed, and read.
+import {COLUMNS, ghostFile, lampFile} from "./glint.js";
+
+// A lamp of glint overlay --light-at, without its place.
+export const LAMP = {power: 2 ** 16, r: 1, g: 1, b: 1, size: 0, shape: 1, turn: 0, level: 1, seen: 0};
 
 const quote = text => /^[A-Za-z0-9_.,:\/=+@-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 
@@ -15,4 +18,44 @@ export function commandLine(name, values, muted, lamps) {
     lines.push(["glint overlay", quote(file), "-o", quote(file.replace(/\.[^.\/]*$/, "") + "-glint.png"), "--rays exact",
         ...options, ...lamps ? ["--lights lamps.csv"] : [], ...muted.length ? ["--ghosts ghosts.txt"] : []].join(" "));
     return lines.join("\n") + "\n";
+}
+
+function readLamps(text) {
+    const [head, ...rows] = text.trim().split("\n").map(line => line.split(","));
+    return rows.map(row => Object.fromEntries(COLUMNS.map(name => [name, Number(row[head.indexOf(name)] ?? LAMP[name])])));
+}
+
+// Returns {values, muted, lamps} of TEXT, lines as those of commandLine(). TABLES: of the module.
+export function readCommand(text, {options, styles}) {
+    const files = {}, state = {values: {}, muted: [], lamps: null};
+    const rest = text.replaceAll(/cat >(\S+) <<'END'\n([^]*?)END\n/g, (all, name, lines) => {
+        files[name] = lines;
+        return "";
+    });
+    const words = (rest.replaceAll("\\\n", " ").match(/(?:'[^']*'|"[^"]*"|\\.|[^\s'"\\])+/g) ?? [])
+        .map(word => word.replaceAll(/'([^']*)'|"([^"]*)"|\\(.)/g, "$1$2$3"));
+    if (words[0] !== "glint" || words[1] !== "overlay")
+        throw new Error("The command does not begin with glint overlay");
+    for (let i = 2; i < words.length; i++) {
+        const [, name, given] = /^--([a-z-]+)(?:=([^]*))?$/.exec(words[i]) ?? [], row = options.find(one => one.name === name);
+        if (words[i] === "-o")
+            i++;
+        if (!name)
+            continue;
+        if (!row)
+            throw new Error(`The page has no option --${name}`);
+        const value = row.type === "flag" ? "yes" : given ?? words[++i];
+        if (name === "lights" || name === "ghosts") {
+            if (!(value in files))
+                throw new Error(`The file ${value} of --${name} is not in the command`);
+            if (name === "lights")
+                state.lamps = readLamps(files[value]);
+            else
+                state.muted = [...files[value].matchAll(/^(\d+) mute$/gm)].map(([, number]) => Number(number));
+        } else if (name === "style")
+            Object.assign(state.values, styles.find(style => style.name === value)?.set);
+        else if (name !== "rays")
+            state.values[name] = value;
+    }
+    return state;
 }

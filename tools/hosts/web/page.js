@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // page.js - the page: what a person sets, and what the workers drew of it.
-import {commandLine} from "./command.js";
+import {commandLine, LAMP, readCommand} from "./command.js";
 import {copyMetadata} from "./jpeg.js";
 import {drawSection, makeOptions} from "./widgets.js";
 
@@ -9,11 +9,13 @@ const $ = id => document.getElementById(id);
 const MAX_PIXELS = 40e6;
 const MAX_BYTES = 200e6;
 const DRAFT_SIDE = 640; // pixels of the longer side of coarse pictures
+const DRAFT_MS = 100; // that drawing one may take; the number of its lamps follows
+const FRAME_MS = 50; // the same, of a camera
+const THUMB_LAMPS = 4;
 const GHOSTS = 12; // that are listed
 const THUMB_SIDE = 192; // pixels of the longer side of the pictures in the list of lenses
 const FULL_DELAY_MS = 250; // without a change, before the whole picture is drawn
 const PATIENCE_MS = 2000; // after which an outdated picture is abandoned
-const NEW_LAMP_POWER = 2 ** 16; // that of glint overlay --light-at
 const FIRST_LENS = "nikon-zoom-short";
 
 let tables = null;
@@ -27,6 +29,8 @@ let renderMark = 0;
 
 // ------------------------------------------------------------------- workers
 
+const compiled = fetch("glint.wasm").then(answer => answer.arrayBuffer()).then(bytes => WebAssembly.compile(bytes));
+
 // Workers of a blob have the Content-Security-Policy of the page; those of a file have
 // that of the server, which may be none.
 const workerFile = URL.createObjectURL(new Blob([`import ${JSON.stringify(new URL("worker.js", location.href).href)};`],
@@ -36,16 +40,24 @@ const workerFile = URL.createObjectURL(new Blob([`import ${JSON.stringify(new UR
 const scaleLamps = (lamps, k) => k === 1 ? lamps : lamps.map(lamp =>
     ({...lamp, x: lamp.x * k, y: lamp.y * k, power: lamp.power * k * k, size: lamp.size * k, seen: lamp.seen * k}));
 
-// A worker that draws pictures whose longer side has at most SIDE pixels.
+// Returns the number of lamps that can be drawn in GOAL, if MOST took MS: half to twice as many. It seldom changes, as
+// the ghosts of other lamps must be measured first.
+const fit = (most, ms, goal) => ms > goal / 2 && ms < 1.5 * goal ? most :
+    Math.round(Math.min(Math.max(most * goal / ms, most / 2, 1), 2 * most, 16));
+
+// A worker that draws pictures whose longer side has at most SIDE pixels: drafts of the first MOST lamps,
+// or, if MOST is 0, all lamps.
 class Painter {
-    constructor(side, isDraft) {
+    constructor(side, most) {
         this.side = side;
-        this.isDraft = isDraft;
+        this.most = most;
+        this.isDraft = most > 0;
         this.start();
     }
 
     start() {
-        this.worker = new Worker(workerFile, {type: "module"});
+        const worker = this.worker = new Worker(workerFile, {type: "module"});
+        compiled.then(module => worker.postMessage({kind: "module", module}));
         this.worker.onmessage = ({data}) => this.take(data);
         this.worker.onerror = event => report(event.message || "the page's worker failed", true);
         this.busy = false;
@@ -70,14 +82,17 @@ class Painter {
         this.worker.postMessage(this.picture);
     }
 
-    post(message) {
+    post(message, moved = []) {
         this.busy = true;
         this.since = performance.now();
-        this.worker.postMessage({...message, id: photo.id});
+        this.worker.postMessage({...message, id: photo.id}, moved);
     }
 
-    send(values, muted, lamps, ghosts = 0) {
-        this.post({kind: "draw", values, muted, lamps: lamps && scaleLamps(lamps, this.k), draft: this.isDraft, ghosts});
+    // LAMPS null: those that the worker finds. MOST: see worker.js.
+    send(values, muted, lamps, most, ghosts = 0) {
+        if (lamps && most) // the strongest, and the one being changed
+            lamps = [...lamps].sort((a, b) => (b === lamps[selected]) - (a === lamps[selected]) || b.power - a.power);
+        this.post({kind: "draw", values, muted, lamps: lamps && scaleLamps(lamps, this.k), most, ghosts});
     }
 }
 
@@ -91,17 +106,19 @@ class View extends Painter {
         this.waiting = this.busy;
         if (this.busy || !photo)
             return;
-        if (this.isDraft && !state.lamps && photo.searched !== searchKey())
-            return full.search();
         if (!this.isDraft)
-            report("Drawing the whole picture");
+            reportProgress("Drawing the whole picture");
         this.mark = this.drawing = renderMark;
-        this.send(values(), state.muted, this.isDraft ? lamps() : state.lamps);
+        this.send(values(), state.muted, this.lamps(), this.most);
     }
 
-    // Searches lamps, after which the coarse view draws.
+    lamps() {
+        return state.lamps || (this.isDraft && photo.searched === searchKey() ? found : null);
+    }
+
+    // Searches lamps. Until they are found, the coarse view draws those that it finds in the small picture.
     search() {
-        if (this.busy && this.searching === searchKey())
+        if (state.lamps || photo.searched === searchKey() || this.busy && this.searching === searchKey())
             return;
         if (this.busy)
             this.restart();
@@ -114,6 +131,7 @@ class View extends Painter {
         photo.searched = this.searching;
         ({found, doubtful} = data);
         showLamps();
+        renderMark++;
         coarse.draw();
     }
 
@@ -136,11 +154,13 @@ class View extends Painter {
     show(data) {
         if (this.isDraft && shown.full >= this.mark)
             return;
-        if (this.isDraft)
+        if (this.isDraft) {
+            this.most = fit(this.most, data.ms, DRAFT_MS);
             planFull();
-        else {
+        } else {
             shown.full = this.mark;
-            report(`${data.width} × ${data.height}, ${lamps().length} lamps, drawn in ${Math.round(data.ms)} ms; ` +
+            reportProgress(!lamps().length ? "No lamp was found: add one" + (doubtful.length ? ", or click a dashed ring" : "") :
+                `${data.width} × ${data.height}, ${lamps().length} lamps, drawn in ${Math.round(data.ms)} ms; ` +
                 `${(100 * data.clipped).toFixed(1)} % of the pixels are clipped`);
             document.body.dataset.ready = this.mark;
             document.body.dataset.memory = data.memory;
@@ -148,7 +168,8 @@ class View extends Painter {
         paint($("after"), data);
         if (!document.body.dataset.first)
             document.body.dataset.first = Math.round(performance.now() - photo.opened);
-        document.body.dataset.step = Math.round(performance.now() - changedAt);
+        if (this.mark === renderMark)
+            document.body.dataset.step ||= Math.round(performance.now() - changedAt);
     }
 }
 
@@ -162,11 +183,11 @@ class Gallery extends Painter {
         if ($("ghost-box").open && this.listed !== key) {
             delete all.ghost;
             this.listed = key;
-            return this.send(all, [], lamps(), GHOSTS);
+            return this.send(all, [], lamps(), this.most, GHOSTS);
         }
         this.button = [...$("lenses").children].find(one => one.dataset.seen === "true" && Number(one.dataset.thumb) !== photo.id);
         if (this.button)
-            this.send({lens: this.button.dataset.name}, [], lamps());
+            this.send({lens: this.button.dataset.name}, [], lamps(), this.most);
     }
 
     take(data) {
@@ -181,9 +202,124 @@ class Gallery extends Painter {
         this.next();
     }
 }
+
+// Draws the frames of a camera as they come. While one is drawn, others are left out.
+class Live extends Painter {
+    async on() {
+        if (!navigator.mediaDevices)
+            throw new Error("browsers allow it only to pages of https or of this computer");
+        const video = Object.assign(document.createElement("video"), {playsInline: true, muted: true,
+            srcObject: await navigator.mediaDevices.getUserMedia({video: {width: 640, height: 480}})});
+        await video.play();
+        const {videoWidth: width, videoHeight: height} = video;
+        this.video = video;
+        begin({file: new File([], "camera.png"), width, height, live: true});
+        [coarse, full, gallery].filter(painter => painter.busy).forEach(painter => painter.restart());
+        $("command").value = "";
+        this.context = new OffscreenCanvas(width, height).getContext("2d", {willReadFrequently: true});
+        this.count = 0;
+        this.from = photo.opened = performance.now();
+        this.watch();
+    }
+
+    // Returns a file of the last frame without flare.
+    async off() {
+        this.recorder?.stop();
+        this.video.srcObject.getTracks().forEach(track => track.stop());
+        this.video = null;
+        $("meter").textContent = "";
+        return new File([await this.context.canvas.convertToBlob()], "camera.png", {type: "image/png"});
+    }
+
+    watch() {
+        this.video?.requestVideoFrameCallback(() => {
+            this.fresh = true;
+            this.grab();
+            this.watch();
+        });
+    }
+
+    grab() {
+        if (this.busy || !this.fresh || !this.video)
+            return;
+        const {width, height} = photo;
+        this.fresh = false;
+        this.context.drawImage(this.video, 0, 0, width, height);
+        const rgba = new Uint8Array(this.context.getImageData(0, 0, width, height).data.buffer);
+        this.post({kind: "frame", values: values(), muted: state.muted, lamps: state.lamps, most: this.most, width, height, rgba}, [rgba.buffer]);
+    }
+
+    take(data) {
+        this.busy = false;
+        if (!this.video || data.id !== photo.id)
+            return;
+        if (data.kind === "failed")
+            report(data.text, true);
+        else
+            this.show(data);
+        this.grab();
+    }
+
+    show(data) {
+        $("before").getContext("2d").drawImage(this.context.canvas, 0, 0);
+        paint($("after"), data);
+        found = data.lamps;
+        showLamps();
+        this.most = fit(this.most, data.ms, FRAME_MS);
+        this.count++;
+        const seconds = (performance.now() - this.from) / 1000;
+        if (seconds < 1)
+            return;
+        $("meter").textContent = `${(this.count / seconds).toFixed(1)} frames a second`;
+        this.count = 0;
+        this.from = performance.now();
+    }
+
+    // Starts or ends a recording, which is then saved.
+    record() {
+        if (this.recorder)
+            return this.recorder.stop();
+        const parts = [], type = ["video/webm", "video/mp4"].find(one => MediaRecorder.isTypeSupported(one));
+        this.recorder = new MediaRecorder($("after").captureStream(), {mimeType: type});
+        this.recorder.ondataavailable = event => parts.push(event.data);
+        this.recorder.onstop = () => {
+            this.recorder = null;
+            $("record").setAttribute("aria-pressed", false);
+            download(new Blob(parts, {type}), "camera-glint." + type.slice(6));
+        };
+        this.recorder.start();
+        $("record").setAttribute("aria-pressed", true);
+    }
+}
+
+let live = null;
+
+async function startCamera() {
+    try {
+        $("camera").disabled = true;
+        live ??= new Live(Infinity, 1);
+        report("Opening the camera");
+        await live.on();
+        report("The camera is drawn live. Camera again: the last frame becomes the photograph");
+    } catch (error) {
+        report(error.name === "NotAllowedError" ? "The browser does not allow the camera for this page" : "No camera can be opened: " + error.message, true);
+    }
+    showCamera();
+}
+
+const isLive = () => Boolean(live?.video && photo?.live);
+
+function showCamera() {
+    $("camera").disabled = false;
+    $("camera").setAttribute("aria-pressed", isLive());
+    $("record").hidden = !isLive();
+    for (const id of ["export", "export-jpeg"])
+        $(id).disabled = isLive() || !photo;
+}
+
 const shown = {full: -1};
 let fullTimer = 0, changedAt = 0;
-const coarse = new View(DRAFT_SIDE, true), full = new View(Infinity, false), gallery = new Gallery(THUMB_SIDE, true);
+const coarse = new View(DRAFT_SIDE, 1), full = new View(Infinity, 0), gallery = new Gallery(THUMB_SIDE, THUMB_LAMPS);
 
 function planFull() {
     clearTimeout(fullTimer);
@@ -199,6 +335,14 @@ function paint(canvas, {rgba, width, height}) {
 function report(text, bad = false) {
     $("status").textContent = text;
     $("status").className = bad ? "bad" : "";
+}
+
+const hasError = () => $("status").className === "bad";
+
+// Reports TEXT unless an error is shown, which remains until the next change.
+function reportProgress(text) {
+    if (!hasError())
+        report(text);
 }
 
 // ---------------------------------------------------------------- the state
@@ -254,6 +398,17 @@ function setOption(name, value) {
 function render() {
     renderMark++;
     changedAt = performance.now();
+    if (hasError())
+        report("");
+    showState();
+    if (!photo || isLive()) // which draws the next frame in this state
+        return;
+    clearTimeout(fullTimer);
+    coarse.draw();
+    full.search();
+}
+
+function showState() {
     $("undo").disabled = !past.length;
     $("redo").disabled = !future.length;
     for (const button of $("styles").children)
@@ -264,11 +419,8 @@ function render() {
     }
     showLamps();
     showPressed();
-    if (!photo)
-        return;
-    $("command").value = commandLine(photo.file.name, values(), state.muted, state.lamps);
-    clearTimeout(fullTimer);
-    coarse.draw();
+    if (photo && !isLive())
+        $("command").value = commandLine(photo.file.name, values(), state.muted, state.lamps);
 }
 
 // --------------------------------------------------------------------- lamps
@@ -311,7 +463,7 @@ function changeLamp(i, patch, mark) {
 }
 
 function addLamp(x, y) {
-    const list = [...lamps(), {x, y, power: NEW_LAMP_POWER, r: 1, g: 1, b: 1, size: 0, shape: 1, turn: 0, level: 1, seen: 0}];
+    const list = [...lamps(), {...LAMP, x, y}];
     selected = list.length - 1;
     change({lamps: list});
     $("lamps").children[selected].focus();
@@ -412,6 +564,15 @@ function showPressed() {
 
 // -------------------------------------------------------------------- opening
 
+// Returns the width and height of the picture in FILE. Its pixels are not decoded, so it may have any number.
+async function measure(file) {
+    const image = new Image();
+    image.src = URL.createObjectURL(file);
+    await new Promise((done, fail) => [image.onload, image.onerror] = [done, fail]);
+    URL.revokeObjectURL(image.src);
+    return [image.naturalWidth, image.naturalHeight];
+}
+
 async function open(file) {
     if (!file)
         return;
@@ -422,40 +583,62 @@ async function open(file) {
             throw new Error(`${file.name}: larger than 200 MB`);
         report(`Opening ${file.name}`);
         const opened = performance.now();
-        const bitmap = await createImageBitmap(file, {colorSpaceConversion: "none", premultiplyAlpha: "none"}).catch(() => {
-            throw new Error(`${file.name}: the picture is damaged, too large or of an unknown kind`);
-        });
-        const {width, height} = bitmap;
+        const refuse = () => {
+            throw new Error(`${file.name}: the picture is damaged or of an unknown kind`);
+        };
+        const [width, height] = await measure(file).catch(refuse);
         if (width * height > MAX_PIXELS || Math.max(width, height) > 32768)
             throw new Error(`${file.name}: ${width} × ${height} is more than ${MAX_PIXELS / 1e6} megapixels; glint overlay has no such limit`);
-        const pixels = size => {
-            const canvas = new OffscreenCanvas(size.width, size.height), context = canvas.getContext("2d", {willReadFrequently: true});
-            context.imageSmoothingQuality = "high";
-            context.drawImage(bitmap, 0, 0, size.width, size.height);
-            return context.getImageData(0, 0, size.width, size.height).data;
-        };
-        photo = {id: (photo ? photo.id : 0) + 1, file, width, height, opened};
-        for (const painter of [coarse, full, gallery])
-            painter.open(pixels);
+        const bitmap = await createImageBitmap(file, {colorSpaceConversion: "none", premultiplyAlpha: "none"}).catch(refuse);
+        show(file, bitmap, opened);
         bitmap.close();
-        found = [];
-        doubtful = [];
-        selected = -1;
-        past = [];
-        future = [];
-        state = {...state, lamps: null};
-        delete document.body.dataset.first;
-        $("empty").hidden = true;
-        $("frame").hidden = false;
-        for (const id of ["add", "find", "export", "export-jpeg"])
-            $(id).disabled = false;
-        setZoom(1);
-        render();
-        for (const id of ["before", "after"]) // meanwhile the workers find the lamps
-            paint($(id), full.picture);
     } catch (error) {
         report(error.message, true);
     }
+}
+
+// Makes BITMAP of FILE the photograph. First has a coarse picture drawn, whose worker finds lamps itself.
+function show(file, bitmap, opened) {
+    const {width, height} = bitmap;
+    const pixels = size => {
+        const context = new OffscreenCanvas(size.width, size.height).getContext("2d", {willReadFrequently: true});
+        context.imageSmoothingQuality = "high";
+        context.drawImage(bitmap, 0, 0, size.width, size.height);
+        return context.getImageData(0, 0, size.width, size.height).data;
+    };
+    if (isLive())
+        live.off();
+    begin({file, width, height, opened});
+    showCamera();
+    coarse.open(pixels);
+    coarse.draw();
+    $("before").getContext("2d").drawImage(bitmap, 0, 0);
+    full.open(pixels);
+    gallery.open(pixels);
+    full.search();
+}
+
+// Makes NEXT the photograph, without lamps.
+function begin(next) {
+    clearTimeout(fullTimer);
+    photo = {id: (photo ? photo.id : 0) + 1, ...next};
+    found = [];
+    doubtful = [];
+    selected = -1;
+    past = [];
+    future = [];
+    state = {...state, lamps: null};
+    renderMark++;
+    changedAt = performance.now();
+    delete document.body.dataset.first;
+    $("empty").hidden = true;
+    $("frame").hidden = false;
+    [$("before").width, $("before").height] = [photo.width, photo.height];
+    $("after").width = 1; // clears it
+    for (const id of ["add", "find"])
+        $(id).disabled = false;
+    setZoom(1);
+    showState();
 }
 
 // Saves the whole picture as TYPE, "png" or "jpeg".
@@ -463,7 +646,7 @@ async function save(type) {
     report("Drawing the picture to save");
     if (shown.full < renderMark) {
         full.draw();
-        while (shown.full < renderMark && !$("status").classList.contains("bad"))
+        while (shown.full < renderMark && !hasError())
             await new Promise(done => setTimeout(done, 50));
     }
     if (shown.full < renderMark)
@@ -471,12 +654,16 @@ async function save(type) {
     let blob = await new Promise(done => $("after").toBlob(done, "image/" + type, 0.95));
     if (type === "jpeg")
         blob = await copyMetadata(photo.file, blob);
+    download(blob, photo.file.name.replace(/\.[^.]*$/, "") + "-glint." + (type === "jpeg" ? "jpg" : type));
+}
+
+function download(blob, name) {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(blob);
-    link.download = photo.file.name.replace(/\.[^.]*$/, "") + "-glint." + (type === "jpeg" ? "jpg" : type);
+    link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 60000);
-    report(`Saved ${link.download}`);
+    report(`Saved ${name}`);
 }
 
 // ----------------------------------------------------------------------- view
@@ -587,6 +774,8 @@ $("sample").onclick = async () => {
     else
         report("sample.jpg is missing", true);
 };
+$("camera").onclick = async () => isLive() ? open(await live.off()) : startCamera();
+$("record").onclick = () => live.record();
 $("undo").onclick = () => travel(past, future);
 $("redo").onclick = () => travel(future, past);
 $("export").onclick = () => save("png");
@@ -608,6 +797,15 @@ $("fit").onclick = () => setZoom(1);
 $("copy").onclick = () => {
     $("command").select();
     navigator.clipboard ? navigator.clipboard.writeText($("command").value) : document.execCommand("copy");
+};
+$("apply").onclick = () => {
+    try {
+        change({style: "", ...readCommand($("command").value, tables)});
+        options.forEach(option => option.show());
+        showChosen();
+    } catch (error) {
+        report(error.message, true);
+    }
 };
 $("frame").ondblclick = event => addLamp(...pointOf(event));
 $("stage").onwheel = event => {
@@ -634,5 +832,9 @@ addEventListener("keydown", event => {
     event.preventDefault();
     event.shiftKey ? travel(future, past) : travel(past, future);
 });
+// glint web serves the page from this computer, at a path that is not visited again.
+if (location.protocol === "https:" || location.pathname === "/")
+    navigator.serviceWorker?.register("sw.js").catch(() => {});
+compiled.catch(() => report("glint.wasm is missing", true));
 setDivider();
 coarse.worker.postMessage({kind: "tables"});

@@ -2,23 +2,27 @@
 //
 // worker.js - draws pictures beside the page, so that it never waits.
 //
+//     {kind: "module", module}                 the compiled glint.wasm
 //     {kind: "tables"}                         -> {kind: "tables", options, styles, lenses}
 //     {kind: "picture", width, height, rgba}   the picture to come
 //     {kind: "find", id, values, muted}        -> {kind: "found", id, found, doubtful}
-//     {kind: "draw", id, values, muted, lamps, draft, ghosts}  -> {kind: "drawn", id, ...}
+//     {kind: "draw", id, values, muted, lamps, most, ghosts}   -> {kind: "drawn", id, ...}
+//     {kind: "frame", ...}                     picture and draw in one, for a camera
 //
-// muted: numbers of ghosts. lamps null: as they are found. draft: quickly, with a part of the light.
-// ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
+// muted: numbers of ghosts. lamps null: as they are found. most: draws a draft of the first MOST lamps; 0: the
+// whole picture. ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
 import {init} from "./glint.js";
 
 // Options that an engine takes up from picture to picture.
 const LIGHT = ["strength", "exposure", "gain", "starburst"];
-// Drafts have the options of --preview, and only the strongest lamps, as time grows with the number of lamps.
-const DRAFT = {quality: "draft", "area-samples": "1"}, DRAFT_LAMPS = 4;
+const DRAFT = {quality: "draft", "area-samples": "1"}; // as --preview
 
-const engine = init();
+let setModule;
+const engine = new Promise(done => setModule = module => done(init(module)));
+const NEAR = 2; // pixels
 let picture = null;
 let sized = "", found = null;
+let settled = []; // lamps of the last frame of a camera
 
 function clippedShare(rgba) {
     let n = 0;
@@ -44,20 +48,42 @@ function find(g, {id, values, muted}) {
     postMessage({kind: "found", id, found, doubtful: g.doubtful()});
 }
 
-function draw(g, {id, values, muted, lamps, draft, ghosts}) {
+function draw(g, {id, values, muted, lamps, most, ghosts}) {
     const started = performance.now(), rgba = picture.rgba.slice();
-    prepare(g, draft ? {...values, ...DRAFT} : values, muted);
-    if (draft)
-        lamps = lamps.sort((a, b) => b.power - a.power).slice(0, DRAFT_LAMPS);
-    else if (!lamps)
+    prepare(g, most ? {...values, ...DRAFT} : values, muted);
+    if (!lamps)
         found ??= g.find(picture.rgba);
-    g.draw(rgba, lamps);
+    g.draw(rgba, most ? (lamps ?? found).slice(0, most) : lamps);
     postMessage({kind: "drawn", id, rgba, width: picture.width, height: picture.height, ghosts: ghosts ? g.ghosts(ghosts) : [],
-        ms: performance.now() - started, clipped: clippedShare(rgba), memory: g.c.memory.buffer.byteLength}, [rgba.buffer]);
+        ms: performance.now() - started,
+        clipped: clippedShare(rgba), memory: g.c.memory.buffer.byteLength}, [rgba.buffer]);
+}
+
+// Returns SEEN, the lamps of a frame. Those that hardly moved have the place and extent of the last frame, for which
+// the ghosts have been measured, and their power follows slowly, as noise changes it.
+function settle(seen) {
+    settled = seen.map(lamp => {
+        const old = settled.find(({x, y}) => Math.hypot(x - lamp.x, y - lamp.y) < NEAR);
+        return old ? {...old, power: old.power + (lamp.power - old.power) / 4} : lamp;
+    });
+    return settled;
+}
+
+function drawFrame(g, frame) {
+    const {id, values, muted, width, height, rgba, most} = frame, started = performance.now();
+    if (!picture || picture.width !== width || picture.height !== height)
+        sized = "";
+    picture = frame;
+    prepare(g, {...values, ...DRAFT}, muted);
+    const lamps = frame.lamps ?? settle(g.find(rgba));
+    g.draw(rgba, lamps.slice(0, most));
+    postMessage({kind: "drawn", id, rgba, width, height, lamps, ms: performance.now() - started}, [rgba.buffer]);
 }
 
 let queue = Promise.resolve();
 onmessage = ({data}) => {
+    if (data.kind === "module")
+        return setModule(data.module);
     queue = queue.then(async () => {
         try {
             const g = await engine;
@@ -67,7 +93,7 @@ onmessage = ({data}) => {
                 picture = data;
                 sized = "";
             } else
-                (data.kind === "find" ? find : draw)(g, data);
+                ({find, draw, frame: drawFrame})[data.kind](g, data);
         } catch (error) {
             sized = "";
             postMessage({kind: "failed", id: data.id, text: error.message});
