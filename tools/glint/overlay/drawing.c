@@ -771,6 +771,7 @@ int drawing_open_model(const struct tool *tool, struct drawing *drawing)
     struct drawing_run *const run = &drawing->run;
     struct opened_lens fresh = {.tints = NULL};
     struct glint_engine *const before = run->engine;
+    const bool is_at_set = run->is_at_set;
     const int unbaked = s->unbaked;
     int code;
 
@@ -788,6 +789,7 @@ int drawing_open_model(const struct tool *tool, struct drawing *drawing)
     if (!before) /* The size of pictures is not known yet. */
         return EXIT_OK;
     code = drawing_allocate(tool, drawing, run->view.width, run->view.height);
+    run->is_at_set = is_at_set; /* --light-at follows the same lamps. */
     if (code == EXIT_OK)
         glint_engine_continue(run->engine, before);
     glint_engine_destroy(before);
