@@ -220,11 +220,12 @@ static void find_light_with_lowest_psnr(const struct job *job,
 
 /* Compares the pictures of N random lights, or, if N is 0, of those of
  * picture_check_run(), and leaves the results in JOB. */
-static enum glint_status
-compare_lights(const struct tool *tool, const struct glint_prescription *lens,
-               const struct glint_lens *model,
-               const struct glint_bake_options *baked, int n, struct job *job,
-               struct glint_error *error)
+static enum glint_status compare_lights(const struct tool *tool,
+                                        const struct glint_prescription *lens,
+                                        const struct glint_lens *model,
+                                        const struct glint_bake_options *baked,
+                                        int n, struct job *job,
+                                        struct glint_error *error)
 {
     const double *const band = baked->band_nm, span = band[1] - band[0];
     /* about 620, 540 and 460 nm for the default wavelength range */
@@ -247,9 +248,9 @@ compare_lights(const struct tool *tool, const struct glint_prescription *lens,
                                part * lens->film_width_mm,
                                part * lens->film_height_mm)};
     glint_optics_of(lens, &optics);
-    most_deg = fmin(baked->max_deg,
-                    180 / GLINT_PI *
-                        atan(0.5 * part * diagonal_mm / optics.focal_mm));
+    most_deg =
+        fmin(baked->max_deg,
+             180 / GLINT_PI * atan(0.5 * part * diagonal_mm / optics.focal_mm));
     if (n)
         list_random_lights(job, n, most_deg);
     else
