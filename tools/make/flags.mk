@@ -79,6 +79,8 @@ $(call of,$(addprefix src/image/,codes quads) src/veil/veil_pass src/veil/veil_f
 $(call of,$(addprefix platform/panel/,panel sinks),-O3)
 # The floor that frames are measured by is as fast as can be.
 $(call of,tools/measure/canvas,-O3)
+# Frequencies in fours.
+$(call of,src/engine/star/arcs,-O3 -fno-math-errno -fno-trapping-math)
 # Rays in eights: errno and traps are all that these give away.
 $(call of,src/bake/trace/trace src/bake/trace/forms src/bake/table/form,-O3 -fno-math-errno -fno-trapping-math)
 ifeq ($(findstring clang,$(CC)),)

@@ -33,14 +33,18 @@ struct glint_arcs {
 void glint_arcs_init(struct glint_arcs *arcs, int n, double rotation_deg,
                      double round);
 
-/* Returns |F(q)|^2 / A^2, the pattern relative to its centre, where A is the
- * area of the stop. q is in cycles per stop radius, x to the right, y up. */
-double glint_arcs_compute_pattern(const struct glint_arcs *arcs, double qx,
-                                  double qy);
+/* Sets PATTERN[0 .. N - 1] to |F(q)|^2 / A^2, the pattern relative to its
+ * centre, at the frequencies Q, 0 or more, in one DIRECTION. A is the area of
+ * the stop. Q is in cycles per stop radius, DIRECTION in radians, y up. */
+void glint_arcs_compute_patterns(const struct glint_arcs *arcs,
+                                 double direction, const double *q, int n,
+                                 double *pattern);
 
-/* Returns the same as glint_arcs_compute_pattern(), without the interference
- * fringes between different arcs, for frequencies far from the centre. */
-double glint_arcs_compute_far_pattern(const struct glint_arcs *arcs, double qx,
-                                      double qy);
+/* Sets PATTERN to the same as glint_arcs_compute_patterns(), without the
+ * interference fringes between different arcs, for frequencies far from the
+ * centre, above 0. */
+void glint_arcs_compute_far_patterns(const struct glint_arcs *arcs,
+                                     double direction, const double *q, int n,
+                                     double *pattern);
 
 #endif

@@ -8,7 +8,12 @@
 #include "engine/setup/spectrum.h"
 #include "glint/view.h"
 
-enum { ORDERS = 20, BLEND_FROM = 15 };
+enum {
+    ORDERS = 20,
+    BLEND_FROM = 15,
+    /* rows of a table at the shortest wavelength, 400 nm of 550, and two */
+    MAX_ROWS = ORDERS * GLINT_PSF_STEPS * 11 / 8 + 4
+};
 
 /* range of the table of a line's profile, in units of width_px */
 static const double span = 32;
@@ -197,8 +202,11 @@ static double *tabulate_patterns(const struct glint_psf *p, int n_rows)
     double *table =
         malloc((size_t)n_rows * (size_t)p->n_columns * sizeof *table);
     const double half = 0.5 * GLINT_PI / p->n_lines;
+    double q[MAX_ROWS], pattern[MAX_ROWS];
     struct sides sides;
 
+    for (int i = 0; i < n_rows; i++)
+        q[i] = 0.5 * i / GLINT_PSF_STEPS;
     if (p->n_blades)
         set_polygon_sides(&sides, p->n_blades, 0);
     for (int k = 0; k < p->n_columns && table; k++) {
@@ -209,15 +217,15 @@ static double *tabulate_patterns(const struct glint_psf *p, int n_rows)
                         : 0;
         const double x = cos(angle), y = sin(angle);
 
-        for (int i = 0; i < n_rows; i++) {
-            const double q = 0.5 * i / GLINT_PSF_STEPS;
-
+        if (p->fans)
+            glint_arcs_compute_patterns(&p->arcs, angle, q, n_rows, pattern);
+        for (int i = 0; i < n_rows; i++)
             table[i * p->n_columns + k] =
-                (p->fans ? glint_arcs_compute_pattern(&p->arcs, q * x, q * y)
-                 : p->n_blades ? compute_polygon_pattern(&sides, q * x, q * y)
-                               : compute_circle_pattern(q)) *
-                glint_psf_compute_soft_edge_factor(p->soft, q);
-        }
+                (p->fans ? pattern[i]
+                 : p->n_blades
+                     ? compute_polygon_pattern(&sides, q[i] * x, q[i] * y)
+                     : compute_circle_pattern(q[i])) *
+                glint_psf_compute_soft_edge_factor(p->soft, q[i]);
     }
     return table;
 }
@@ -406,9 +414,10 @@ void glint_psf_compute_far_light(const struct glint_psf *p, double x, double y,
         return;
     }
     if (p->fans) {
+        const struct glint_fans_row row = glint_fans_find_row(p, hypot(x, y));
+
         glint_fans_interpolate_light(
-            p, hypot(x, y), atan2(y, x) - glint_psf_compute_line_angle(p, 0),
-            rgb);
+            &row, atan2(y, x) - glint_psf_compute_line_angle(p, 0), rgb);
         return;
     }
     add_edge_light(p, x, y, window, self, rgb, &sum);

@@ -92,10 +92,19 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
 /* Computes the table of fans, for orders of diffraction above 12. Returns
  * GLINT_E_MEMORY on failure. */
 enum glint_status glint_fans_make_table(struct glint_psf *psf);
-/* Sets RGB to the light of fans R pixels from the lamp, at an angle OFF from a
- * line. */
-void glint_fans_interpolate_light(const struct glint_psf *psf, double r,
-                                  double off, double rgb[3]);
+/* The light of fans at one distance from the lamp. */
+struct glint_fans_row {
+    const double (*light)[3]; /* the row of the table below the distance */
+    double part;         /* position between this row and the next, 0 .. 1 */
+    double per_r2, step; /* 1 / r^2; angle between lines, radians */
+};
+
+/* Returns the row for R pixels from the lamp. */
+struct glint_fans_row glint_fans_find_row(const struct glint_psf *psf,
+                                          double r);
+/* Sets RGB to the light of fans at an angle OFF from a line. */
+void glint_fans_interpolate_light(const struct glint_fans_row *row, double off,
+                                  double rgb[3]);
 
 /* Returns the factor by which a soft edge reduces the light at Q cycles per
  * stop radius. SOFT is the width of the edge, stop radii. The factor is the

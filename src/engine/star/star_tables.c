@@ -125,36 +125,53 @@ static void make_line_tables(struct glint_star_tables *t,
 
 /* -------------------------------------------------------------------- halo */
 
-/* Adds to RGB the light of fans at R pixels from a lamp of radius RADIUS, and
- * at V pixels and the angle OFF from a line, as the mean over chords of the
- * lamp's disc. Point lights are blurred slightly, too, as a fan may be thinner
- * than a pixel, and its sides steeper than the table's columns resolve. */
-static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
-                             double v, double radius, double rgb[3])
+/* Weights of the chords of a lamp's disc: part[i] for the chord at i / (n + 1)
+ * radii from its centre. All 2 n + 1 sum to 1. */
+struct disc {
+    int n;
+    double radius; /* pixels */
+    double part[100];
+};
+
+static struct disc make_lamp_disc(double radius)
 {
-    const int n = 8 + (int)(radius / 1.5);
-    const double half = hypot(radius, 0.4 + 0.1 * v);
+    struct disc d = {.n = 8 + (int)(radius / 1.5), .radius = radius};
     double total = 0;
 
-    for (int i = -n; i <= n; i++)
-        total += sqrt(1 - (double)(i * i) / ((n + 1) * (n + 1)));
-    for (int i = -n; i <= n; i++) {
-        const double part =
-            sqrt(1 - (double)(i * i) / ((n + 1) * (n + 1))) / total;
-        const double turn = half * i / ((n + 1) * fmax(r, radius));
+    for (int i = 0; i <= d.n; i++) {
+        d.part[i] = sqrt(1 - (double)(i * i) / ((d.n + 1) * (d.n + 1)));
+        total += (i ? 2 : 1) * d.part[i];
+    }
+    for (int i = 0; i <= d.n; i++)
+        d.part[i] /= total;
+    return d;
+}
+
+/* Adds to RGB the light of fans at R pixels from a lamp, and at V pixels and
+ * the angle OFF from a line, as the mean over chords of the lamp's disc. Point
+ * lights are blurred slightly, too, as a fan may be thinner than a pixel, and
+ * its sides steeper than the table's columns resolve. */
+static void add_blurred_fans(const struct glint_psf *psf, double r, double off,
+                             double v, const struct disc *disc, double rgb[3])
+{
+    const struct glint_fans_row row = glint_fans_find_row(psf, r);
+    const double half = hypot(disc->radius, 0.4 + 0.1 * v);
+    const double turn = half / ((disc->n + 1) * fmax(r, disc->radius));
+
+    for (int i = -disc->n; i <= disc->n; i++) {
         double here[3];
 
-        glint_fans_interpolate_light(psf, r, off + turn, here);
+        glint_fans_interpolate_light(&row, off + turn * i, here);
         for (int c = 0; c < 3; c++)
-            rgb[c] += part * here[c];
+            rgb[c] += disc->part[i < 0 ? -i : i] * here[c];
     }
 }
 
 /* Sets LOG2_OF to log2 of (light times r^2) at ROW and COLUMN of the halo table
- * for lamps of RADIUS pixels. */
+ * for lamps with the disc DISC. */
 static void compute_halo_node(const struct glint_psf *psf,
                               const struct window *window, double reach,
-                              double radius, int row, int column,
+                              const struct disc *disc, int row, int column,
                               double log2_of[3])
 {
     const double r = exp2(2 + 0.25 * row);
@@ -164,7 +181,7 @@ static void compute_halo_node(const struct glint_psf *psf,
     double rgb[3] = {0, 0, 0};
 
     if (psf->fans)
-        add_blurred_fans(psf, r, off, v, radius, rgb);
+        add_blurred_fans(psf, r, off, v, disc, rgb);
     else
         glint_psf_compute_far_light(psf, r * cos(angle), r * sin(angle),
                                     evaluate_fade_window, window, rgb);
@@ -172,17 +189,18 @@ static void compute_halo_node(const struct glint_psf *psf,
         log2_of[c] = log2(fmax(rgb[c] * r * r, 0x1p-60));
 }
 
-/* Computes and encodes row ROW of the halo table for lamps of radius RADIUS.
+/* Computes and encodes row ROW of the halo table for lamps with the disc DISC.
  * Raises *MOST to the max code of the row. */
 static void encode_halo_row(struct glint_star_tables *t,
                             const struct glint_psf *psf,
-                            const struct window *window, double radius, int row,
+                            const struct window *window,
+                            const struct disc *disc, int row,
                             glint_star_halo_row codes, uint16_t *most)
 {
     double log2_of[3];
 
     for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-        compute_halo_node(psf, window, t->reach_q8 / 256.0, radius, row, k,
+        compute_halo_node(psf, window, t->reach_q8 / 256.0, disc, row, k,
                           log2_of);
         for (int c = 0; c < 3; c++) {
             const double steps = 2048 * log2_of[c] - t->halo_log2_q16 / 32.0;
@@ -199,17 +217,18 @@ static void make_halo_table(struct glint_star_tables *t,
                             const struct window *window)
 {
     const double reach = t->reach_q8 / 256.0;
+    const struct disc point = make_lamp_disc(0);
     double top = -60, log2_of[3];
 
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
         for (int k = 0; k < GLINT_STAR_HALO_COLUMNS; k++) {
-            compute_halo_node(psf, window, reach, 0, i, k, log2_of);
+            compute_halo_node(psf, window, reach, &point, i, k, log2_of);
             top = fmax(top, glint_largest_channel(log2_of));
         }
     t->halo_log2_q16 = (int32_t)lrint((top - 31.99) * 65536);
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++) {
         t->halo_max[i] = 0;
-        encode_halo_row(t, psf, window, 0, i, t->halo[i], &t->halo_max[i]);
+        encode_halo_row(t, psf, window, &point, i, t->halo[i], &t->halo_max[i]);
     }
 }
 
@@ -219,11 +238,14 @@ static void make_wide_lamp_halos(struct glint_star_tables *t,
                                  const struct window *window,
                                  glint_star_halo_row *wide)
 {
-    for (int k = 0; k < GLINT_STAR_WIDE; k++)
+    for (int k = 0; k < GLINT_STAR_WIDE; k++) {
+        const struct disc disc = make_lamp_disc(exp2(k - 1));
+
         for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
-            encode_halo_row(t, psf, window, exp2(k - 1), i,
+            encode_halo_row(t, psf, window, &disc, i,
                             wide[k * GLINT_STAR_HALO_ROWS + i],
                             &t->halo_max[i]);
+    }
     t->wide = (const glint_star_halo_row *)wide;
 }
 

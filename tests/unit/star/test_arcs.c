@@ -16,6 +16,26 @@
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
+static double compute_arc_pattern(const struct glint_arcs *arcs, double x,
+                                  double y)
+{
+    const double q = hypot(x, y);
+    double pattern;
+
+    glint_arcs_compute_patterns(arcs, atan2(y, x), &q, 1, &pattern);
+    return pattern;
+}
+
+static double compute_far_arc_pattern(const struct glint_arcs *arcs, double x,
+                                      double y)
+{
+    const double q = hypot(x, y);
+    double pattern;
+
+    glint_arcs_compute_far_patterns(arcs, atan2(y, x), &q, 1, &pattern);
+    return pattern;
+}
+
 /* Returns the mean of the diffraction pattern |F|^2 / A^2 times q^3 / AT^3 over
  * the frequencies q of 0.8 to 1.2 times AT, in the direction PHI. F is the
  * amplitude and A the area of the stop. */
@@ -59,14 +79,14 @@ TEST(arcs_end_at_the_corners)
             double one, other;
 
             glint_arcs_init(&arcs, blades[i], 10, 0.9999);
-            one = compute_mean_scaled_pattern(glint_arcs_compute_pattern, &arcs,
-                                              at, phi);
+            one = compute_mean_scaled_pattern(compute_arc_pattern, &arcs, at,
+                                              phi);
             other = compute_mean_scaled_pattern(compute_circle_pattern, &arcs,
                                                 at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
             glint_arcs_init(&arcs, blades[i], 10, 1e-3);
-            one = compute_mean_scaled_pattern(glint_arcs_compute_pattern, &arcs,
-                                              at, phi);
+            one = compute_mean_scaled_pattern(compute_arc_pattern, &arcs, at,
+                                              phi);
             other = compute_mean_scaled_pattern(compute_polygon_pattern, &arcs,
                                                 at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
@@ -85,12 +105,48 @@ TEST(switching_methods_causes_no_step)
             double before, after;
 
             glint_arcs_init(&arcs, n, 10, 0.05 + 0.04 * k);
-            before = glint_arcs_compute_pattern(&arcs, 4.99999 * cos(phi),
-                                                4.99999 * sin(phi));
-            after = glint_arcs_compute_pattern(&arcs, 5.00001 * cos(phi),
-                                               5.00001 * sin(phi));
+            before = compute_arc_pattern(&arcs, 4.99999 * cos(phi),
+                                         4.99999 * sin(phi));
+            after = compute_arc_pattern(&arcs, 5.00001 * cos(phi),
+                                        5.00001 * sin(phi));
             assert_true(fabs(sqrt(before) - sqrt(after)) < 4e-4);
         }
+}
+
+/* Checks the sum over the arcs' outlines against a fine sum over the points of
+ * the arcs, at frequencies on both sides of q = 5, many at once. */
+TEST(patterns_match_direct_summation)
+{
+    enum { N = 150, POINTS = 20000 };
+
+    for (int n = 5; n < 9; n++) {
+        struct glint_arcs a;
+        double q[N], pattern[N];
+
+        glint_arcs_init(&a, n, 10, 0.1 * (n - 3));
+        for (int k = 0; k < N; k++)
+            q[k] = 0.05 + 0.2 * k;
+        glint_arcs_compute_patterns(&a, 0.7, q, N, pattern);
+        for (int k = 0; k < N; k += 7) {
+            double re = 0, im = 0, size;
+
+            for (int i = 0; i < n * POINTS; i++) {
+                const double normal =
+                    10 * GLINT_PI / 180 + (i / POINTS + 0.5) * 2 * GLINT_PI / n;
+                const double phi =
+                    a.turn * (2 * (i % POINTS + 0.5) / POINTS - 1);
+                const double phase = 2 * GLINT_PI * q[k] *
+                                     (cos(normal + phi - 0.7) / a.round -
+                                      a.behind * cos(normal - 0.7));
+
+                re += cos(normal + phi - 0.7) * cos(phase);
+                im -= cos(normal + phi - 0.7) * sin(phase);
+            }
+            size = hypot(re, im) * 2 * a.turn / a.round / POINTS /
+                   (2 * GLINT_PI * q[k] * a.area);
+            assert_true(fabs(sqrt(pattern[k]) - size) < 4e-4);
+        }
+    }
 }
 
 /* Checks the approximation of the distant pattern on a circle around the lamp.
@@ -107,10 +163,10 @@ TEST(distant_pattern_sums_over_a_circle)
         glint_arcs_init(&arcs, 5 + k % 4, 10, 0.05 + 0.3 * (k / 4 % 3));
         for (int i = 0; i < PHIS; i++) {
             const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
-            const double one = compute_mean_scaled_pattern(
-                glint_arcs_compute_pattern, &arcs, at, phi);
+            const double one = compute_mean_scaled_pattern(compute_arc_pattern,
+                                                           &arcs, at, phi);
             const double other = compute_mean_scaled_pattern(
-                glint_arcs_compute_far_pattern, &arcs, at, phi);
+                compute_far_arc_pattern, &arcs, at, phi);
 
             assert_true(other > 0.3 * one && other < 3 * one);
             exact += one;
