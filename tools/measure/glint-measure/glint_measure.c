@@ -49,9 +49,6 @@ static int measure_row(int n, char **assignments)
     struct tool tool = {.name = "measure", .quiet = true};
     int code = row_parse(&row, &tool, n, assignments);
 
-    /* Unlike the commands, figures measure the coatings of the table. */
-    if (!row.settings.coating.given)
-        row.settings.coating.kind = COATING_TABLE;
     if (code == EXIT_OK)
         code = tool_start_threads(&tool);
     if (code == EXIT_OK)

@@ -160,6 +160,8 @@ int row_parse(struct figure_row *row, struct tool *tool, int n,
                                .n_nm = 3,
                                .step_deg = 0.7};
     settings_set_defaults(&row->settings);
+    /* Unlike the commands, figures measure the coatings of the table. */
+    row->settings.coating.kind = COATING_TABLE;
     for (int i = 0; i < n && code == EXIT_OK; i++)
         code = parse_assignment(row, assignment[i]);
     return code == EXIT_OK && !row->lens
