@@ -151,6 +151,7 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
      * placeholder is replaced when the flare has been drawn. */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
+    struct glint_response measured = x->response;
     double extent = 0;
 
     if (!glint_engine_can_draw_on_image(engine, image, n))
@@ -161,9 +162,10 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
     if (!x->light.by_hand && n > 0 && !is_drawn &&
         (x->response.n == 0 ||
          (!f->lens && !glint_response_has_extent(&x->response, extent))))
-        status = glint_response_measure(f, 0, extent, &x->response);
+        status = glint_response_measure(f, 0, extent, &measured);
     if (status != GLINT_OK)
         return status;
+    x->response = measured;
     set_lamp_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
     glint_strength_expose_frame(&x->strength,
                                 x->response.n ? &x->response : &any, &all,

@@ -11,6 +11,9 @@
 #include "model/cache_file.h"
 #include "model/opened_lens.h"
 
+/* Frames come first, but exact rays must not keep the bake from ending. */
+enum { PRIORITY = 10 };
+
 /* Bakes the lens of SETTINGS and ends the process. Only this thread exists in
  * the child process, so the bake has no workers. */
 static void bake_and_exit(const struct tool *tool,
@@ -23,7 +26,11 @@ static void bake_and_exit(const struct tool *tool,
     int code;
 
     prctl(PR_SET_PDEATHSIG, SIGKILL); /* The child must not outlive glint. */
-    setpriority(PRIO_PROCESS, 0, 19); /* the lowest priority */
+    /* Signals to all processes of this name concern the parent. */
+    signal(SIGHUP, SIG_IGN);
+    signal(SIGUSR1, SIG_IGN);
+    signal(SIGUSR2, SIG_IGN);
+    setpriority(PRIO_PROCESS, 0, PRIORITY);
     /* A pipe at the standard output must end when the parent ends. */
     dup2(null, STDIN_FILENO);
     dup2(null, STDOUT_FILENO);
@@ -41,6 +48,7 @@ bool live_bake_start(struct live_bake *bake, const struct tool *tool,
 
     if (!cache_file_find_folder(folder, sizeof folder))
         return false;
+    signal(SIGCHLD, SIG_DFL); /* If it is ignored, no exit code is kept. */
     bake->child = fork();
     if (bake->child == 0)
         bake_and_exit(tool, settings);
@@ -49,14 +57,16 @@ bool live_bake_start(struct live_bake *bake, const struct tool *tool,
 
 enum live_bake_state live_bake_poll(struct live_bake *bake)
 {
-    int status;
+    int status = 0;
+    pid_t ended;
 
     if (bake->child <= 0)
         return LIVE_BAKE_NONE;
-    if (waitpid(bake->child, &status, WNOHANG) == 0)
+    ended = waitpid(bake->child, &status, WNOHANG);
+    if (ended == 0)
         return LIVE_BAKE_RUNNING;
     bake->child = 0;
-    return WIFEXITED(status) && WEXITSTATUS(status) == EXIT_OK
+    return ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == EXIT_OK
                ? LIVE_BAKE_DONE
                : LIVE_BAKE_FAILED;
 }

@@ -14,14 +14,15 @@ enum live_bake_state {
     LIVE_BAKE_NONE,    /* no bake was started, or its end was reported */
     LIVE_BAKE_RUNNING, /* the child process bakes */
     LIVE_BAKE_DONE,    /* the model is in the cache */
-    LIVE_BAKE_FAILED   /* the child process has printed the reason */
+    LIVE_BAKE_FAILED   /* the child process has printed the reason, or was
+                          killed */
 };
 
 struct live_bake {
     pid_t child; /* 0: no child process */
 };
 
-/* Starts the bake of the lens of SETTINGS, at the lowest priority, into the
+/* Starts the bake of the lens of SETTINGS, at a low priority, into the
  * cache of models. Devices must not be open, because the child process would
  * keep them open. Returns false if no process can be started, or if there is no
  * folder for the cache. */

@@ -448,6 +448,7 @@ static void reload_config_and_lens(struct live *l)
         check_config_names_lens(l, fresh) &&
         drawing_open(l->tool, &fresh->drawing) == EXIT_OK) {
         drawing_replace_settings_and_lens(&l->o->drawing, &fresh->drawing);
+        live_bake_stop(&l->bake); /* of the former lens */
         live_adapt_init(&l->adapt);
         live_log_print_message(&l->log, "reloaded");
     } else {
@@ -492,16 +493,19 @@ static int change_to_baked_model(struct live *l)
         return -1;
     l->tool->no_bake = true;
     code = state == LIVE_BAKE_DONE ? drawing_open_model(l->tool, d) : EXIT_LENS;
-    if (code == EXIT_OK) {
+    snprintf(text, sizeof text,
+             d->files.lens.is_unbaked
+                 ? "%s has no model; exact rays continue to draw"
+                 : "the model of %s is baked",
+             d->files.lens.table.name);
+    live_log_print_message(&l->log, text);
+    if (code == EXIT_OK && d->run.engine) {
         l->asked = glint_engine_dials(d->run.engine);
         code = apply_quality_step(l);
     }
-    snprintf(text, sizeof text,
-             code == EXIT_OK ? "the model of %s is baked"
-                             : "%s has no model; exact rays continue to draw",
-             d->files.lens.table.name);
-    live_log_print_message(&l->log, text);
-    return code == EXIT_OK || d->run.is_sized ? -1 : code;
+    if (d->files.lens.is_unbaked)
+        return -1;
+    return code == EXIT_OK ? -1 : code;
 }
 
 static int run_frame_loop(struct live *l)

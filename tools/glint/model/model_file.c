@@ -154,7 +154,9 @@ static bool is_printable_text(const char *text, size_t bytes)
 
 const struct glint_model_note *model_get_note(const struct glint_lens *lens)
 {
-    const struct glint_model_header *const h = lens->header;
+    /* The header of a zoom lens is a copy outside the file. */
+    const struct glint_model_header *const h =
+        lens->zoom ? lens->zoom->model[0].header : lens->header;
     const struct glint_model_note *note;
 
     if (h->bytes % 4 || h->bytes < sizeof *h + sizeof *note)

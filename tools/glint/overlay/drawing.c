@@ -789,9 +789,10 @@ int drawing_open_model(const struct tool *tool, struct drawing *drawing)
     if (!before) /* The size of pictures is not known yet. */
         return EXIT_OK;
     code = drawing_allocate(tool, drawing, run->view.width, run->view.height);
-    run->is_at_set = is_at_set; /* --light-at follows the same lamps. */
-    if (code == EXIT_OK)
-        glint_engine_continue(run->engine, before);
+    /* --light-at follows the same lamps. */
+    run->is_at_set = code == EXIT_OK &&
+                     glint_engine_continue(run->engine, before) == GLINT_OK &&
+                     is_at_set;
     glint_engine_destroy(before);
     return code;
 }

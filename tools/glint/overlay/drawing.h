@@ -74,10 +74,9 @@ int drawing_allocate(const struct tool *tool, struct drawing *drawing,
                      int width, int height);
 
 /* Opens the model of a lens that was opened without one, and bakes it if
- * necessary. Allocates an engine again that was allocated; tracked lamps and
- * exposure continue.
- * If the model cannot be opened, the drawing stays as it is. Returns an exit
- * code. */
+ * necessary. An engine that was allocated is allocated again; tracked lamps and
+ * exposure continue. If the model cannot be opened, the drawing stays as it is;
+ * if the engine cannot be allocated, there is none. Returns an exit code. */
 int drawing_open_model(const struct tool *tool, struct drawing *drawing);
 
 /* Returns the exit code for STATUS, a failure of a function below. Prints the
