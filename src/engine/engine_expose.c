@@ -132,6 +132,30 @@ static void set_lamp_excess(struct glint_engine_exposing *x,
     x->n_before = n;
 }
 
+/* Measures the response of X with FRAME unless it is measured: by exact rays
+ * again if one of the N LAMPS is larger than all lamps before. */
+static enum glint_status
+measure_missing_response(struct glint_engine_exposing *x,
+                         const struct glint_frame *frame,
+                         const struct glint_engine_lamp *lamps, int n)
+{
+    struct glint_response measured;
+    enum glint_status status;
+    double extent = 0;
+
+    for (int i = 0; i < n; i++)
+        extent =
+            fmax(extent, hypot(lamps[i].lamp.axis[0], lamps[i].lamp.axis[1]));
+    if (x->response.n > 0 &&
+        (frame->lens || glint_response_has_extent(&x->response, extent)))
+        return GLINT_OK;
+    measured = x->response;
+    status = glint_response_measure(frame, 0, extent, &measured);
+    if (status == GLINT_OK)
+        x->response = measured;
+    return status;
+}
+
 enum glint_status glint_engine_expose(struct glint_engine *engine,
                                       struct glint_engine_lamp *lamps, int n,
                                       const struct glint_image *image,
@@ -151,21 +175,13 @@ enum glint_status glint_engine_expose(struct glint_engine *engine,
      * placeholder is replaced when the flare has been drawn. */
     const struct glint_response any = {.n = 1};
     enum glint_status status = GLINT_OK;
-    struct glint_response measured = x->response;
-    double extent = 0;
 
     if (!glint_engine_can_draw_on_image(engine, image, n))
         return GLINT_E_ARGUMENT;
-    for (int i = 0; i < n; i++)
-        extent =
-            fmax(extent, hypot(lamps[i].lamp.axis[0], lamps[i].lamp.axis[1]));
-    if (!x->light.by_hand && n > 0 && !is_drawn &&
-        (x->response.n == 0 ||
-         (!f->lens && !glint_response_has_extent(&x->response, extent))))
-        status = glint_response_measure(f, 0, extent, &measured);
+    if (!x->light.by_hand && n > 0 && !is_drawn)
+        status = measure_missing_response(x, f, lamps, n);
     if (status != GLINT_OK)
         return status;
-    x->response = measured;
     set_lamp_excess(x, lamps, n, white, is_new ? 0 : elapsed_us);
     glint_strength_expose_frame(&x->strength,
                                 x->response.n ? &x->response : &any, &all,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opens the Heliar lens and its model with default settings, as commands do.
+ * Opens the Heliar lens and its model with the coatings of its table and
+ * otherwise the default settings of commands.
  * Run from the root of the tree.
  *
  *     TEST_GROUP(open_heliar_lens, close_opened_lens);
@@ -18,6 +19,7 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 static inline void open_heliar_lens(void)
 {
     settings_set_defaults(&opened.settings);
+    opened.settings.coating.kind = COATING_TABLE;
     assert_ok(tool_start_threads(&tool));
     assert_ok(opened_lens_open(&tool, &opened.lens, &opened.settings,
                                "lenses/heliar-tronnier.lens"));

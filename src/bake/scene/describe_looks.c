@@ -344,10 +344,10 @@ static void check_sun_light(struct glint_describer *d,
         !d->scene->warning[0])
         snprintf(
             d->scene->warning, sizeof d->scene->warning,
-            "light sun: colour is the radiance of its disc; with this radius, "
-            "%.3g lights a white surface to %.2g, and %.3g would light it to "
-            "1, as does 'white 1 1 1' with any radius",
-            most, white, most / white);
+            "light sun: it lights a white surface to %.2g times display "
+            "white; a colour of %.3g at this radius, or 'white 1 1 1' at any, "
+            "lights it to 1",
+            white, most / white);
 }
 
 static bool read_sun_light(struct glint_describer *d,

@@ -491,9 +491,9 @@ TEST(warns_of_invisible_settings)
         {4, "light sun direction 0 1 0 colour 500 2 1 radius .27", ""},
         {4, "light sun direction 0 1 0 colour 0 0 0", ""},
         {4, "light sun direction 0 1 0 colour 5e4 5e4 5e4 radius 5",
-         "lights a white surface to 3.8e+02, and 132"},
+         "surface to 3.8e+02 times display white; a colour of 132"},
         {4, "light sun direction 0 1 0 white 9 9 9 radius 5", ""},
-        {4, "light sun direction 0 1 0 white 11 9 9", "surface to 11,"},
+        {4, "light sun direction 0 1 0 white 11 9 9", "surface to 11 times"},
         {7, "material red phong .1 .2 .1", "0.4; the surface absorbs"}};
     struct glint_description *s = malloc(sizeof *s);
     struct glint_error error;
