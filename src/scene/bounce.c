@@ -212,7 +212,8 @@ static int refract_ray(const struct glint_met_surface *surface,
 
     p->is_bent = 1;
     if (!glint_bend(p->ray.toward_q30, surface->normal_q30,
-                    eta_q28 < UINT32_MAX ? (uint32_t)eta_q28 : UINT32_MAX,
+                    eta_q28 < GLINT_MOST_ETA_Q28 ? (uint32_t)eta_q28
+                                                 : GLINT_MOST_ETA_Q28,
                     to_q30)) {
         glint_reflect_direction(p->ray.toward_q30, surface->normal_q30,
                                 p->ray.toward_q30);

@@ -273,7 +273,10 @@ void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
 }
 
 /* By Snell's law, the sine of the angle between ray and normal is multiplied by
- * ETA, which is below 16. */
+ * ETA. The direction sought is eta d + (eta * before - behind) n, with the
+ * cosines before and behind the surface. The factor of n is at most sqrt(eta^2
+ * - 1): below 3.9 if eta is at most 4, and below 16 otherwise. There, two bits
+ * of it are dropped, so that its product with n is below 2^62. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3])
 {
@@ -282,18 +285,16 @@ int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
     const int64_t sine_q30 =
         square_q60 > 0 ? glint_compute_square_root((uint64_t)square_q60) : 0;
     const int64_t behind_q30 = q_shift(sine_q30 * eta_q28, 28);
-    int64_t to[3], cosine_q30;
+    const int drop = eta_q28 > UINT32_C(4) << 28 ? 2 : 0;
+    int64_t to[3], cosine_q30, factor;
 
     if (behind_q30 > ONE_Q30)
         return 0;
     cosine_q30 = glint_compute_square_root(
         (uint64_t)((INT64_C(1) << 60) - behind_q30 * behind_q30));
-    /* with the cosines before and behind the surface: eta d + (eta * before -
-     * behind) n */
+    factor = q_shift(q_shift(along_q30 * eta_q28, 28) + cosine_q30, drop);
     for (int k = 0; k < 3; k++)
-        to[k] =
-            q_shift(d_q30[k] * (int64_t)eta_q28, 28) -
-            q_shift((q_shift(along_q30 * eta_q28, 28) + cosine_q30) * n_q30[k],
-                    30);
+        to[k] = q_shift(d_q30[k] * (int64_t)eta_q28, 28) -
+                q_shift(factor * n_q30[k], 30 - drop);
     return glint_normalise_vector(to, to_q30);
 }

@@ -120,10 +120,14 @@ int glint_set_triangle_normal(const int32_t *const vertex[3],
 void glint_reflect_direction(const int32_t d_q30[3], const int32_t n_q30[3],
                              int32_t to_q30[3]);
 
+/* A little below 16, so that products with directions whose length exceeds 1 by
+ * up to 2^-25 are below 2^62. */
+#define GLINT_MOST_ETA_Q28 (UINT32_MAX - 255)
+
 /* Refracts direction D_Q30 by Snell's law at a surface of normal N_Q30; D.N
  * must be negative. ETA_Q28 is the refractive index in front of the surface
- * divided by that behind it, at most 16. Returns 1; at total reflection returns
- * 0 and sets nothing. */
+ * divided by that behind it, at most GLINT_MOST_ETA_Q28. Returns 1; at total
+ * reflection returns 0 and sets nothing. */
 int glint_bend(const int32_t d_q30[3], const int32_t n_q30[3], uint32_t eta_q28,
                int32_t to_q30[3]);
 
