@@ -198,9 +198,8 @@ static int check_accuracy_for_strict(const struct tool *tool,
 
 /* Compares images by the model *DATA[*BYTES] with images by exact rays, and
  * stores the result and the coating in the model. Prints an error if there is
- * no memory or
- * --strict needs the result; another failure is a warning, and CHECK->n is 0.
- * Returns an exit code. */
+ * no memory or --strict needs the result; another failure is a warning, and
+ * CHECK->n is 0. Returns an exit code. */
 static int measure_accuracy(const struct tool *tool, const struct bake *b,
                             const struct glint_prescription *lens,
                             unsigned char **data, size_t *bytes,

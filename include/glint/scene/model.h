@@ -260,8 +260,8 @@ struct glint_scene_object {
                             GLINT_SCENE_SPAN */
     int32_t turn_q30[4]; /* unit quaternion w, x, y, z */
     /* Fraction of a light that the object lets through to the surfaces in its
-     * shadow, 0 .. 32768. 0: the shadow is black; 32768: there is none. If it
-     * is not 0 for all objects, shadows of suns are found by rays, not by a
+     * shadow, 0 .. 32768. 0: the shadow is black; 32768: there is none. Unless
+     * it is 0 for all objects, shadows of suns are found by rays, not by a
      * grid. */
     int32_t unblocked_q15;
 };

@@ -478,9 +478,8 @@ TEST(white_of_a_sun_does_not_depend_on_its_radius)
     free(s);
 }
 
-/* Checks that the parser warns of a sun that is too faint for any code or far
- * above white, and of
- * weights that make objects dark, but not of usual values. */
+/* Checks that the parser warns of a sun too faint for any code or far above
+ * white, and of weights that make objects dark, but not of usual values. */
 TEST(warns_of_invisible_settings)
 {
     static const struct {

@@ -61,8 +61,8 @@ static uint32_t add_ball_mesh(double size)
                           (const uint32_t(*)[3])t, n);
 }
 
-/* Makes a scene of balls, a mesh and a floor, with reflection, transmission
- * and a texture. */
+/* Makes a scene of balls, a mesh and a floor, with reflection, transmission and
+ * a texture. */
 static void make_scene_of_all_objects(void)
 {
     static const int32_t sun[3] = {ONE_Q30 / 5 * 3, ONE_Q30 / 5 * 4, 0};
@@ -503,9 +503,8 @@ TEST(shadow_grid_equals_brute_force)
     assert_true(dark > 500 && partly > 200 && other <= 3);
 }
 
-/* Checks that the visible fraction of a lamp equals that of rays to all points
- * of the lamp, also where a single test finds that no object can hide the lamp.
- */
+/* Checks that the visible fraction of a lamp equals that of rays to all its
+ * points, also where a single test finds that no object can hide the lamp. */
 TEST(lamp_is_as_visible_as_its_points)
 {
     struct glint_scene_config cfg = make_scene_config();

@@ -263,6 +263,8 @@ TEST(rejects_invalid_objects)
             "damaged scene: a sphere's radius is out of range");
     REFUSES(object[1].radius, 1,
             "damaged scene: a sphere's radius is out of range");
+    REFUSES(object[0].unblocked_q15, -1,
+            "damaged scene: the light in an object's shadow is not 0 .. 1");
     REFUSES(object[0].unblocked_q15, 32769,
             "damaged scene: the light in an object's shadow is not 0 .. 1");
     REFUSES(object[0].catcher_q15, 1,

@@ -16,10 +16,10 @@
 /* Sets MODEL to the model of LENS with OPTIONS: the installed one, else the
  * cached one, else a new one, which is baked and added to the cache. FILE is
  * the lens as named on the command line. COATING has been applied to LENS. If
- * FILE is outside glint's lens
- * folders, it is rejected if its bake exceeds MODEL_CACHE_WORK; glint bake has
- * no such limit. Replaces the members workers, progress and allow of OPTIONS.
- * Returns an exit code, after printing the reason on failure. */
+ * FILE is outside glint's lens folders, it is rejected if its bake exceeds
+ * MODEL_CACHE_WORK; glint bake has no such limit. Replaces the members workers,
+ * progress and allow of OPTIONS. Returns an exit code, after printing the
+ * reason on failure. */
 int model_open_cached(const struct tool *tool,
                       const struct glint_prescription *lens, const char *file,
                       struct glint_bake_options options,
