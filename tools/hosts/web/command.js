@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // command.js - the command line that gives the picture of the page: printed, and read.
-import {COLUMNS, ghostFile, lampFile} from "./glint.js";
+import {COLUMNS, ghostFile, LAMP, lampFile} from "./glint.js";
 
-// A lamp of glint overlay --light-at, without its place.
-export const LAMP = {power: 2 ** 16, r: 1, g: 1, b: 1, size: 0, shape: 1, turn: 0, level: 1, seen: 0};
-
+// Options that are read although the table of the module does not list them.
+const OTHERS = ["ghosts", "lights", "rays", "style"];
 const quote = text => /^[A-Za-z0-9_.,:\/=+@-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 
 // Returns the lines of a shell. MUTED: numbers of ghosts. LAMPS null: as they are found.
@@ -42,9 +41,9 @@ export function readCommand(text, {options, styles}) {
             i++;
         if (!name)
             continue;
-        if (!row)
+        if (!row && !OTHERS.includes(name))
             throw new Error(`The page has no option --${name}`);
-        const value = row.type === "flag" ? "yes" : given ?? words[++i];
+        const value = row?.type === "flag" ? "yes" : given ?? words[++i];
         if (name === "lights" || name === "ghosts") {
             if (!(value in files))
                 throw new Error(`The file ${value} of --${name} is not in the command`);

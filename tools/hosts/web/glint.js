@@ -14,8 +14,9 @@
 // Failures throw an Error with the text that the command would print.
 
 // A lamp: the columns of glint overlay --lights, and their defaults.
-const LAMP = {x: 0, y: 0, power: 65536, r: 1, g: 1, b: 1, size: 0, shape: 1, turn: 0, level: 1, seen: 0};
-const COLUMNS = Object.keys(LAMP), MAX_LAMPS = 1024;
+export const LAMP = {x: 0, y: 0, power: 65536, r: 1, g: 1, b: 1, size: 0, shape: 1, turn: 0, level: 1, seen: 0};
+export const COLUMNS = Object.keys(LAMP);
+const MAX_LAMPS = 1024;
 const ENOSYS = 52;
 const FOUND = -1;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // page.js - the page: what a person sets, and what the workers drew of it.
-import {commandLine, LAMP, readCommand} from "./command.js";
+import {commandLine, readCommand} from "./command.js";
+import {LAMP} from "./glint.js";
 import {copyMetadata} from "./jpeg.js";
 import {drawSection, makeOptions} from "./widgets.js";
 
