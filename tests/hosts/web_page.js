@@ -190,6 +190,27 @@ async function testHostileFiles() {
 }
 
 async function testCamera() {
+    await page.evaluate(() => {
+        const media = HTMLMediaElement.prototype, {play} = media;
+        media.play = function () {
+            window.stream = this.srcObject;
+            media.play = play;
+            return Promise.reject(new Error("no play"));
+        };
+    });
+    await page.click("#camera");
+    await wait(() => document.querySelector("#status.bad")?.textContent.includes("no play"));
+    check("a camera that does not play is closed", await page.evaluate(() => stream.getTracks().every(track => track.readyState === "ended")));
+    await page.evaluate(() => {
+        MediaRecorder.own = MediaRecorder.isTypeSupported;
+        MediaRecorder.isTypeSupported = () => false;
+    });
+    await page.click("#camera");
+    await wait(() => document.querySelector("#meter").textContent);
+    check("without a type of recordings there is no Record", await page.isHidden("#record"));
+    await page.evaluate(() => MediaRecorder.isTypeSupported = MediaRecorder.own);
+    await page.click("#camera");
+    await wait(() => document.body.dataset.first && !document.querySelector("#export").disabled);
     for (const lens of ["heliar-tronnier", "nikon-zoom-short"]) {
         await page.click(`#lenses button[data-name="${lens}"]`);
         await page.click("#camera");
@@ -218,6 +239,11 @@ async function testCamera() {
 async function testOffline() {
     check("there is a service worker", await page.evaluate(async () =>
         Boolean(await navigator.serviceWorker.getRegistration() && await navigator.serviceWorker.ready)));
+    check("it keeps only the page's files", await page.evaluate(async () => {
+        await Promise.all(["sw.js", "index.html", "glint.js?1"].map(file => fetch(file).then(answer => answer.text())));
+        const kept = await (await caches.open("glint")).keys();
+        return kept.length === 11 && !kept.some(({url}) => /sw.js|index|\?/.test(url));
+    }));
     server.kill();
     await new Promise(done => server.once("exit", done));
     await page.reload();

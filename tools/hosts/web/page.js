@@ -204,6 +204,12 @@ class Gallery extends Painter {
     }
 }
 
+const stopCamera = video => video.srcObject.getTracks().forEach(track => track.stop());
+
+// Returns the type of recordings; undefined if the browser cannot record the picture.
+const recordType = () => window.MediaRecorder && HTMLCanvasElement.prototype.captureStream &&
+    ["video/webm", "video/mp4"].find(one => MediaRecorder.isTypeSupported(one));
+
 // Draws the frames of a camera as they come. While one is drawn, others are left out.
 class Live extends Painter {
     async on() {
@@ -211,7 +217,10 @@ class Live extends Painter {
             throw new Error("browsers allow it only to pages of https or of this computer");
         const video = Object.assign(document.createElement("video"), {playsInline: true, muted: true,
             srcObject: await navigator.mediaDevices.getUserMedia({video: {width: 640, height: 480}})});
-        await video.play();
+        await video.play().catch(error => {
+            stopCamera(video);
+            throw error;
+        });
         const {videoWidth: width, videoHeight: height} = video;
         this.video = video;
         begin({file: new File([], "camera.png"), width, height, live: true});
@@ -226,7 +235,7 @@ class Live extends Painter {
     // Returns a file of the last frame without flare.
     async off() {
         this.recorder?.stop();
-        this.video.srcObject.getTracks().forEach(track => track.stop());
+        stopCamera(this.video);
         this.video = null;
         $("meter").textContent = "";
         return new File([await this.context.canvas.convertToBlob()], "camera.png", {type: "image/png"});
@@ -280,7 +289,7 @@ class Live extends Painter {
     record() {
         if (this.recorder)
             return this.recorder.stop();
-        const parts = [], type = ["video/webm", "video/mp4"].find(one => MediaRecorder.isTypeSupported(one));
+        const parts = [], type = recordType();
         this.recorder = new MediaRecorder($("after").captureStream(), {mimeType: type});
         this.recorder.ondataavailable = event => parts.push(event.data);
         this.recorder.onstop = () => {
@@ -313,7 +322,7 @@ const isLive = () => Boolean(live?.video && photo?.live);
 function showCamera() {
     $("camera").disabled = false;
     $("camera").setAttribute("aria-pressed", isLive());
-    $("record").hidden = !isLive();
+    $("record").hidden = !isLive() || !recordType();
     for (const id of ["export", "export-jpeg"])
         $(id).disabled = isLive() || !photo;
 }

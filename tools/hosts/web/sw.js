@@ -3,25 +3,27 @@
 // sw.js - keeps copies of the page's files, which serve when the server does not answer.
 const FILES = ["./", "command.js", "glint.js", "glint.wasm", "icon.svg", "jpeg.js", "page.js", "sample.jpg", "style.css", "widgets.js",
     "worker.js"];
+const urls = FILES.map(file => new URL(file, location).href);
 const store = caches.open("glint");
 
 addEventListener("install", event => event.waitUntil(store.then(cache => cache.addAll(FILES)).then(() => skipWaiting())));
 addEventListener("activate", event => event.waitUntil(clients.claim()));
 
-async function answer(request) {
+// URL: that of REQUEST, without a query.
+async function answer(request, url) {
     const cache = await store;
     try {
         const fresh = await fetch(request);
-        if (fresh.ok)
-            cache.put(request, fresh.clone());
+        if (fresh.status === 200)
+            cache.put(url, fresh.clone());
         return fresh;
     } catch {
-        return await cache.match(request, {ignoreSearch: true}) ?? Response.error();
+        return await cache.match(url) ?? Response.error();
     }
 }
 
 addEventListener("fetch", event => {
-    const {method, url} = event.request;
-    if (method === "GET" && url.startsWith(registration.scope))
-        event.respondWith(answer(event.request));
+    const {method, url} = event.request, [plain] = url.split(/[?#]/);
+    if (method === "GET" && urls.includes(plain))
+        event.respondWith(answer(event.request, plain));
 });
