@@ -114,10 +114,9 @@ static void warn_of_inaccurate_model(const struct tool *tool,
 {
     const struct glint_model_note *const note =
         lens->model.data ? model_get_note(&lens->model.lens) : NULL;
-    const double psnr_db =
-        note && note->n > 0 ? ldexp(note->psnr_q8, -8) : HUGE_VAL;
+    const double psnr_db = note ? ldexp(note->psnr_q8, -8) : 0;
 
-    if (!tool->quiet && psnr_db < PICTURE_CHECK_DB)
+    if (!tool->quiet && note && note->n > 0 && psnr_db < PICTURE_CHECK_DB)
         fprintf(stderr,
                 "glint %s: pictures by the model of %s have down to %.1f dB "
                 "PSNR against exact rays, with the light %.1f degrees off the "
