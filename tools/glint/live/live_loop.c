@@ -539,12 +539,14 @@ static int start_live_run(struct live *l)
     struct settings *const settings = &l->o->drawing.line.settings;
     struct glint_error error = {""};
     enum glint_status status;
+    bool is_lens_first; /* whether the lens is opened before the devices */
     int code = EXIT_OK;
 
     /* Frames of fixed quality must not depend on the end of a bake. */
     if (is_quality_adaptive(l->o))
         settings->unbaked = settings_choose_method_without_model(settings);
-    if (settings->unbaked == SETTINGS_TRACE)
+    is_lens_first = settings->unbaked == SETTINGS_TRACE;
+    if (is_lens_first)
         code = open_lens_and_start_bake(l);
     if (code == EXIT_OK && live_output_accepts_any_size(&l->output))
         code = open_live_output(l, &(struct glint_image){.width = 0});
@@ -553,7 +555,7 @@ static int start_live_run(struct live *l)
     status = open_camera(l, &error);
     if (status != GLINT_OK)
         return live_input_report_error(&l->log, device, status, &error);
-    if (settings->unbaked == SETTINGS_BAKE)
+    if (!is_lens_first)
         code = drawing_open(l->tool, &l->o->drawing);
     if (code != EXIT_OK)
         return code;
