@@ -475,13 +475,13 @@ TEST(response_is_the_same_in_little_memory)
     opened_lens_close(&opened.lens);
 }
 
-/* Checks that a response by exact rays that was measured for lamps up to an
- * extent equals the complete one up to there, that larger lamps are said to be
- * missing, and that these get the softening of the largest measured lamp. */
+/* Checks a response by exact rays that was measured for lamps up to an extent:
+ * it equals the complete one up to there, reports larger extents as missing,
+ * and has for them the softening of the largest measured extent. */
 TEST(exact_response_is_measured_as_far_as_lamps_need)
 {
     struct opened opened = {.lens = {.tints = NULL}};
-    struct glint_response all, part;
+    struct glint_response all, few;
     struct glint_frame frame;
     struct glint_lamp lamp = {0, 0, 1, {1, 1, 1}, {0, 0}, 0};
 
@@ -492,19 +492,19 @@ TEST(exact_response_is_measured_as_far_as_lamps_need)
                                "lenses/heliar-tronnier.lens"));
     assert_ok(make_frame_from_settings(&tool, &opened, 640, 360, &frame));
     assert_ok(glint_response_measure(&frame, 0, HUGE_VAL, &all));
-    assert_ok(glint_response_measure(&frame, 0, all.extent[2], &part));
+    assert_ok(glint_response_measure(&frame, 0, all.extent[2], &few));
     glint_frame_finish(&frame);
     assert_true(all.extent[2] > 0 && all.softened_log2[3] < 0);
     assert_true(glint_response_has_extent(&all, 1));
-    assert_true(glint_response_has_extent(&part, all.extent[2]));
-    assert_false(glint_response_has_extent(&part, 1.01 * all.extent[2]));
+    assert_true(glint_response_has_extent(&few, all.extent[2]));
+    assert_false(glint_response_has_extent(&few, 1.01 * all.extent[2]));
     for (int i = 0; i < GLINT_RESPONSE_EXTENTS; i++) {
         const int k = i < 2 ? i : 2;
 
         lamp.axis[0] = all.extent[i];
         assert_true(fabs(log2(glint_response_compute_softening(&all, &lamp)) -
                          all.softened_log2[i]) < 1e-9);
-        assert_true(fabs(log2(glint_response_compute_softening(&part, &lamp)) -
+        assert_true(fabs(log2(glint_response_compute_softening(&few, &lamp)) -
                          all.softened_log2[k]) < 1e-9);
     }
     opened_lens_close(&opened.lens);
