@@ -22,14 +22,17 @@ static const char help[] =
     "  -d, --device DEV    /dev/video0 (default), a number; FILE.y4m, -, "
     "test,\n"
     "                      none (black, for --scene)\n"
-    "  -o, --output OUT    fb[:/dev/fb0] (default), window, FILE.y4m, y4m:-,\n"
-    "                      v4l2:/dev/videoN (v4l2loopback), null\n"
+    "  -o, --output OUT    fb[:/dev/fb0] (default), kms[:HDMI-A-1], window,\n"
+    "                      FILE.y4m, y4m:-, v4l2:/dev/videoN (v4l2loopback),\n"
+    "                      null\n"
     "  --list-devices      list the cameras\n"
     "  --list-formats      list the formats of the camera\n"
     "Camera\n"
     "  -s, --size WxH      (default: as the camera is set)\n"
     "  -r, --fps N[/D]     (default: as the camera is set)\n"
     "  -f, --format NAME   YUYV, NV12 ...; default: the cheapest\n"
+    "  --stride BYTES      of rows, for -d - with --format: frames without "
+    "headers\n"
     "  -i, --input N       input of a camera with several\n"
     "  -n, --buffers N     2 to 32 (default 4)\n"
     "  --io HOW            auto | mmap | userptr | read\n"
@@ -66,6 +69,7 @@ enum {
     OPT_CONFIG = ENGINE_OPTIONS_END,
     OPT_LIST_DEVICES,
     OPT_LIST_FORMATS,
+    OPT_STRIDE,
     OPT_IO,
     OPT_RANGE,
     OPT_MATRIX,
@@ -91,6 +95,7 @@ static const struct option own[] = {
     {"format", required_argument, NULL, 'f'},
     {"input", required_argument, NULL, 'i'},
     {"buffers", required_argument, NULL, 'n'},
+    {"stride", required_argument, NULL, OPT_STRIDE},
     {"io", required_argument, NULL, OPT_IO},
     {"range", required_argument, NULL, OPT_RANGE},
     {"matrix", required_argument, NULL, OPT_MATRIX},
@@ -190,6 +195,9 @@ static int parse_camera_option(struct live_wish *wish, int option,
     case 'n':
         good = tool_parse_integer(value, 2, GLINT_V4L2_MAX_BUFFERS,
                                   &wish->n_buffers);
+        break;
+    case OPT_STRIDE:
+        good = tool_parse_integer(value, 1, 1 << 20, &wish->stride_bytes);
         break;
     case OPT_IO:
         wish->io =

@@ -13,6 +13,7 @@
 #include "live/live_adapt.h"
 #include "live/live_input.h"
 #include "linux/fbdev.h"
+#include "linux/kms.h"
 #include "linux/v4l2_sink.h"
 #include "panel/sinks.h"
 #include "sdl/sdl.h"
@@ -21,6 +22,8 @@
  *
  * The outputs of live frames, by name:
  *   fb[:/dev/fb0]     the panel of a framebuffer
+ *   kms[:HDMI-A-1]    a display, by the kernel's mode setting interface
+ * Without a name behind it, each of the two stands in for the other.
  *   y4m:FILE | y4m:-  a video file or pipe; also FILE.y4m
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
  *   window            a desktop window; needs the SDL plug-in
@@ -28,6 +31,7 @@
 
 enum live_output_kind {
     LIVE_OUTPUT_FB,
+    LIVE_OUTPUT_KMS,
     LIVE_OUTPUT_Y4M,
     LIVE_OUTPUT_V4L2,
     LIVE_OUTPUT_NULL,
@@ -43,6 +47,7 @@ struct live_output {
         /* the common first member of all types of output */
         struct glint_sink sink;
         struct glint_fbdev fb;
+        struct glint_kms kms;
         struct glint_y4m_sink y4m;
         struct glint_v4l2_sink v4l2;
         struct glint_null_sink null;
@@ -64,7 +69,7 @@ enum glint_status live_output_open(struct live_output *output,
                                    int fps_den, struct glint_error *error);
 
 /* Describe an open output. live_output_describe() writes a description to TEXT
- * and returns TEXT, which is "" for outputs other than framebuffers and V4L2
+ * and returns TEXT, which is "" for outputs other than displays and V4L2
  * nodes. live_output_get_console_note() returns why the text console of a
  * framebuffer could not be switched off, or NULL if it could. */
 const char *live_output_describe(const struct live_output *output, char *text,

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "formats/paint.h"
+#include "linux/fourcc.h"
 #include "posix/clock.h"
 
 static void ignore_returned_frame(struct glint_source *source,
@@ -387,6 +388,132 @@ static enum glint_status open_video_input(struct live_timed *video,
     return GLINT_OK;
 }
 
+/* ----------------------------------------------------- pipes of bare frames */
+
+/* Reads a frame. Returns the number of bytes that were read, less than those of
+ * a frame at the end of the pipe. */
+static size_t read_bare_frame(struct live_timed *v)
+{
+    size_t n = 0;
+
+    while (n < v->frame_bytes) {
+        const ptrdiff_t got = glint_input_read_available(
+            &v->pipe, (uint8_t *)v->mem + n, v->frame_bytes - n);
+
+        if (got <= 0)
+            break;
+        n += (size_t)got;
+    }
+    return n;
+}
+
+static enum glint_status read_next_bare_frame(struct glint_source *source,
+                                              struct glint_source_frame *frame,
+                                              struct glint_error *error)
+{
+    struct live_timed *v = (struct live_timed *)source;
+    const uint64_t n = begin_timed_frame(v, frame);
+    const size_t bytes = read_bare_frame(v);
+
+    if (bytes == 0)
+        return GLINT_E_CLOSED;
+    if (bytes < v->frame_bytes)
+        return glint_error_report(
+            error, GLINT_E_IO, v->name,
+            "ends within frame %lld, after %zu of %zu bytes; are --size, "
+            "--format and --stride those of the frames?",
+            (long long)v->n, bytes, v->frame_bytes);
+    v->n++;
+    complete_timed_frame(v, frame, &v->image, n);
+    return GLINT_OK;
+}
+
+static void close_bare_frames(struct glint_source *source)
+{
+    struct live_timed *v = (struct live_timed *)source;
+
+    glint_input_close(&v->pipe);
+    free(v->mem);
+    v->mem = NULL;
+    source->fd = -1;
+}
+
+/* Places the planes of IMAGE in MEM, with rows of luma STRIDE bytes apart, and
+ * those of half as many samples half as far; MEM may be NULL. Returns the
+ * bytes of a frame. */
+static size_t place_bare_frame(struct glint_image *image, uint8_t *mem,
+                               size_t stride)
+{
+    const bool is_halved =
+        image->format == GLINT_I420 || image->format == GLINT_I422;
+    size_t bytes = 0;
+
+    for (int p = 0; p < glint_image_planes(image->format); p++) {
+        const size_t row =
+            glint_image_row_bytes(image->format, p, image->width);
+        size_t apart = p > 0 && is_halved ? (stride + 1) / 2 : stride;
+
+        if (apart < row)
+            apart = row;
+        image->plane[p] = mem ? mem + bytes : NULL;
+        image->stride_bytes[p] = (ptrdiff_t)apart;
+        bytes += apart * (size_t)glint_image_plane_height(image->format, p,
+                                                          image->height);
+    }
+    return bytes;
+}
+
+/* Opens standard input as frames of the format, size and stride of WISH. */
+static enum glint_status open_bare_frames(struct live_timed *v,
+                                          const struct live_wish *wish,
+                                          struct glint_error *error)
+{
+    const struct glint_v4l2_config *const c = &wish->camera;
+    struct glint_image image = make_test_format(c);
+    size_t row, stride;
+
+    if (!glint_fourcc_to_format(c->fourcc, &image.format) || c->width < 1)
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, c->device,
+            "bare frames need --size WxH and --format YUYV, UYVY, NV12, I420, "
+            "GREY or RGB24");
+    if (glint_image_is_rgb(image.format))
+        image.range = GLINT_RANGE_FULL;
+    row = glint_image_row_bytes(image.format, 0, image.width);
+    stride = wish->stride_bytes ? (size_t)wish->stride_bytes : row;
+    if (stride < row)
+        return glint_error_report(
+            error, GLINT_E_UNSUPPORTED, c->device,
+            "a row of %d pixels has %zu bytes, more than --stride %zu",
+            image.width, row, stride);
+    *v = (struct live_timed){.image = image};
+    v->frame_bytes = place_bare_frame(&v->image, NULL, stride);
+    v->mem = malloc(v->frame_bytes);
+    if (!v->mem)
+        return glint_error_report(error, GLINT_E_MEMORY, c->device,
+                                  "no memory for a frame of %zu bytes",
+                                  v->frame_bytes);
+    place_bare_frame(&v->image, v->mem, stride);
+    init_timed_source(v, &(struct glint_source_format){.image = image}, c,
+                      "bare frames");
+    v->source.next = read_next_bare_frame;
+    v->source.close = close_bare_frames;
+    return GLINT_OK;
+}
+
+static enum glint_status start_bare_frames(struct live_timed *v,
+                                           struct glint_error *error)
+{
+    const enum glint_status status = glint_input_open(&v->pipe, v->name, error);
+
+    if (status != GLINT_OK) {
+        close_bare_frames(&v->source);
+        return status;
+    }
+    v->source.fd = v->pipe.fd;
+    return GLINT_OK;
+}
+
 static bool is_test_device(const char *name)
 {
     return strcmp(name, "test") == 0 || strcmp(name, "none") == 0;
@@ -414,6 +541,11 @@ enum glint_status live_input_open(struct live_input *input,
         source = &input->as.timed.source;
         status = open_test_image(&input->as.timed, &wish->camera, seed,
                                  strcmp(name, "none") == 0, error);
+    } else if (strcmp(name, "-") == 0 && wish->camera.fourcc) {
+        source = &input->as.timed.source;
+        status = open_bare_frames(&input->as.timed, wish, error);
+        if (status == GLINT_OK)
+            status = start_bare_frames(&input->as.timed, error);
     } else {
         source = &input->as.timed.source;
         status = open_video_input(&input->as.timed, &wish->camera, error);

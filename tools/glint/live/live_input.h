@@ -2,7 +2,8 @@
  *
  * live_input.h - opens the sources of live frames, which have these names:
  *   /dev/videoN, N   a camera (linux/v4l2.h)
- *   FILE.y4m, -      a video, or a pipe of one
+ *   FILE.y4m, -      a video, or a pipe of one; with a format and a size the
+ *                    pipe has bare frames without headers
  *   test             a test image: a lamp over a night street
  *   none             black frames, as a background for scenes
  *
@@ -27,8 +28,12 @@ struct live_timed {
     int64_t n;        /* number of the next frame */
 
     struct glint_y4m_reader reader;
+    /* the last frame of the test image (I420, limited range) or of a pipe of
+     * bare frames */
+    struct glint_image image;
+    struct glint_input pipe; /* pipe of bare frames, each of FRAME_BYTES */
+    size_t frame_bytes;
     /* members of the test image: */
-    struct glint_image image; /* the last frame, I420, limited range */
     uint32_t seed;
     bool is_black;
     uint8_t *still; /* luma of the street without lamp and noise */
@@ -40,6 +45,7 @@ struct live_wish {
     struct glint_v4l2_config camera;
     enum glint_v4l2_io io; /* I/O method of a camera; other sources ignore it */
     int n_buffers;
+    int stride_bytes; /* of rows of luma of bare frames; 0: no padding */
 };
 
 struct live_input {
