@@ -469,8 +469,9 @@ static enum glint_status report_open_failure(const struct glint_fbdev *fb,
     if (number == ENOENT || number == ENODEV || number == ENXIO)
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
-            "there is no framebuffer; load its driver (modprobe vc4 on a "
-            "Raspberry Pi, fbtft and its panel, ...) or name another device");
+            "there is no framebuffer, nor a display in /dev/dri; load its "
+            "driver "
+            "(dtoverlay=vc4-kms-v3d on a Raspberry Pi) or name another device");
     if (number == EACCES || number == EPERM)
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,

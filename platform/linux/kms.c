@@ -391,7 +391,7 @@ static enum glint_status show_frame(struct glint_sink *sink,
         if (errno != EACCES && errno != EPERM && errno != EBUSY)
             return report_failure(kms, "SETCRTC", error);
     }
-    /* Another program may have become the display's master; glint asks for the
+    /* Another program may have become the display's master; glint requests the
      * display again at each frame. */
     kms->n_dropped++;
     if (ioctl(kms->fd, KMS_SET_MASTER, 0) == 0)
