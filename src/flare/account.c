@@ -109,9 +109,10 @@ static void count_transfer_outputs(const struct glint_transfer *t,
 static int count_edge_rows(const struct glint_edge *edge, int height)
 {
     const int first = edge->y_q8 > 0 ? edge->y_q8 >> 8 : 0;
-    const int end = (edge->end_y_q8 + 255) >> 8;
+    const int below = (edge->end_y_q8 + 255) >> 8;
+    const int end = below < height ? below : height;
 
-    return (end < height ? end : height) - first;
+    return end > first ? end - first : 0;
 }
 
 static void count_bundle_edges(const struct glint_flare *f,
@@ -120,9 +121,12 @@ static void count_bundle_edges(const struct glint_flare *f,
 {
     const struct glint_edge *edge = glint_flare_get_edges(f)->edge;
 
-    a->edges = slot->n;
     for (int i = slot->first; i < slot->first + slot->n; i++) {
-        a->rows += count_edge_rows(&edge[i], f->cfg.height);
+        if (edge[i].patch && edge[i].whole) /* data of the patch before */
+            continue;
+        a->edges++;
+        if (!edge[i].patch)
+            a->rows += count_edge_rows(&edge[i], f->cfg.height);
         a->refs = glint_flare_add_needed_count(
             a->refs, glint_edge_count_bin_entries(&edge[i], &f->bins));
     }

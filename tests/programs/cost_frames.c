@@ -251,9 +251,9 @@ static void print_frame_costs(struct stage *s, const struct shape *shape,
         fprintf(file, " %g", planned.count[k]);
     fprintf(file, " |");
     count_lit_pixels_of_row(s, counted);
-    counted[GLINT_COST_LIT] = count_lit_pixels(s);
-    for (int k = GLINT_COST_LIT + 1; k < GLINT_COST_KINDS; k++)
+    for (int k = GLINT_COST_PARTS; k < GLINT_COST_KINDS; k++)
         counted[k] = planned.count[k];
+    counted[GLINT_COST_LIT] = count_lit_pixels(s);
     for (int k = 0; k < GLINT_COST_KINDS; k++)
         fprintf(file, " %g", counted[k]);
     fprintf(file, "\n");

@@ -197,7 +197,7 @@ static int parse_camera_option(struct live_wish *wish, int option,
                                   &wish->n_buffers);
         break;
     case OPT_STRIDE:
-        good = tool_parse_integer(value, 1, 1 << 20, &wish->stride_bytes);
+        good = tool_parse_integer(value, 1, 131072, &wish->stride_bytes);
         break;
     case OPT_IO:
         wish->io =

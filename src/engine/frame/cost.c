@@ -27,15 +27,15 @@ enum { MOST_LOG2 = 4, SAMPLES = 24 };
 /* clang-format off */
 const struct glint_cost_weight glint_cost_weight[GLINT_COST_KINDS] = {
     /* begin weights */
-    {"looking", 1.32, 0.995},
-    {"bundles", 23.4, 37.9},
+    {"looking", 1.32, 1.12},
+    {"bundles", 23.4, 46.9},
     {"vertices", 0.468, 0},
-    {"edges", 1.29, 2.19},
+    {"edges", 1.29, 1.92},
     {"rows", 0.027, 0.027},
-    {"dust", 1.36, 0.5},
-    {"lit pixels", 0.0849, 0.0712},
+    {"dust", 1.36, 0.556},
+    {"lit pixels", 0.0849, 0.0554},
     {"star", 0.32, 0.32},
-    {"veil", 0.181, 0.183},
+    {"veil", 0.181, 0.132},
     /* end weights */
 };
 /* clang-format on */

@@ -42,7 +42,7 @@ static const struct {
      "fb[:/dev/fb0], window, y4m:FILE, y4m:-, v4l2:/dev/videoN or null"},
     {"overlay", "format", "i420, i422, i444 or grey"},
     {"overlay", "frames", "A-B, the first and last frame, from 0"},
-    {"overlay", "stride", "bytes of a row, 1 to 131072"},
+    {NULL, "stride", "bytes of a row, 1 to 131072"},
     {"overlay", "transfer",
      "auto, 709, srgb, linear, gamma22, gamma28, 240m, pq, hlg, log100 or "
      "log316"},
