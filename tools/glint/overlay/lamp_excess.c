@@ -107,6 +107,8 @@ compute_light_seen_in_proxy(const struct glint_lamp_track *track, double white)
     return sum;
 }
 
+/* Sets position, colour and power of LAMP to the measured SUM. A lamp without
+ * power is hidden by a mask or an object and stays so. */
 static void set_lamp_from_measured_light(struct glint_engine_lamp *lamp,
                                          const struct sum *sum,
                                          const struct glint_view *view,
@@ -114,7 +116,7 @@ static void set_lamp_from_measured_light(struct glint_engine_lamp *lamp,
 {
     struct glint_lamp_track *const track = &lamp->track;
 
-    if (!(sum->luminance > 0))
+    if (!(sum->luminance > 0) || !(lamp->lamp.power > 0))
         return;
     track->x_q8 = (int32_t)lrint(256 * sum->x / sum->luminance);
     track->y_q8 = (int32_t)lrint(256 * sum->y / sum->luminance);
