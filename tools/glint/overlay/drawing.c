@@ -457,11 +457,13 @@ static double compute_distance_from_lamp(const struct drawing *d,
                                          lamp->track.size_q8, given);
 }
 
-/* Returns the id of the nearest of N detected lamps at the position of GIVEN,
- * or 0 if there is none. */
+/* Returns the id of the nearest of N detected lamps at the position of GIVEN
+ * whose id exceeds AFTER, so that it was detected later. Returns 0 if there is
+ * none. */
 static uint32_t find_lamp_under(const struct drawing *d,
                                 const struct glint_engine_lamp *lamp, int n,
-                                const struct glint_engine_lamp *given)
+                                const struct glint_engine_lamp *given,
+                                uint32_t after)
 {
     double least = HUGE_VAL;
     uint32_t id = 0;
@@ -469,7 +471,7 @@ static uint32_t find_lamp_under(const struct drawing *d,
     for (int i = 0; i < n; i++) {
         const double distance = compute_distance_from_lamp(d, &lamp[i], given);
 
-        if (distance < least) {
+        if (lamp[i].id > after && distance < least) {
             least = distance;
             id = lamp[i].id;
         }
@@ -517,6 +519,28 @@ static void snap_to_candidate(const struct drawing *d,
     }
 }
 
+/* Continues AT in a frame with the detected lamps LAMP[N]: updates the place of
+ * the followed lamp. If the lamp is lost, AT follows a lamp that appears at the
+ * last place. GIVEN is scratch. */
+static void continue_followed_lamp(const struct drawing *d,
+                                   struct drawing_followed *at,
+                                   const struct glint_engine_lamp *lamp, int n,
+                                   struct glint_engine_lamp *given)
+{
+    uint32_t next;
+
+    for (int i = 0; i < n; i++)
+        if (lamp[i].id == at->id) {
+            at->x = lamp[i].track.x_q8 / 256.0;
+            at->y = lamp[i].track.y_q8 / 256.0;
+            return;
+        }
+    glint_view_to_angles(&d->run.view, get_lens_focal_mm(d), at->x, at->y,
+                         &given->lamp);
+    next = find_lamp_under(d, lamp, n, given, at->id);
+    at->id = next ? next : at->id;
+}
+
 /* Sets the ids of the user-defined lamps GIVEN[N]. Those of --light-at come
  * first; the id is that of the detected lamp, of LAMP[N_FOUND], that the lamp
  * follows, from the first frame of a video on. Other ids are 0. */
@@ -528,21 +552,30 @@ static void follow_detected_lamps(struct drawing *d, bool is_video,
     struct drawing_run *const run = &d->run;
 
     for (int i = 0; i < n; i++) {
-        if (i < d->line.n_at && !run->is_at_set)
-            run->at_id[i] = find_lamp_under(d, lamp, n_found, &given[i]);
-        given[i].id = i < d->line.n_at ? run->at_id[i] : 0;
+        struct drawing_followed *const at = &run->at[i];
+
+        given[i].id = 0;
+        if (i >= d->line.n_at)
+            continue;
+        if (!run->is_at_set)
+            at->id = find_lamp_under(d, lamp, n_found, &given[i], 0);
+        if (at->id)
+            continue_followed_lamp(d, at, lamp, n_found, &given[i]);
+        given[i].id = at->id;
     }
     run->is_at_set = is_video;
 }
 
-/* Gives detected lamps the power that --light-at sets. */
+/* Gives detected lamps the power that --light-at sets. Those without power are
+ * hidden and stay so. */
 static void set_powers_at_pixels(struct drawing *d)
 {
     struct drawing_run *const run = &d->run;
 
     for (int k = 0; k < d->line.n_at && !d->files.is_listed; k++)
         for (int i = 0; i < run->n_found && d->line.at[k].has_ev; i++)
-            if (run->lamp[i].id == run->at_id[k]) {
+            if (run->lamp[i].id == run->at[k].id &&
+                run->lamp[i].lamp.power > 0) {
                 run->lamp[i].lamp.power =
                     exp2(d->line.at[k].ev) * run->lamp[i].level;
                 run->lamp[i].seen_px = 0;

@@ -18,6 +18,12 @@
 #include "formats/samples.h"
 #include "overlay/drawing_files.h"
 
+/* Detected lamp that a lamp of --light-at follows */
+struct drawing_followed {
+    uint32_t id; /* 0: none, the lamp of --light-at stays at its place */
+    double x, y; /* last place, pixels */
+};
+
 /* State while frames are drawn */
 struct drawing_run {
     struct glint_view view;
@@ -46,10 +52,8 @@ struct drawing_run {
      * and those of options and lists; n_lamps: number of all lamps */
     int n_lamps, n_own, n_found;
     bool is_followed; /* whether lamps are tracked from frame to frame */
-    /* ids of the detected lamps that the lamps of --light-at follow; 0: none */
-    uint32_t at_id[SETTINGS_MAX_LAMPS];
-    /* whether at_id is set, in a video */
-    bool is_at_set;
+    struct drawing_followed at[SETTINGS_MAX_LAMPS]; /* of --light-at */
+    bool is_at_set; /* whether AT is set, in a video */
     double find_ms, flare_ms;
     struct glint_engine_report report;
 };
