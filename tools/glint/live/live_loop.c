@@ -208,8 +208,9 @@ static void adapt_quality(struct live *l, int64_t busy_us, int n_missed)
         return;
     apply_quality_step(l);
     snprintf(text, sizeof text, "quality %s: step %d of %d%s",
-             l->adapt.step > before ? "lowered to keep the frame rate"
-                                    : "raised",
+             l->adapt.step > before  ? "lowered to keep the frame rate"
+             : l->adapt.futile_s > 0 ? "raised, as lowering it saves no time"
+                                     : "raised",
              l->adapt.step, LIVE_MAX_STEP,
              l->adapt.step == LIVE_MAX_STEP ? ", the lowest" : "");
     live_log_print_message(&l->log, text);
@@ -500,6 +501,7 @@ static int change_to_baked_model(struct live *l)
              d->files.lens.table.name);
     live_log_print_message(&l->log, text);
     if (code == EXIT_OK && d->run.engine) {
+        live_adapt_init(&l->adapt); /* The model draws in other times. */
         l->asked = glint_engine_dials(d->run.engine);
         code = apply_quality_step(l);
     }
