@@ -35,7 +35,7 @@ static const char help[] =
     "same lens and options give the same bytes. NAME.scene, NAME.translucent,\n"
     "panoramas (.exr .hdr .dds .pfm .environment) and recordings (.json) have\n"
     "other options:\n"
-    "glint bake NAME.scene --help.\n"
+    "glint bake NAME.scene --help. glint info --help explains the report.\n"
     "\n"
     "  -o, --output MODEL\n"
     "                    -: standard output, without a report\n"

@@ -193,22 +193,24 @@ TEST(prints_no_frames)
         "\"ms\":{\"convert\":null,\"find\":null,\"plan\":null,\"bin\":null,"
         "\"draw\":null,\"show\":null},\"lights\":0,\"ghosts\":0,\"bytes\":0,"
         "\"quality\":null,\"reused\":0,\"total\":true}");
-    assert_string_equal(live_stats_write_line(&stats, 1000007, true, text),
-                        "\r0.0 fps  0 dropped 0 late 4 bad  0 lights 0 ghosts"
-                        "\033[K");
+    assert_string_equal(
+        live_stats_write_line(&stats, 1000007, true, text),
+        "\r0.0 fps  0 dropped 0 late 4 corrupt  0 lights 0 ghosts"
+        "\033[K");
 }
 
 TEST(prints_a_line)
 {
     add_recorded_frames();
-    assert_string_equal(live_stats_write_line(&stats, 6000000, true, text),
-                        "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 bad"
-                        "  3 lights 39 ghosts  q 0.38\033[K");
+    assert_string_equal(
+        live_stats_write_line(&stats, 6000000, true, text),
+        "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 corrupt"
+        "  3 lights 39 ghosts  q 0\033[K");
     live_stats_begin_second(&stats, 6000000);
     live_stats_add_frame(&stats, &frames[1]);
     assert_string_equal(
         live_stats_write_line(&stats, 6250000, false, text),
-        "4.0 fps  20.1 ms, p99 20.1  2 dropped 2 late 4 bad  2 lights 26 "
+        "4.0 fps  20.1 ms, p99 20.1  2 dropped 2 late 4 corrupt  2 lights 26 "
         "ghosts  q 0.25  ms: convert 0.20 find 1.40 plan 0.50 bin 4.00 draw "
         "5.00 show 0.00  3000 bytes\n");
 }

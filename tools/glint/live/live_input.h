@@ -7,7 +7,7 @@
  *   test             a test image: a lamp over a night street
  *   none             black frames, as a background for scenes
  *
- * A video is shown at its own rate, and late frames are dropped as from a
+ * A video is shown at its own rate, and late frames are skipped as from a
  * camera; from a pipe every frame is shown as it arrives. After the last frame,
  * the source's next() returns GLINT_E_CLOSED. The test image has a night
  * street, a lamp with a halo that circles in eight seconds, and sensor noise.

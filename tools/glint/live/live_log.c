@@ -207,10 +207,10 @@ static void append_summary_text(struct writer *w,
     if (s->frames)
         append(w, "  %.1f ms, p99 %.1f", live_stats_latency_ms(s, 50),
                live_stats_latency_ms(s, 99));
-    append(w,
-           "  %" PRIu64 " dropped %" PRIu64 " late %" PRIu64
-           " bad  %d lights %d ghosts",
-           t->drops, t->late, t->corrupt, s->most_lights, s->most_ghosts);
+    append(w, "  %" PRIu64 " dropped %" PRIu64 " late", t->drops, t->late);
+    if (t->corrupt)
+        append(w, " %" PRIu64 " corrupt", t->corrupt);
+    append(w, "  %d lights %d ghosts", s->most_lights, s->most_ghosts);
     if (s->frames)
         append(w, "  q %.2f", s->quality / (double)s->frames);
 }

@@ -202,7 +202,9 @@ static void print_model_note(const struct glint_lens *lens)
     const struct glint_model_note *const note = model_get_note(lens);
 
     printf("coating             %s\n", note ? note->coating : "not recorded");
-    if (!note || note->n == 0)
+    if (!note)
+        puts("pictures            not checked; bake again");
+    else if (note->n == 0)
         puts("pictures            not checked against exact rays");
     else if (note->psnr_q8 >= PICTURE_IDENTICAL_DB << 8)
         puts("pictures            identical to those by exact rays");
@@ -441,12 +443,16 @@ static void print_bake_statistics(const struct tool *tool,
            (unsigned long)model_count_ghosts(lens), (unsigned long)h->n_ghosts,
            (unsigned long)h->n_systems, model_compute_mean_terms(&sum),
            seconds);
-    printf("%u of %lu ghosts miss the error target at some angle; the model "
-           "transmits %d rays that the lens blocks, besides the %d measured "
-           "rays; %d zones exceed the tolerance\n",
+    printf("%u of %lu ghosts miss the error target at some angle; %d of %lu "
+           "zones exceed the tolerance of the fit (--tolerance)\n",
            model_count_ghosts_with_missed_targets(lens),
-           (unsigned long)model_count_ghosts(lens), report->intruders,
-           report->rays, report->unmet);
+           (unsigned long)model_count_ghosts(lens), report->unmet,
+           (unsigned long)h->n_systems);
+    printf("%d rays were compared", report->rays);
+    if (report->intruders > 0)
+        printf("; %d more pass the model although the lens blocks them",
+               report->intruders);
+    printf("\n");
 }
 
 /* Prints the lowest PSNR of the compared pictures, and a remedy if it is below

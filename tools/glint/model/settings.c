@@ -193,8 +193,9 @@ void settings_print_light_warnings(const struct tool *tool,
                 tool->name);
     if (!tool->quiet && r->beyond_lights > 0)
         fprintf(stderr,
-                "glint %s: %d of %d lights lie outside the angles that the "
-                "model was baked for and cause no ghosts (bake --max-angle)\n",
+                "glint %s: %d of %d lights lie outside the angles of the model "
+                "and cause no ghosts; move them towards the centre, or bake "
+                "with a larger --max-angle\n",
                 tool->name, r->beyond_lights, r->lights);
     if (!tool->quiet && r->drawn_lights < r->apart_lights)
         fprintf(stderr,

@@ -275,8 +275,7 @@ static int allocate_engine(const struct tool *tool, struct drawing *d)
     status = glint_engine_create(&run->engine, &cfg, &error);
     if (status != GLINT_OK)
         return report_sizing_failure(tool, d, status, &error);
-    if (tool->verbose && !tool->quiet && !d->files.is_listed &&
-        line->n_hand == 0)
+    if (tool->verbose && !tool->quiet && drawing_searches_picture(d))
         fprintf(stderr,
                 "%s: a lamp appears at %g stops relative to white and vanishes "
                 "below %g\n",
@@ -298,11 +297,11 @@ static void place_lamps_at_pixels(const struct tool *tool, struct drawing *d,
         row->y = at->xy[1] * (at->is_percent[1] ? height / 100.0 : 1);
         if (warns &&
             (row->x < 0 || row->y < 0 || row->x > width || row->y > height))
-            fprintf(stderr,
-                    "glint %s: --light-at %g,%g lies outside the picture of "
-                    "%d x %d pixels; those of its ghosts that reach the "
-                    "picture are drawn\n",
-                    tool->name, row->x, row->y, width, height);
+            fprintf(
+                stderr,
+                "glint %s: --light-at %g,%g lies outside the picture of "
+                "%d x %d pixels; some of its ghosts may reach the picture\n",
+                tool->name, row->x, row->y, width, height);
     }
 }
 
@@ -421,11 +420,16 @@ static enum glint_status apply_control_and_keys(struct drawing *d)
 
 /* -------------------------------------------------------------------- lamps */
 
+bool drawing_searches_picture(const struct drawing *drawing)
+{
+    return !drawing->files.is_listed && drawing->line.n_hand == 0;
+}
+
 bool drawing_get_candidate(const struct drawing *drawing, int i,
                            struct glint_spot *spot)
 {
-    return i < 3 && drawing->run.engine && !drawing->files.is_listed &&
-           drawing->line.n_hand == 0 && drawing->line.is_still &&
+    return i < 3 && drawing->run.engine && drawing_searches_picture(drawing) &&
+           drawing->line.is_still &&
            glint_engine_doubtful(drawing->run.engine, i, spot);
 }
 
@@ -640,7 +644,7 @@ static void collect_image_lamps(struct drawing *d,
                                  get_lens_focal_mm(d), lamp + n, list->n);
     run->is_followed = elapsed_us > 0 && follows;
     run->n_found = 0;
-    if (!is_listed && line->n_hand == 0)
+    if (drawing_searches_picture(d))
         n = add_found_lamps(d, image, follows ? elapsed_us : 0, n);
     glint_engine_elapsed(run->engine, elapsed_us);
     if (!follows || (is_listed && lamp_keys_is_cut(list, run->n_frames)))

@@ -133,6 +133,10 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
 enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
                                      float *rgb);
 
+/* Returns whether lamps are searched in the picture, which options can
+ * replace. */
+bool drawing_searches_picture(const struct drawing *drawing);
+
 /* Sets SPOT to candidate I of the last picture, 0 .. 2: a region that looks
  * like a lamp but was rejected. Returns false if there is none. Frames of a
  * video have no candidates. */

@@ -123,7 +123,9 @@ int overlay_draw_frame_by_callback(struct tool *tool, struct overlay *o,
     record_frame_brightness(&o->figures, &drawing->line.settings.options);
     o->figures.find_ms += drawing->run.find_ms;
     o->figures.flare_ms += drawing->run.flare_ms;
-    if (drawing->run.engine) {
+    /* The response of the lens does not know the angles of the model. */
+    if (drawing->run.engine &&
+        drawing->run.report.beyond_lights < drawing->run.report.lights) {
         const struct glint_response_light *const light =
             &glint_engine_exposed(drawing->run.engine)->light;
 

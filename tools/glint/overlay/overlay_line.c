@@ -178,13 +178,16 @@ static bool are_all_lamps_off_screen(const struct drawing *drawing)
 }
 
 /* Prints why the flare, whose light is LIGHT, is invisible, and which option
- * makes it visible. */
+ * makes it visible. settings_print_light_warnings() has reported lights outside
+ * the angles of the model. */
 static void print_faint_flare_remedy(const struct overlay *o,
                                      const struct overlay_light *light,
                                      FILE *to)
 {
     const struct drawing *drawing = &o->drawing;
     const struct glint_engine_report *const report = &drawing->run.report;
+    const bool is_beyond = light->peak <= 0 && report->beyond_lights > 0 &&
+                           report->beyond_lights == report->lights;
     const bool is_held =
         drawing->line.settings.options.gain <= 0 ||
         (!GLINT_OPTION_GIVEN(&drawing->line.settings.options, exposure) &&
@@ -194,13 +197,8 @@ static void print_faint_flare_remedy(const struct overlay *o,
         fprintf(to, "%s: no flare was drawn because of %s\n", o->output,
                 drawing->line.settings.options.gain <= 0 ? "--gain 0"
                                                          : "--strength 0");
-    else if (light->peak <= 0 && report->beyond_lights > 0 &&
-             report->beyond_lights == report->lights)
-        fprintf(to,
-                "%s: no flare was drawn: the lamp lies outside the angles of "
-                "the model; move it towards the centre, or bake with a larger "
-                "--max-angle\n",
-                o->output);
+    else if (is_beyond)
+        return;
     else if (light->peak <= 0 && drawing->line.settings.options.stop_mask)
         fprintf(to,
                 "%s: no light reaches the picture through this lens and its "
@@ -293,16 +291,19 @@ void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
                                  FILE *to)
 {
     struct glint_spot next;
+    const bool is_searched = drawing_searches_picture(drawing);
     const bool is_next =
         drawing->run.n_frames <= 1 && drawing_get_candidate(drawing, 0, &next);
 
-    fprintf(to, "no light was found, so %s was drawn%s; ",
+    fprintf(to, "no light was %s, so %s was drawn%s; ",
+            is_searched ? "found" : "given",
             describe_picture_without_lamps(drawing),
             is_copied ? " and the file was copied" : "");
     if (is_next)
         print_lamp_candidates(drawing, to);
     else
-        fputs("lower --threshold, or place a lamp by --light-at X,Y", to);
+        fprintf(to, "%splace a lamp by --light-at X,Y",
+                is_searched ? "lower --threshold, or " : "");
     if (over_scene_has_lights_without_flare(&drawing->files.scene))
         fputs("; 'flare lights' in the scene file makes its lights visible to "
               "the lens",

@@ -36,9 +36,9 @@ int overlay_count_frames(const struct overlay *o);
 void overlay_print_summary(const struct overlay *o,
                            const struct overlay_light *light, FILE *to);
 
-/* Prints that no lamp was found. If IS_COPIED, prints that the file was copied.
- * For a single picture, also prints the brightest regions that could be
- * lamps. */
+/* Prints that no lamp was found or given. If IS_COPIED, prints that the file
+ * was copied. For a single picture, also prints the brightest regions that
+ * could be lamps. */
 void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
                                  FILE *to);
 
