@@ -19,6 +19,7 @@ enum { PRIORITY = 10 };
 static void bake_and_exit(const struct tool *tool,
                           const struct settings *settings)
 {
+    static const int of_parent[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
     const int null = open("/dev/null", O_RDWR);
     struct opened_lens lens = {.tints = NULL};
     struct settings own = *settings;
@@ -26,10 +27,10 @@ static void bake_and_exit(const struct tool *tool,
     int code;
 
     prctl(PR_SET_PDEATHSIG, SIGKILL); /* The child must not outlive glint. */
-    /* Signals to all processes of this name concern the parent. */
-    signal(SIGHUP, SIG_IGN);
-    signal(SIGUSR1, SIG_IGN);
-    signal(SIGUSR2, SIG_IGN);
+    /* Signals to all processes of this name or terminal concern the parent,
+     * which ends this process. */
+    for (size_t i = 0; i < sizeof of_parent / sizeof *of_parent; i++)
+        signal(of_parent[i], SIG_IGN);
     setpriority(PRIO_PROCESS, 0, PRIORITY);
     /* A pipe at the standard output must end when the parent ends. */
     dup2(null, STDIN_FILENO);

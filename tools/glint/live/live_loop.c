@@ -457,6 +457,7 @@ static void reload_config_and_lens(struct live *l)
         live_log_print_message(
             &l->log, "not reloaded: the previous configuration stays in use");
     }
+    l->tool->no_bake = false;
     free(fresh);
 }
 
@@ -494,6 +495,7 @@ static int change_to_baked_model(struct live *l)
         return -1;
     l->tool->no_bake = true;
     code = state == LIVE_BAKE_DONE ? drawing_open_model(l->tool, d) : EXIT_LENS;
+    l->tool->no_bake = false;
     snprintf(text, sizeof text,
              d->files.lens.is_unbaked
                  ? "%s has no model; exact rays continue to draw"

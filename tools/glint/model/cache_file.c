@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE /* for F_OFD_SETLK */
 #include "model/cache_file.h"
 
 #include <ctype.h>
@@ -140,29 +141,28 @@ enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                : status;
 }
 
-static bool make_lock_name(char *name, size_t bytes, const char *path)
+int cache_file_lock(char *path, uint64_t key, void (*waits)(void *ctx),
+                    void *ctx)
 {
-    return (size_t)snprintf(name, bytes, "%s.lock", path) < bytes;
-}
-
-int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
-{
-    struct flock all = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
+    struct flock byte = {.l_type = F_WRLCK,
+                         .l_whence = SEEK_SET,
+                         .l_start = (off_t)(key & 0x3fffffff),
+                         .l_len = 1};
     char name[CACHE_PATH_BYTES + 8];
+    const char *const slash = strrchr(path, '/');
     int fd, got;
 
     cache_file_make_folders(path);
-    if (!make_lock_name(name, sizeof name, path))
-        return -1;
+    snprintf(name, sizeof name, "%.*s.lock", (int)(slash + 1 - path), path);
     fd = open(name, O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK,
               0600);
     if (fd < 0)
         return -1;
-    got = fcntl(fd, F_SETLK, &all);
+    got = fcntl(fd, F_OFD_SETLK, &byte);
     if (got < 0 && (errno == EAGAIN || errno == EACCES)) {
         waits(ctx);
         do
-            got = fcntl(fd, F_SETLKW, &all);
+            got = fcntl(fd, F_OFD_SETLKW, &byte);
         while (got < 0 && errno == EINTR);
     }
     if (got == 0)
@@ -171,16 +171,8 @@ int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx)
     return -1;
 }
 
-/* The name of the lock file is removed before the lock is released. A process
- * that opens the name later creates another file. A process that already waits
- * for the lock then finds the model in the cache. */
-void cache_file_unlock(const char *path, int lock)
+void cache_file_unlock(int lock)
 {
-    char name[CACHE_PATH_BYTES + 8];
-
-    if (lock < 0)
-        return;
-    if (make_lock_name(name, sizeof name, path))
-        unlink(name);
-    close(lock);
+    if (lock >= 0)
+        close(lock);
 }

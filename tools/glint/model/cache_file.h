@@ -37,11 +37,13 @@ uint8_t *cache_file_read(const char *path, size_t max, size_t *bytes);
 enum glint_status cache_file_write(char *path, const void *data, size_t bytes,
                                    struct glint_error *error);
 
-/* Locks PATH, so that only one process creates this file. Calls WAITS with CTX
- * before it waits for another process that holds the lock. Returns a descriptor
- * for cache_file_unlock(). Returns -1 if locking fails; the caller then creates
- * the file without a lock. */
-int cache_file_lock(char *path, void (*waits)(void *ctx), void *ctx);
-void cache_file_unlock(const char *path, int lock);
+/* Locks PATH, whose name has KEY, so that only one process creates this file.
+ * Calls WAITS with CTX before it waits for another process that holds the lock.
+ * The lock is a byte of the file .lock, which stays in the folder. Returns a
+ * descriptor for cache_file_unlock(). Returns -1 if locking fails; the caller
+ * then creates the file without a lock. */
+int cache_file_lock(char *path, uint64_t key, void (*waits)(void *ctx),
+                    void *ctx);
+void cache_file_unlock(int lock);
 
 #endif

@@ -273,9 +273,9 @@ int model_open_cached(const struct tool *tool,
         return report_bake_refused(tool, lens);
     /* After a wait for the lock the model may be in the cache, baked by another
      * process. */
-    lock = cache_file_lock(path, report_bake_wait, &wait);
+    lock = cache_file_lock(path, key, report_bake_wait, &wait);
     if (!load_model_with_key(path, key, read_cached_model, model))
         code = bake_model(tool, lens, file, options, coating, path, model);
-    cache_file_unlock(path, lock);
+    cache_file_unlock(lock);
     return code;
 }
