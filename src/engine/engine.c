@@ -522,7 +522,7 @@ glint_engine_change_stop(struct glint_engine *engine,
                            another stop. */
     else if (measure)
         status = glint_response_measure(
-            f, f->limits.reserved ? f->memory.bytes : 0, 0, &response);
+            f, f->limits.reserved ? f->memory.bytes : 0, HUGE_VAL, &response);
     if (status == GLINT_OK) {
         engine->expose.response = response;
     } else {

@@ -141,13 +141,12 @@ measure_missing_response(struct glint_engine_exposing *x,
 {
     struct glint_response measured;
     enum glint_status status;
-    double extent = 0;
+    double extent = frame->lens ? HUGE_VAL : 0;
 
     for (int i = 0; i < n; i++)
         extent =
             fmax(extent, hypot(lamps[i].lamp.axis[0], lamps[i].lamp.axis[1]));
-    if (x->response.n > 0 &&
-        (frame->lens || glint_response_has_extent(&x->response, extent)))
+    if (x->response.n > 0 && glint_response_has_extent(&x->response, extent))
         return GLINT_OK;
     measured = x->response;
     status = glint_response_measure(frame, 0, extent, &measured);

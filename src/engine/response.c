@@ -286,8 +286,7 @@ static enum glint_status measure_light_at_angles(struct proxy *p, double extent,
         convert_light_to_log2(&r->log2_of[i]);
     }
     lamp.theta_deg = r->theta_deg[r->n / 2];
-    return measure_extent_softening(p, r, lamp,
-                                    p->frame.lens ? HUGE_VAL : extent);
+    return measure_extent_softening(p, r, lamp, extent);
 }
 
 enum glint_status glint_response_measure(const struct glint_frame *like,

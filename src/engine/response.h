@@ -59,9 +59,9 @@ enum glint_status glint_response_draw_and_measure(
     struct glint_response_light *light, struct glint_seen *seen);
 
 /* Measures RESPONSE for the lens, view and requested options of frame LIKE.
- * Allocates at most BYTES for drawing; 0: no limit. Exact rays, for which
- * lamps of visible extent are slow, measure lamps only up to EXTENT, a tangent
- * of an RMS radius. Returns GLINT_E_MEMORY on failure. */
+ * Allocates at most BYTES for drawing; 0: no limit. Measures lamps of visible
+ * extent up to EXTENT, a tangent of an RMS radius; they are slow by exact rays.
+ * Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_response_measure(const struct glint_frame *like,
                                          size_t bytes, double extent,
                                          struct glint_response *response);
