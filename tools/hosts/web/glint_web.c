@@ -93,6 +93,15 @@ bool web_has_option(const struct glint_option *row)
            row != glint_option(GLINT_OPTION_OF_rays);
 }
 
+static const struct web_lens *find_web_lens(const char *name)
+{
+    const struct web_lens *lens = web_lens;
+
+    while (lens->name && strcmp(lens->name, name) != 0)
+        lens++;
+    return lens->name ? lens : NULL;
+}
+
 int web_set(const char *name, const char *text)
 {
     const struct glint_option *const row = glint_option_named(name);
@@ -104,6 +113,8 @@ int web_set(const char *name, const char *text)
         snprintf(web.error.text, sizeof web.error.text, "no option %s", name);
         return 0;
     }
+    if (strcmp(name, "lens") == 0 && !find_web_lens(text))
+        return record_error("no lens has this name");
     copy = strdup(text);
     if (!copy)
         return record_error("no memory");
@@ -172,11 +183,9 @@ static int move_zoom_groups(void)
 static int open_web_lens(void)
 {
     const struct glint_options *const o = &web.options;
-    const struct web_lens *from = web_lens;
+    const struct web_lens *const from = find_web_lens(o->lens);
 
-    while (from->name && strcmp(from->name, o->lens) != 0)
-        from++;
-    if (!from->name)
+    if (!from)
         return record_error("no lens has this name");
     return record_status(glint_prescription_parse(&web.table, from->text,
                                                   strlen(from->text),
