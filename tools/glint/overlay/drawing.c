@@ -808,7 +808,6 @@ int drawing_open_model(const struct tool *tool, struct drawing *drawing)
     struct drawing_run *const run = &drawing->run;
     struct opened_lens fresh = {.tints = NULL};
     struct glint_engine *const before = run->engine;
-    const bool is_at_set = run->is_at_set;
     const int unbaked = s->unbaked;
     int code;
 
@@ -825,11 +824,15 @@ int drawing_open_model(const struct tool *tool, struct drawing *drawing)
     run->engine = NULL;
     if (!before) /* The size of pictures is not known yet. */
         return EXIT_OK;
-    code = drawing_allocate(tool, drawing, run->view.width, run->view.height);
-    /* --light-at follows the same lamps. */
-    run->is_at_set = code == EXIT_OK &&
-                     glint_engine_continue(run->engine, before) == GLINT_OK &&
-                     is_at_set;
+    /* The scene stays, so that its highlights do not fade in again. */
+    run->view =
+        opened_lens_compute_view(lens, s, run->view.width, run->view.height);
+    code = allocate_engine(tool, drawing);
+    run->is_sized = code == EXIT_OK;
+    if (code == EXIT_OK)
+        /* --light-at follows the same lamps. */
+        run->is_at_set &=
+            glint_engine_continue(run->engine, before) == GLINT_OK;
     glint_engine_destroy(before);
     return code;
 }
