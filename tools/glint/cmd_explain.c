@@ -9,8 +9,8 @@
 
 #include "explain/explain.h"
 #include "explain/explain_scene.h"
+#include "model/ghost_file.h"
 #include "overlay/apart.h"
-#include "desk/ghost_sheet.h"
 #include "overlay/drawing.h"
 #include "overlay/overlay_line.h"
 #include "overlay/show_lights.h"
@@ -49,23 +49,14 @@ static const char help[] =
     "  --save-ghosts FILE  write the ghosts for --ghosts FILE of overlay, "
     "live\n"
     "                      and render\n"
-    "  --ghost-sheet OUT   write a contact sheet of the --top ghosts, each "
-    "exposed\n"
-    "                      to be visible, with number, surfaces, light "
-    "fraction\n"
     "  --size WxH          size of the frame without IN\n"
     "  --top N             list and mark N ghosts and lights (default 20)\n";
 
-enum {
-    OPT_TOP = ENGINE_OPTIONS_END,
-    OPT_SIZE,
-    OPT_SAVE_GHOSTS,
-    OPT_GHOST_SHEET
-};
+enum { OPT_TOP = ENGINE_OPTIONS_END, OPT_SIZE, OPT_SAVE_GHOSTS };
 
 struct explain_command {
     struct drawing drawing;
-    const char *input, *output, *ghosts, *sheet;
+    const char *input, *output, *ghosts;
     int width, height; /* --size, pixels; 0: size of the input */
     int top;
     /* 8-bit copy of the input on which the flare is drawn */
@@ -77,7 +68,6 @@ static const struct option own[] = {
     {"size", required_argument, NULL, OPT_SIZE},
     {"top", required_argument, NULL, OPT_TOP},
     {"save-ghosts", required_argument, NULL, OPT_SAVE_GHOSTS},
-    {"ghost-sheet", required_argument, NULL, OPT_GHOST_SHEET},
     {NULL, 0, NULL, 0}};
 
 static bool parse_option(struct explain_command *c, int option,
@@ -89,9 +79,6 @@ static bool parse_option(struct explain_command *c, int option,
         return true;
     case OPT_SAVE_GHOSTS:
         c->ghosts = value;
-        return *value != '\0';
-    case OPT_GHOST_SHEET:
-        c->sheet = value;
         return *value != '\0';
     case OPT_SIZE:
         return tool_parse_size(value, &c->width, &c->height);
@@ -254,24 +241,13 @@ static int save_picture(struct tool *tool, const struct explain_command *c,
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
-/* Writes the files of --save-ghosts and --ghost-sheet if they are requested. */
-static int save_ghost_images(struct tool *tool, const struct explain_command *c,
-                             struct glint_explain *e)
+static int save_ghosts(struct tool *tool, const struct explain_command *c,
+                       const struct glint_explain *e)
 {
     struct glint_error error = {""};
-    int ghosts[GLINT_MAX_GHOSTS];
-    const struct ghost_list list = {.explain = e,
-                                    .lens = c->drawing.files.lens.table.name,
-                                    .ghosts = ghosts,
-                                    .top = c->top,
-                                    .picture = &c->image};
-    enum glint_status status = GLINT_OK;
+    const enum glint_status status =
+        ghost_file_save(e, c->ghosts, c->drawing.files.lens.table.name, &error);
 
-    glint_explain_sort(e, ghosts);
-    if (c->ghosts)
-        status = ghost_list_write_file(&list, c->ghosts, &error);
-    if (c->sheet && status == GLINT_OK)
-        status = ghost_list_save_sheet(&list, c->sheet, &error);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
@@ -362,8 +338,8 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     }
     if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
         code = save_picture(tool, c, &e, &title, NULL);
-    if (code == EXIT_OK && (c->ghosts || c->sheet))
-        code = save_ghost_images(tool, c, &e);
+    if (code == EXIT_OK && c->ghosts)
+        code = save_ghosts(tool, c, &e);
     glint_explain_close(&e);
     return code;
 }
@@ -391,7 +367,6 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
     file_conflicts_add_input(&files, NULL, c->input);
     file_conflicts_add_output(&files, "-o", c->output);
     file_conflicts_add_output(&files, "--save-ghosts", c->ghosts);
-    file_conflicts_add_output(&files, "--ghost-sheet", c->sheet);
     file_conflicts_add_drawing_files(&files, &c->drawing.line);
     return file_conflicts_check_outputs(tool, &files);
 }
@@ -403,7 +378,6 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
     int code;
 
     if (check_picture_name(tool, c->output) != EXIT_OK ||
-        check_picture_name(tool, c->sheet) != EXIT_OK ||
         (c->ghosts && tool_check_output(tool, c->ghosts) != EXIT_OK))
         return EXIT_OUTPUT;
     code = check_outputs_differ_from_inputs(tool, c);

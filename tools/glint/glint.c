@@ -15,7 +15,6 @@ static const char help[] =
     "  glint lenses                    list the lenses that come with glint\n"
     "  glint info LENS|MODEL           print the data of a lens: focal length, "
     "ghosts\n"
-    "  glint coat COATING | LENS ...   plot the reflectance of a coating\n"
     "  glint draw LENS -o FILE.svg     draw a lens's section, rays, ghosts, "
     "spots\n"
     "  glint import FILE -o FILE.lens  convert lens files of other programs\n"
@@ -55,9 +54,9 @@ static const struct command commands[] = {
     {"info", cmd_info},       {"trace", cmd_trace},     {"render", cmd_render},
     {"overlay", cmd_overlay}, {"explain", cmd_explain}, {"live", cmd_live},
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
-    {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"coat", cmd_coat},
-    {"styles", cmd_styles},   {"draw", cmd_draw},       {"synth", cmd_synth},
-    {"import", cmd_import},   {"lint", cmd_lint},
+    {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"styles", cmd_styles},
+    {"draw", cmd_draw},       {"synth", cmd_synth},     {"import", cmd_import},
+    {"lint", cmd_lint},
 };
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

@@ -8,7 +8,7 @@ _glint() {
         mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" --commands 2>/dev/null) help --help --version" -- "$word")
     elif [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" "$command" --options 2>/dev/null | cut -f 1 | tr -d =)" -- "$word")
-    elif [ "$before" = --lens ] || [[ $command =~ ^(info|bake|trace|render|draw|lint|coat)$ && $COMP_CWORD = 2 ]]; then
+    elif [ "$before" = --lens ] || [[ $command =~ ^(info|bake|trace|render|draw|lint)$ && $COMP_CWORD = 2 ]]; then
         mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" lenses --names 2>/dev/null)" -- "$word"; compgen -f -- "$word")
     elif [ -n "$values" ]; then
         mapfile -t COMPREPLY < <(compgen -W "$values" -- "$word")

@@ -10,5 +10,5 @@ function __glint_values
 end
 complete -c glint -n 'test (count (commandline -opc)) -eq 1' -f -a '(glint --commands) help'
 complete -c glint -n 'test (count (commandline -opc)) -gt 1; and string match -q -- "-*" (commandline -ct)' -f -a '(__glint_options)'
-complete -c glint -n 'contains -- (commandline -opc)[-1] --lens; or contains -- (commandline -opc)[2] info bake trace render draw lint coat' -a '(glint lenses --names)'
+complete -c glint -n 'contains -- (commandline -opc)[-1] --lens; or contains -- (commandline -opc)[2] info bake trace render draw lint' -a '(glint lenses --names)'
 complete -c glint -n 'test (count (commandline -opc)) -gt 2' -a '(__glint_values)'

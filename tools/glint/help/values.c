@@ -21,8 +21,6 @@ static const struct {
     {"bake", "size", "16, 32, 64, 128, 256, 512 or 1024"},
     {"bench", "format", "yuyv, i420, nv12, rgb24, xrgb8888 or rgb565"},
     {"compare", "exposure", "stops, -100 to 100, or auto"},
-    {"coat", "glass", "ND[,VD], an index of 1.01 to 4"},
-    {"coat", "surface", "a surface, counted from 0 at the front"},
     {"draw", "angle", "degrees, 0 to 89"},
     {"draw", "ghost", "a ghost's number, from 0"},
     {"draw", "plane", "x or y"},

@@ -31,7 +31,7 @@ struct coating {
     "with\n"                                                                  \
     "                      100 to 5000 nm, index 1.01 to 4 (1.38), films "    \
     "from\n"                                                                  \
-    "                      the air on (glint coat plots them)\n"
+    "                      the air on\n"
 
 /* Parses TEXT, the value of --coating, into COATING. Returns -1, or an exit
  * code after printing the error. */

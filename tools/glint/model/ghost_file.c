@@ -10,6 +10,7 @@
 #include "options/timed_text.h"
 #include "options/tool.h"
 #include "posix/error.h"
+#include "posix/output.h"
 
 enum { MOST_BYTES = 1 << 20 };
 
@@ -220,4 +221,40 @@ void ghost_file_write_line(char *text, size_t room, int ghost,
              t->gain.mantissa ? glint_real_value(t->gain) : 1,
              t->rgb_q14[0] / 16384.0, t->rgb_q14[1] / 16384.0,
              t->rgb_q14[2] / 16384.0);
+}
+
+enum glint_status ghost_file_save(const struct glint_explain *e,
+                                  const char *path, const char *lens,
+                                  struct glint_error *error)
+{
+    struct glint_output out;
+    enum glint_status status =
+        glint_output_open(&out, path, GLINT_OUTPUT_TEXT, error);
+    int order[GLINT_MAX_GHOSTS];
+    char text[300];
+    int n = snprintf(text, sizeof text,
+                     "# Ghosts of one frame, the brightest first. A line may "
+                     "have solo or mute, gain (0 to\n"
+                     "# 1000) and tint R,G,B (0 to 4); a ghost without a line "
+                     "does not change, unless others are solo.\nlens %s\n",
+                     lens);
+
+    glint_explain_sort(e, order);
+    if (status == GLINT_OK)
+        status = glint_output_write(&out, text, (size_t)n, error);
+    for (int i = 0; i < e->n_ghosts && status == GLINT_OK; i++) {
+        const struct glint_tint *tint = e->tints ? &e->tints[order[i]] : NULL;
+        const struct glint_explain_part *part = &e->ghost[order[i]];
+        const struct glint_ghost *g = &e->setup->ghost[order[i]];
+
+        if (glint_explain_drawn(part) == 0 && !(tint && !tint->gain.mantissa))
+            continue;
+        ghost_file_write_line(text, sizeof text, order[i], tint);
+        n = (int)strlen(text);
+        n += snprintf(text + n, sizeof text - (size_t)n,
+                      "   # surfaces %d-%d, %.2f %% of the light\n", g->i, g->j,
+                      100 * part->share);
+        status = glint_output_write(&out, text, (size_t)n, error);
+    }
+    return glint_output_commit_or_abort(&out, status, error);
 }

@@ -14,6 +14,7 @@
 #ifndef GLINT_TOOLS_MODEL_GHOST_FILE_H
 #define GLINT_TOOLS_MODEL_GHOST_FILE_H
 
+#include "glint/explain.h"
 #include "glint/light.h"
 #include "glint/setup.h"
 #include "glint/status.h"
@@ -37,5 +38,12 @@ enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
  * is NULL, the line leaves the ghost unchanged. */
 void ghost_file_write_line(char *text, size_t room, int ghost,
                            const struct glint_tint *tint);
+
+/* Writes to PATH all ghosts of EXPLAIN that are drawn or muted, the brightest
+ * first, each with its fraction of the total light. Errors: GLINT_E_OUTPUT,
+ * GLINT_E_CLOSED. */
+enum glint_status ghost_file_save(const struct glint_explain *explain,
+                                  const char *path, const char *lens,
+                                  struct glint_error *error);
 
 #endif
