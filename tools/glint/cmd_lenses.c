@@ -8,7 +8,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "lens_pages/page.h"
 #include "lens_pages/search.h"
 #include "model/lens_files.h"
 #include "options/json_writer.h"
@@ -20,8 +19,7 @@
 #include "options/command_line.h"
 
 static const char help[] =
-    "glint lenses [WORD ...] [--names | --json | --html FILE [--rays exact]]\n"
-    "             [--models FOLDER]\n"
+    "glint lenses [WORD ...] [--names | --json | --models FOLDER]\n"
     "\n"
     "Lists the lenses of glint: the name for --lens, the focal length, the "
     "field\n"
@@ -38,16 +36,6 @@ static const char help[] =
     "  --names           print the names only, one per line\n"
     "  WORD              list lenses whose name, source or character contains\n"
     "                    every WORD; upper and lower case are equal\n"
-    "  --html FILE       write a page that can be searched and sorted: a "
-    "drawing\n"
-    "                    of each lens; for baked lenses the flare of a lamp "
-    "at\n"
-    "                    three angles and the bytes of the model; measured "
-    "bake\n"
-    "                    and frame times of figures.md in the tables' folder\n"
-    "  --rays exact      with --html: draw flares of lenses without a model "
-    "by\n"
-    "                    exact rays, seconds to a minute per lens\n"
     "  --models FOLDER   bake missing models and write all models to FOLDER, "
     "as\n"
     "                    make install does\n"
@@ -64,16 +52,8 @@ struct lenses {
     const char *only[MAX_ONLY];
     int n_only, n, code;
     bool names; /* --names: whether only names are printed */
-    /* --rays exact: whether flares of lenses without a model are drawn by exact
-     * rays */
-    bool exact;
     char **words;
     int n_words;
-    const char *html; /* HTML page to write, or NULL */
-    FILE *page;
-    struct tool_progress progress; /* progress of writing the HTML page */
-    /* number of lens files, and of lens files already processed */
-    int n_files, n_looked;
 };
 
 struct entry {
@@ -163,91 +143,6 @@ static void print_entry_text(struct lenses *l, const char *name,
                *e->table.character ? "\n    " : "", e->table.character);
 }
 
-/* --------------------------------------------------------------- HTML page */
-
-/* Sets SETTINGS for thumbnails of E: the defaults, or, without a model, exact
- * rays on coarse grids, which suffice for their size. */
-static void set_thumbnail_settings(struct settings *settings,
-                                   const struct entry *e)
-{
-    settings_set_photo_defaults(settings);
-    if (e->is_baked)
-        return;
-    settings->options.rays = GLINT_RAYS_EXACT;
-    settings_set_quality(settings, 0.25);
-}
-
-/* Writes thumbnails of the flare of E, or a note if E has no model and --rays
- * exact is not given. */
-static void write_flare_thumbnails(struct lenses *l, const char *name,
-                                   const struct entry *e)
-{
-    struct settings *settings = calloc(1, sizeof *settings);
-    size_t bytes = 0;
-
-    if (!e->is_baked && !l->exact)
-        fputs("<p class=\"less\">no model yet: one is baked for the first "
-              "video</p>",
-              l->page);
-    else if (!settings)
-        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
-    else {
-        set_thumbnail_settings(settings, e);
-        fputs("<p>", l->page);
-        if (page_write_thumbnails(l->tool, settings, name, l->page, &bytes) !=
-            EXIT_OK)
-            l->code = EXIT_RUNTIME;
-        else if (e->is_baked)
-            fprintf(l->page, "</p><p class=\"less\">model of %zu bytes</p>",
-                    bytes);
-        else
-            fputs("</p><p class=\"less\">exact rays, as there is no model "
-                  "yet</p>",
-                  l->page);
-    }
-    free(settings);
-}
-
-static void print_measured_times(struct lenses *l, const char *name)
-{
-    FILE *const page = l->page;
-    struct measured m;
-
-    if (page_read_measured_times(name, &m) != GLINT_OK)
-        l->code = tool_fail(l->tool, GLINT_E_MEMORY, NULL);
-    else if (!*m.f_number)
-        fputs("<p class=\"less\">bake and frame times not measured yet</p>",
-              page);
-    else if (!*m.kb)
-        fprintf(page, "<p class=\"less\">measured for f/%s: bake %s s</p>",
-                m.f_number, m.seconds);
-    else
-        fprintf(page,
-                "<p class=\"less\">measured for f/%s: bake %s s, model %s "
-                "KB%s%s%s</p>",
-                m.f_number, m.seconds, m.kb, *m.ms ? ", 1080p frame " : "",
-                m.ms, *m.ms ? " ms" : "");
-}
-
-static void print_lens_card(struct lenses *l, const char *name,
-                            const struct entry *e)
-{
-    const struct page_card card = {.name = name,
-                                   .lens = &e->table,
-                                   .focal_mm = e->optics.focal_mm,
-                                   .squeeze = e->optics.squeeze,
-                                   .corner_deg =
-                                       compute_corner_field_angle_deg(e),
-                                   .n_ghosts = e->n_ghosts};
-
-    if (l->n++ == 0)
-        page_write_head(l->page);
-    page_begin_card(l->page, &card);
-    write_flare_thumbnails(l, name, e);
-    print_measured_times(l, name);
-    page_end_card(l->page);
-}
-
 /* ------------------------------------------------------------------ models */
 
 static int save_model_to_folder(const struct tool *tool, const char *path,
@@ -307,8 +202,6 @@ static bool list_lens(void *ctx, const char *name)
     struct entry *e;
     int code;
 
-    if (l->page)
-        tool_progress_show(&l->progress, (double)l->n_looked++ / l->n_files);
     if (!is_lens_requested(l, name))
         return true;
     if (l->names && l->n_words == 0)
@@ -330,20 +223,11 @@ static bool list_lens(void *ctx, const char *name)
         code = copy_or_bake_model(l, e);
         l->n++;
     } else if (code == EXIT_OK)
-        (l->page         ? print_lens_card
-         : l->tool->json ? print_entry_json
-                         : print_entry_text)(l, name, e);
+        (l->tool->json ? print_entry_json : print_entry_text)(l, name, e);
     free(e);
     if (code != EXIT_OK)
         l->code = code;
     return code == EXIT_OK || code == EXIT_LENS;
-}
-
-static bool stop_at_first_lens(void *ctx, const char *name)
-{
-    (void)ctx;
-    (void)name;
-    return false;
 }
 
 /* Prints which search words no lens contains. Returns an exit code. */
@@ -356,42 +240,12 @@ static int report_no_matching_lens(const struct lenses *l)
     return EXIT_LENS;
 }
 
-/* Writes the list to the HTML page L->html; leaves the file unchanged if the
- * list is empty. */
-static int write_lens_page(struct lenses *l)
-{
-    char *text = NULL;
-    size_t bytes = 0;
-    int n = -1, code;
-
-    l->page = glint_memory_file_open(&text, &bytes);
-    if (l->page) {
-        l->n_files = lens_files_visit_all(stop_at_first_lens, l);
-        tool_progress_start(&l->progress, l->tool, "lenses");
-        n = lens_files_visit_all(list_lens, l);
-        tool_progress_end(&l->progress);
-        page_write_end(l->page);
-        if (n < 0 || l->n == 0)
-            fclose(l->page);
-    }
-    if (n < 0 || l->n == 0) {
-        free(text);
-        return n < 0                ? tool_fail(l->tool, GLINT_E_MEMORY, NULL)
-               : l->code == EXIT_OK ? report_no_matching_lens(l)
-                                    : l->code;
-    }
-    code = tool_save_text(l->tool, l->html, l->page, &text, &bytes);
-    return code == EXIT_OK ? l->code : code;
-}
-
 static int print_lens_list(struct lenses *l)
 {
     const int code = lens_check_requested_names(l->only, l->n_only);
 
     if (code != EXIT_OK)
         return code;
-    if (l->html)
-        return write_lens_page(l);
     if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
         fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
         return EXIT_OUTPUT;
@@ -411,10 +265,7 @@ static int parse_options(struct lenses *l, int argc, char **argv)
         {"models", required_argument, NULL, 'm'},
         {"only", required_argument, NULL, 'o'},
         {"names", no_argument, NULL, 'n'},
-        {"html", required_argument, NULL, 'H'},
-        {"rays", required_argument, NULL, 'r'},
         TOOL_COMMON_OPTIONS};
-    static const char *const rays[] = {"model", "exact", NULL};
     int c, code;
 
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
@@ -423,12 +274,6 @@ static int parse_options(struct lenses *l, int argc, char **argv)
             l->names = true;
         else if (c == 'm')
             l->folder = optarg;
-        else if (c == 'H')
-            l->html = optarg;
-        else if (c == 'r' && tool_find_word_index(optarg, rays) < 0)
-            return tool_report_bad_value(l->tool, "rays", optarg);
-        else if (c == 'r')
-            l->exact = tool_find_word_index(optarg, rays) == 1;
         else if (c == 'o' && l->n_only == MAX_ONLY)
             return tool_usage(l->tool, "more than %d lenses", MAX_ONLY);
         else if (c == 'o')
@@ -438,19 +283,9 @@ static int parse_options(struct lenses *l, int argc, char **argv)
     }
     l->words = argv + optind;
     l->n_words = argc - optind;
-    if (l->exact && !l->html)
-        return tool_usage(l->tool, "--rays exact needs --html");
-    if (l->html && (l->tool->json || l->folder || l->names))
-        return tool_usage(l->tool,
-                          "--html excludes --json, --models and --names");
     if (l->names && (l->tool->json || l->folder))
         return tool_usage(l->tool, "--names excludes --json and --models");
-    if (!l->html)
-        return -1;
-    code = tool_check_ending(l->tool, l->html, ".html", "a page");
-    if (code == EXIT_OK)
-        code = tool_check_output(l->tool, l->html);
-    return code == EXIT_OK ? -1 : code;
+    return -1;
 }
 
 int cmd_lenses(int argc, char **argv)

@@ -45,7 +45,7 @@ install-programs: all glint-live
 	install -d $(to)/bin $(to)/share/glint/lenses $(to)/lib/systemd/system
 	install $(strip_too) -m 755 \
 	        $(program) $(OUT)/glint-live $(to)/bin
-	install -m 644 lenses/*.lens lenses/figures.md $(to)/share/glint/lenses
+	install -m 644 lenses/*.lens $(to)/share/glint/lenses
 	for r in $(lens_rooms); do install -d $(to)/share/glint/$$r && \
 	        install -m 644 $$r/*.lens $(to)/share/glint/$$r || exit 1; done
 	sed 's,@PREFIX@,$(PREFIX),' platform/linux/glint-live.service \
@@ -91,7 +91,7 @@ uninstall:
 	        $(LIBRARIES:%=$(libdir)/pkgconfig/%.pc) $(headers:%=$(to)/%) \
         $(libdir)/glint/glint-assimp.so $(libdir)/glint/glint-sdl.so $(to)/lib/frei0r-1/glint.so $(DESTDIR)$(element_to)/libgstglint.so \
 	        $(to)/lib/systemd/system/glint-live.service \
-	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/figures.md lenses/*.lens lenses/*/*.lens)) \
+	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
 	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
 	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
