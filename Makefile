@@ -1,7 +1,7 @@
 # glint - physically based camera effects for small machines.
 #
 #   make          build/glint; needs a C compiler only, and takes in libjpeg,
-#                 inih, jansson and expat where it finds them
+#                 jansson and expat where it finds them
 #   make TARGET=aarch64|armv7-neon|armv7|armv6-soft|x86_64
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make glint-live   build/.../glint-live: the live command alone, for
@@ -74,7 +74,6 @@ absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
 absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/import/json_absent.c,tools/synth/item_json.c tools/import/json.c)
 absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
-absent += tools/glint/options/$(if $(filter yes,$(WITH_INIH)),config_absent,config).c
 # A static program has no plug-ins.
 absent += platform/posix/$(if $(CROSS),plugin,plugin_absent).c platform/assimp/assimp.c platform/sdl/sdl.c
 # WebAssembly has no threads.
@@ -90,7 +89,6 @@ tools_o     := $(call objects,tools,$(TOOLS))
 measure_o   := $(call objects,tools,measure/glint-measure)
 main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint glint_live model/models_only scenes/scenes_only)
 LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
-        $(if $(filter yes,$(WITH_INIH)),$(INIH_LIBS)) \
         $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(if $(filter yes,$(WITH_EXPAT)),$(EXPAT_LIBS)) -lm -lpthread -ldl
 include tools/make/flags.mk
 
@@ -101,7 +99,6 @@ $(OUT)/%.o: %.c
 	$(TIDY)
 	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) $(ANALYZER) -c $< -o $@
 $(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
-$(OUT)/tools/glint/options/config_absent.o: NOTE := --config left out: no libinih-dev
 $(OUT)/tools/synth/item_absent.o: NOTE := synth --item left out: no libjansson-dev
 $(OUT)/tools/import/json_absent.o: NOTE := lens files of realflare and lentil left out: no libjansson-dev
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev

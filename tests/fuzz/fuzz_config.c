@@ -45,7 +45,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct tool tool = {.name = "fuzz", .quiet = true};
     struct taken first = {0}, second = {0};
-    struct config config = {&tool, options, check_config_option, &first, NULL};
+    struct config config = {.tool = &tool,
+                            .options = options,
+                            .take = check_config_option,
+                            .ctx = &first};
     struct glint_error error;
     const int code =
         config_parse(&config, "f", (const char *)data, size, &error);

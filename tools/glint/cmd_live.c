@@ -396,7 +396,7 @@ int cmd_live(int argc, char **argv)
         .tool = &tool,
         .argc = argc,
         .argv = argv,
-        .config = {&tool, NULL, parse_config_option, &line, NULL},
+        .config = {.tool = &tool, .take = parse_config_option, .ctx = &line},
         .into = o};
     int code;
 

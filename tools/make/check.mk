@@ -13,13 +13,12 @@ $(reference_a): $(patsubst %.c,$(OUT)/%.o,$(filter-out $(wildcard tests/referenc
 EXTREMES := $(patsubst tests/unit/props/test_extremes_%.c,%,$(wildcard tests/unit/props/test_extremes_*.c))
 unit_c := $(wildcard tests/unit/*/test_*.c tests/reference/*/test_*.c)
 unit_c := $(filter-out %/test_mjpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c \
-        %/test_config$(if $(filter yes,$(WITH_INIH)),_absent).c \
         $(if $(filter yes,$(WITH_JANSSON)),,%/test_recording.c),$(unit_c))
 UNIT := $(patsubst test_%,%,$(basename $(notdir $(unit_c))))
 ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
 UNIT := $(filter bake exact flare flare_light flare_room output at_death frame live pool,$(UNIT))
 endif
-FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) $(if $(filter yes,$(WITH_INIH)),,config) \
+FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) \
         $(if $(filter yes,$(WITH_JANSSON)),,recording), \
         $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c)))
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
@@ -65,7 +64,7 @@ $(hostile_models): $(OUT)/%: $(OUT)/tests/fuzz/%.o $(OUT)/libglint-tests.a $(ref
 	$(link)
 
 CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-config \
-        libjpeg62-turbo-dev libinih-dev libjansson-dev libexpat1-dev
+        libjpeg62-turbo-dev libjansson-dev libexpat1-dev
 check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
@@ -128,7 +127,7 @@ VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flar
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
-	        libjpeg62-turbo-dev libinih-dev libjansson-dev libexpat1-dev
+	        libjpeg62-turbo-dev libjansson-dev libexpat1-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-valgrind
 run-valgrind: $(VALGRIND:%=$(OUT)/valgrind/unit/test_%) \
         $(FUZZERS:%=$(OUT)/valgrind/fuzz/replay_%)

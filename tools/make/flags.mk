@@ -10,7 +10,6 @@ $(OUT)/platform/%.o $(OUT)/tools/%.o $(OUT)/tests/%.o: CPPFLAGS += \
         -DGLINT_SHARE_DIR='"$(PREFIX)/share/glint"' \
         -DGLINT_PLUGIN_DIR='"$(LIBDIR)/glint"'
 $(OUT)/platform/jpeg/mjpeg.o $(OUT)/tests/%_mjpeg.o: CPPFLAGS += $(JPEG_CPPFLAGS)
-$(OUT)/tools/glint/options/config.o: CPPFLAGS += $(INIH_CPPFLAGS)
 $(OUT)/src/bake/motion/recording.o: CPPFLAGS += $(JANSSON_CPPFLAGS)
 $(OUT)/tools/import/openlensflare.o: CPPFLAGS += $(EXPAT_CPPFLAGS)
 $(OUT)/tools/import/openlensflare_absent.o: NOTE := lens files of OpenLensFlare left out: no libexpat1-dev

@@ -59,8 +59,6 @@ SECTIONS := -ffunction-sections -fdata-sections
 LDFLAGS += -Wl,--gc-sections
 JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
-INIH_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
-INIH_LIBS     := $(SYSROOT:%=-L%/lib) -linih
 JANSSON_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JANSSON_LIBS     := $(SYSROOT:%=-L%/lib) -ljansson
 EXPAT_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
@@ -81,10 +79,6 @@ has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { 
 JPEG_LIBS ?= -ljpeg
 ifndef WITH_JPEG
 WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS),$(JPEG_LIBS))
-endif
-INIH_LIBS ?= -linih
-ifndef WITH_INIH
-WITH_INIH := $(call has,ini.h,$(INIH_CPPFLAGS),$(INIH_LIBS))
 endif
 JANSSON_LIBS ?= -ljansson
 ifndef WITH_JANSSON

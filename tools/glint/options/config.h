@@ -2,7 +2,7 @@
  *
  * config.h - reads options of a command from a file, before its command line.
  *
- *     struct config config = {tool, options, take, &live, NULL};
+ *     struct config config = {.tool = tool, .options = options, ...};
  *     path = tool_find_option_value(argc, argv, "o:", options, OPT_CONFIG);
  *     if (path && (code = config_read(&config, path)) != EXIT_OK)
  *         return code;
@@ -15,19 +15,16 @@
  * [light], [flare] and [output] have no effect; any other heading gives a
  * warning. Lines that begin with ; or # are comments. A ; after a blank begins
  * a comment that ends with the line. Quotes and continuation lines are not
- * supported; a line has up to CONFIG_LINE characters.
+ * supported.
  *
  * If any line is malformed or any option does not exist, no option of the file
- * is applied. inih parses the file; built without it, config_read() fails with
- * a message.
+ * is applied.
  */
 #ifndef GLINT_TOOLS_OPTIONS_CONFIG_H
 #define GLINT_TOOLS_OPTIONS_CONFIG_H
 
 #include "options/command_line.h"
-
-/* max bytes of a line; every build of inih has a buffer of this size */
-#define CONFIG_LINE 190
+#include "options/timed_text.h"
 
 /* Applies OPTION with VALUE, which is NULL for a flag, as from the command
  * line. Returns -1 to continue. Otherwise prints the reason by tool_usage(),
@@ -40,8 +37,7 @@ struct config {
     const struct option *options; /* ends with a row without a name */
     config_take_fn *take;
     void *ctx;
-    /* private: memory of the values passed to TAKE, or NULL */
-    char *values;
+    struct text_lines lines; /* private: memory of the values passed to TAKE */
 };
 
 /* Reads the file PATH and applies its options. Their values stay valid until
@@ -49,7 +45,8 @@ struct config {
  * code: EXIT_INPUT for an invalid file. */
 int config_read(struct config *config, const char *path);
 
-/* Applies the options in TEXT[BYTES]; NAME is the file's name in errors.
+/* Applies the options in TEXT[BYTES]; NAME is the file's name in errors. If
+ * TEXT is NULL, reads the file NAME, which must have at most BYTES bytes.
  * Returns EXIT_OK; EXIT_RUNTIME or EXIT_INPUT with the reason in ERROR; or the
  * exit code of TAKE, which has printed the reason. */
 int config_parse(struct config *config, const char *name, const char *text,

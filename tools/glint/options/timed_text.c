@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -151,7 +152,7 @@ char *text_lines_read_untrimmed(struct text_lines *lines)
     return line;
 }
 
-static char *trim_blanks(char *text)
+char *text_trim_blanks(char *text)
 {
     char *end = text + strlen(text);
 
@@ -166,7 +167,7 @@ char *text_lines_read_next(struct text_lines *lines)
     char *line;
 
     while ((line = text_lines_read_untrimmed(lines))) {
-        line = trim_blanks(line);
+        line = text_trim_blanks(line);
         if (*line && *line != '#')
             return line;
     }
@@ -196,7 +197,7 @@ enum glint_status text_lines_report_error(const struct text_lines *lines,
                                           struct glint_error *error,
                                           const char *cause)
 {
-    char where[sizeof error->text];
+    char where[PATH_MAX + 16];
 
     snprintf(where, sizeof where, "%s:%d", lines->name, lines->number);
     return glint_error_report(error, GLINT_E_FORMAT, where, "%s", cause);
@@ -228,7 +229,7 @@ int text_split_fields(char *line, char **field, int max)
         line = end ? end + 1 : NULL;
         if (n == max)
             return n + 1;
-        field[n] = trim_blanks(from);
+        field[n] = text_trim_blanks(from);
     }
     return n;
 }

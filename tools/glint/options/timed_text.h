@@ -95,6 +95,9 @@ const char *text_lines_format_cause(struct text_lines *lines,
 
 void text_lines_close(struct text_lines *lines);
 
+/* Returns TEXT without the blanks around it; changes TEXT. */
+char *text_trim_blanks(char *text);
+
 /* ------------------------------------------------------------------ fields */
 
 struct text_column {
