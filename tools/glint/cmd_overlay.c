@@ -54,10 +54,6 @@ static const char help[] =
     "A\n"
     "                      for lamps; the result is the same if N includes a\n"
     "                      cut, or if tracks and exposure settle within N\n"
-    "  --zoom A-B          zoom from A to B over a whole video, both mm or "
-    "both 0\n"
-    "                      to 1; needs a model of 'glint bake LENS --positions "
-    "N'\n"
     "  --list-shots        print the frames A-B of each shot of a video, "
     "without -o\n"
     "  --layers OUT        write flare, ghosts, starburst and, if enabled, "
@@ -256,8 +252,6 @@ static int parse_options_and_inputs(struct tool *tool, int argc, char **argv,
         return code;
     while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
                             &index)) >= 0) {
-        if (c == ENGINE_OPTION_OF(zoom) && zoom_clip_parse(&o->zoom, optarg))
-            continue;
         code = drawing_line_set_option(tool, &o->drawing.line, c, optarg);
         if (code >= 0)
             return code;
@@ -416,13 +410,13 @@ static int check_output_file(struct tool *tool, struct overlay *o)
 }
 
 /* Disables the bake and the brightness measurement in S, because --list-shots
- * and --show lights draw no flare. Does nothing if key frames, control lines or
- * a zoom (IS_ZOOMED) may change the lens. */
-static void disable_bake_and_metering(struct settings *s, bool is_zoomed)
+ * and --show lights draw no flare. Does nothing if key frames or control lines
+ * may change the lens. */
+static void disable_bake_and_metering(struct settings *s)
 {
     struct glint_options *const o = &s->options;
 
-    if (o->keys || o->control || is_zoomed)
+    if (o->keys || o->control)
         return;
     if (!tool_is_model(o->lens))
         o->rays = GLINT_RAYS_EXACT;
@@ -444,8 +438,7 @@ choose_rendering_without_model(const struct overlay *o)
         settings_choose_method_without_model(s) == SETTINGS_TRACE)
         return SETTINGS_TRACE;
     return of->keys || of->control || of->scene || of->budget > 0 ||
-                   o->zoom.is_asked || settings_has_veil(s) ||
-                   o->drawing.line.reserve_bytes
+                   settings_has_veil(s) || o->drawing.line.reserve_bytes
                ? SETTINGS_BAKE
                : SETTINGS_SEARCH;
 }
@@ -455,7 +448,7 @@ static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
     int code = check_output_file(tool, o);
 
     if (o->lists_shots || o->drawing.line.show_lights)
-        disable_bake_and_metering(&o->drawing.line.settings, o->zoom.is_asked);
+        disable_bake_and_metering(&o->drawing.line.settings);
     if (code == EXIT_OK && o->is_video)
         code = overlay_check_ffmpeg(tool, o);
     if (code == EXIT_OK)
@@ -465,9 +458,6 @@ static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
                                        o->is_video || overlay_is_sequence(o));
     if (code == EXIT_OK)
         code = overlay_check_outputs(tool, o, o->input, o->output);
-    if (code == EXIT_OK)
-        code = zoom_clip_open(tool, &o->zoom, o->is_video ? o->input : NULL,
-                              &o->drawing.line);
     o->drawing.line.settings.unbaked = choose_rendering_without_model(o);
     if (code == EXIT_OK)
         code = drawing_open(tool, &o->drawing);
@@ -565,7 +555,6 @@ static int run_overlay_command_line(int argc, char **argv, const char *output,
     }
     overlay_y4m_close(o);
     drawing_close(&o->drawing);
-    zoom_clip_close(&o->zoom);
     free(o);
     return code;
 }

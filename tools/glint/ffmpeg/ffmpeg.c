@@ -636,25 +636,6 @@ void ffmpeg_probe_video(struct ffmpeg_video *video, const char *name)
     }
 }
 
-long ffmpeg_count_frames(const char *name)
-{
-    static const char *const of_counted[] = {"-select_streams", "v:0",
-                                             "-count_packets", NULL};
-    char url[FFMPEG_URL], text[PROBE_BYTES], n[FFMPEG_WORD] = "";
-    struct glint_error error;
-    struct glint_input file;
-
-    if (glint_input_open_file(&file, name, &error) != GLINT_OK)
-        return 0;
-    glint_input_close(&file);
-    if (!set_file_url(url, name) ||
-        !run_ffprobe(url, of_counted, "stream=nb_read_packets", text))
-        return 0;
-    text[strcspn(text, "\r\n")] = '\0';
-    parse_word_property(text, "nb_read_packets", n);
-    return strtol(n, NULL, 10);
-}
-
 /* Appends ", KIND TAG" to REPORT if VALUE is below 0, because glint does not
  * support TAG, and TAG is not empty. Returns VALUE. */
 static int report_unsupported_tag(int value, const char *kind, const char *tag,

@@ -145,10 +145,6 @@ bool ffmpeg_is_video(const char *name);
  * ffprobe fails, all members are empty. */
 void ffmpeg_probe_video(struct ffmpeg_video *video, const char *name);
 
-/* Returns the number of frames in NAME, or 0 on failure. ffprobe reads the
- * complete file. */
-long ffmpeg_count_frames(const char *name);
-
 /* Sets the colour properties of HEADER by the tags of VIDEO. A tag that glint
  * does not support leaves HEADER unchanged and is appended to REPORT: ", matrix
  * ictcp". */

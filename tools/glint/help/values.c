@@ -44,9 +44,6 @@ static const struct {
     {"overlay", "transfer",
      "auto, 709, srgb, linear, gamma22, gamma28, 240m, pq, hlg, log100 or "
      "log316"},
-    {"overlay", "zoom",
-     "a focal length in mm, or 0 to 1 of the zoom range, or A-B over the "
-     "frames of a video"},
     {"render", "fps", "frames a second, 1 to 1000"},
     {"render", "light",
      "THETA,PHI[,POWER[,R,G,B[,SIZE]]] with THETA 0 to 89.9 degrees"},

@@ -32,8 +32,7 @@ void file_conflicts_add_drawing_files(struct apart *files,
     file_conflicts_add_input(files, "--lens", o->lens);
     file_conflicts_add_input(files, "--lights", o->lights);
     file_conflicts_add_input(files, "--mask", o->mask);
-    if (!line->keys_text)
-        file_conflicts_add_input(files, "--keys", o->keys);
+    file_conflicts_add_input(files, "--keys", o->keys);
     file_conflicts_add_input(files, "--scene", o->scene);
     file_conflicts_add_input(files, "--pose", o->pose);
     file_conflicts_add_input(files, "--control", o->control);

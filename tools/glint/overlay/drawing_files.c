@@ -55,10 +55,7 @@ static int open_key_file(const struct tool *tool, struct drawing_line *line,
 
     if (!o->keys)
         return EXIT_OK;
-    status = line->keys_text
-                 ? key_frames_parse_text(&f->keys, o->keys, line->keys_text,
-                                         strlen(line->keys_text), &error)
-                 : key_frames_read_file(&f->keys, o->keys, &error);
+    status = key_frames_read_file(&f->keys, o->keys, &error);
     if (status != GLINT_OK)
         return tool_fail(tool, status, error.text);
     if (key_frames_have_column(&f->keys, KEYS_EXPOSURE)) {
@@ -169,8 +166,7 @@ static int reject_zoom_control_lines(const struct tool *tool,
 }
 
 /* Checks that the lens supports all zoom values of the key frames, and sets the
- * lens to the first one. An error has no line number if glint made the key
- * frames itself, for --zoom A-B. */
+ * lens to the first one. */
 static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
                            struct drawing_files *f)
 {
@@ -180,11 +176,8 @@ static int check_zoom_keys(const struct tool *tool, struct drawing_line *line,
 
     for (int i = f->keys.n[KEYS_ZOOM] - 1; i >= 0; i--) {
         if (opened_lens_set_zoom(&f->lens, s, key[i].value, &error) != GLINT_OK)
-            return line->keys_text
-                       ? tool_usage(tool, "%.200s: %s", s->options.keys,
-                                    error.text)
-                       : tool_usage(tool, "%.200s:%d: %s", s->options.keys,
-                                    key[i].line, error.text);
+            return tool_usage(tool, "%.200s:%d: %s", s->options.keys,
+                              key[i].line, error.text);
         s->zoom.zoom = key[i].value;
     }
     return EXIT_OK;

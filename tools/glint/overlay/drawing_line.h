@@ -18,9 +18,6 @@
 struct drawing_line {
     struct settings settings;
     const char *style; /* name of the chosen style, or NULL */
-    /* text of key frames, used instead of the file of --keys; NULL: none. Error
-     * messages use the value of --keys as the name of the text. */
-    const char *keys_text;
     /* quality parameters of the scene that options set; the size of the picture
      * and the camera are set later */
     struct scene_dials scene_dials;

@@ -7,7 +7,7 @@
 
 #include "overlay/layers.h"
 #include "overlay/drawing.h"
-#include "overlay/zoom_clip.h"
+#include "overlay/drawing_line.h"
 
 struct overlay_y4m;
 
@@ -43,7 +43,6 @@ struct overlay {
     struct overlay_y4m *y4m;
     const char *input, *output;
     int start_number;
-    struct zoom_clip zoom;
     /* first and last frame of a video to draw, from 0; number of frames before
      * FIRST in which lamps are detected and tracked, but nothing is drawn */
     int first, last, warm_up;
