@@ -14,8 +14,6 @@
 static int parse_option(struct bench *b, int c)
 {
     switch (c) {
-    case 'a':
-        return b->all = true;
     case 's':
         return tool_parse_size(optarg, &b->width, &b->height);
     case 'r':

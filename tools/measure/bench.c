@@ -3,8 +3,6 @@
 #include <string.h>
 
 #include "measure/bench.h"
-#include "glint/pool.h"
-#include "linux/sets.h"
 #include "options/json_writer.h"
 
 const char *const bench_format[] = {"yuyv",     "i420",   "nv12", "rgb24",
@@ -15,48 +13,20 @@ static const enum glint_pixel_format formats[] = {GLINT_YUYV,     GLINT_I420,
 
 /* ------------------------------------------------------------------- cases */
 
-static struct canvas *find_canvas_for_case(struct bench *b, int width,
-                                           int height)
+struct bench_case *bench_add_case(struct bench *b, const char *name)
 {
-    struct canvas *c = &b->canvas[b->n_canvases];
-
-    for (int i = 0; i < b->n_canvases; i++)
-        if (b->canvas[i].image.width == width &&
-            b->canvas[i].image.height == height)
-            return &b->canvas[i];
-    if (b->n_canvases == BENCH_CANVASES ||
-        canvas_init(c, formats[b->word], width, height) != GLINT_OK)
-        return NULL;
-    b->n_canvases++;
-    return c;
-}
-
-struct bench_case *bench_add_case(struct bench *b, const char *name,
-                                  const struct bench_variation *v)
-{
-    struct canvas *const canvas = find_canvas_for_case(
-        b, v->width ? v->width : b->width, v->height ? v->height : b->height);
     struct bench_case *c;
 
-    if (!canvas || b->n_cases == BENCH_CASES ||
-        !(c = calloc(1, b->subject->case_bytes)))
+    if (b->n_cases == BENCH_LENSES || !(c = calloc(1, b->subject->case_bytes)))
         return NULL;
     c->name = name;
-    c->canvas = canvas;
-    c->workers = v->two_threads       ? b->two
-                 : b->tool->n_threads ? b->tool->workers
-                                      : NULL;
-    c->threads = v->two_threads       ? 2
-                 : b->tool->n_threads ? b->tool->n_threads
-                                      : 1;
-    c->kernels = v->kernels ? v->kernels : b->tool->kernels;
     b->cases[b->n_cases] = c;
     return b->cases[b->n_cases++];
 }
 
-bool bench_is_variation_supported(const struct bench_variation *v)
+int bench_get_threads(const struct bench *b)
 {
-    return (v->sets & ~glint_system_sets()) == 0;
+    return b->tool->n_threads ? b->tool->n_threads : 1;
 }
 
 static int run_timed_rounds(struct bench *b)
@@ -72,10 +42,9 @@ static int run_timed_rounds(struct bench *b)
     for (int round = -warm; round < b->rounds && status == GLINT_OK; round++) {
         const int at = round < 0 ? round + warm : round;
 
-        for (int i = 0; i < b->n_canvases; i++)
-            canvas_time_memory_floor(&b->canvas[i], at);
+        canvas_time_memory_floor(&b->canvas, at);
         for (int i = 0; i < b->n_cases && status == GLINT_OK; i++) {
-            canvas_restore_background(b->cases[i]->canvas);
+            canvas_restore_background(&b->canvas);
             status = b->subject->draw(b, b->cases[i], at);
         }
         tool_progress_show(&progress,
@@ -93,10 +62,9 @@ double bench_compute_median_ms(const struct bench *b,
     return canvas_find_median(c->ms[stage], b->rounds);
 }
 
-static double compute_median_floor_ms(const struct bench *b,
-                                      const struct bench_case *c)
+static double compute_median_floor_ms(const struct bench *b)
 {
-    return canvas_find_median(c->canvas->floor_ms, b->rounds);
+    return canvas_find_median(b->canvas.floor_ms, b->rounds);
 }
 
 static int compute_stage_column_width(const char *stage)
@@ -110,19 +78,17 @@ static void print_bench_table(const struct bench *b)
 {
     const struct bench_subject *const s = b->subject;
     const int whole = s->n_stages - 1;
+    const double floor_ms = compute_median_floor_ms(b);
 
     printf("memory floor %.3f ms (%dx%d %s, %d rounds); stages are multiples "
            "of it\n",
-           compute_median_floor_ms(b, b->cases[0]),
-           b->cases[0]->canvas->image.width, b->cases[0]->canvas->image.height,
-           bench_format[b->word], b->rounds);
+           floor_ms, b->width, b->height, bench_format[b->word], b->rounds);
     printf("%s %8s %7s ", s->heads, "ms", "ratio");
     for (int k = 0; k < whole; k++)
         printf(" %*s", compute_stage_column_width(s->stage[k]), s->stage[k]);
     printf("  %s\n", s->tail);
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const c = b->cases[i];
-        const double floor_ms = compute_median_floor_ms(b, c);
 
         s->print_case(b, c);
         printf(" %8.3f %7.1f ", bench_compute_median_ms(b, c, whole),
@@ -136,11 +102,9 @@ static void print_bench_table(const struct bench *b)
     }
 }
 
-void bench_write_json_format(struct json_writer *json, const struct bench *b,
-                             const struct bench_case *c)
+void bench_write_json_format(struct json_writer *json, const struct bench *b)
 {
-    json_write(json, "width: %d, height: %d, format: %s",
-               c->canvas->image.width, c->canvas->image.height,
+    json_write(json, "width: %d, height: %d, format: %s", b->width, b->height,
                bench_format[b->word]);
 }
 
@@ -152,7 +116,7 @@ void bench_write_json_times(struct json_writer *json, const struct bench *b,
     const double ms = bench_compute_median_ms(b, c, whole);
 
     json_write(json, "ms: %.4f, ratio: %.3f", ms,
-               ms / compute_median_floor_ms(b, c));
+               ms / compute_median_floor_ms(b));
     for (int k = 0; k < whole; k++)
         json_write(json, "%s_ms: %.4f", s->stage[k],
                    bench_compute_median_ms(b, c, k));
@@ -165,8 +129,8 @@ static void print_bench_json(const struct bench *b)
     json_write(&json,
                "{floor_ms: %.5f, rounds: %d, version: %s, machine: %s, "
                "cases: [",
-               compute_median_floor_ms(b, b->cases[0]), b->rounds,
-               GLINT_VERSION, canvas_describe_machine());
+               compute_median_floor_ms(b), b->rounds, GLINT_VERSION,
+               canvas_describe_machine());
     for (int i = 0; i < b->n_cases; i++) {
         json_write(&json, "\n{%s: %s", b->subject->word, b->cases[i]->name);
         b->subject->json(&json, b, b->cases[i]);
@@ -181,9 +145,9 @@ int bench_run_all(struct bench *b, int n_names, const char *const *names)
 {
     int code;
 
-    if (glint_pool_create(&b->two, 2) != GLINT_OK || b->two->n != 2)
-        return tool_fail(b->tool, GLINT_E_MEMORY,
-                         "the threads could not be started");
+    if (canvas_init(&b->canvas, formats[b->word], b->width, b->height) !=
+        GLINT_OK)
+        return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     code = b->subject->open(b, n_names, names);
     if (code == EXIT_OK)
         code = run_timed_rounds(b);
@@ -198,9 +162,7 @@ void bench_close(struct bench *b)
         b->subject->close_case(b->cases[i]);
         free(b->cases[i]);
     }
-    for (int i = 0; i < b->n_canvases; i++)
-        canvas_free(&b->canvas[i]);
+    canvas_free(&b->canvas);
     b->subject->close(b);
-    glint_pool_destroy(b->two);
     free(b);
 }

@@ -10,40 +10,15 @@
 #include "measure/canvas.h"
 
 enum {
-    /* max number of cases; --all with 16 lenses makes fewer */
-    BENCH_CASES = 256,
     BENCH_ROUNDS = CANVAS_MAX,
     BENCH_STAGES = 7,
-    BENCH_CANVASES = 8,
-    BENCH_LENSES = 16
+    BENCH_LENSES = 16 /* max number of cases, one per lens */
 };
 
 /* A timed case; the first member of struct flare_case and struct scene_case */
 struct bench_case {
     const char *name; /* name of the lens or scene */
-    struct canvas *canvas;
-    struct glint_workers *workers;
-    int threads;
-    const char *kernels;
     double ms[BENCH_STAGES][BENCH_ROUNDS];
-};
-
-/* Differences between a case and the default case. A member that is 0 or NULL
- * has its default value. */
-struct bench_variation {
-    int width, height;
-    bool two_threads;
-    const char *kernels;
-    unsigned sets;      /* instruction sets that kernels may use */
-    const char *option; /* engine option to set, and its value */
-    double value;
-    int lights;
-    /* angle between the light and the optical axis, degrees; 0: default of
-     * 12 */
-    double angle;
-    /* brightness of lamps of which only the starburst is drawn, stops above
-     * white; 0: whole flares are drawn */
-    double star_stops;
 };
 
 struct bench;
@@ -93,12 +68,9 @@ struct bench {
     struct settings base; /* settings from the command line */
     /* word: index of the pixel format in bench_format */
     int width, height, rounds, word;
-    bool all;
     bool moving; /* true: the first light is at another angle in each round */
-    struct glint_workers *two;
-    struct canvas canvas[BENCH_CANVASES];
-    int n_canvases;
-    struct bench_case *cases[BENCH_CASES];
+    struct canvas canvas;
+    struct bench_case *cases[BENCH_LENSES];
     int n_cases;
     void *opened; /* opened lenses or scenes of the subject */
 };
@@ -112,17 +84,15 @@ int bench_run_all(struct bench *bench, int n, const char *const *name);
 
 void bench_close(struct bench *bench);
 
-/* Adds a case of variation V, with its canvas, threads and kernels. Returns
- * NULL if there is no memory or there are BENCH_CASES cases. */
-struct bench_case *bench_add_case(struct bench *bench, const char *name,
-                                  const struct bench_variation *v);
+/* Adds a case of NAME. Returns NULL if there is no memory or there are
+ * BENCH_LENSES cases. */
+struct bench_case *bench_add_case(struct bench *bench, const char *name);
 
-/* Returns whether this CPU has the instruction sets that V needs. */
-bool bench_is_variation_supported(const struct bench_variation *v);
+/* Returns the number of threads that draw. */
+int bench_get_threads(const struct bench *bench);
 
 void bench_write_json_format(struct json_writer *json,
-                             const struct bench *bench,
-                             const struct bench_case *c);
+                             const struct bench *bench);
 void bench_write_json_times(struct json_writer *json, const struct bench *bench,
                             const struct bench_case *c);
 
@@ -132,12 +102,12 @@ double bench_compute_median_ms(const struct bench *bench,
 
 /* code of the first option that is specific to one subject (flare or scene) */
 enum { BENCH_OWN = 'A' };
-#define BENCH_OPTIONS                                                        \
-    {"all", no_argument, NULL, 'a'}, {"size", required_argument, NULL, 's'}, \
-        {"repeat", required_argument, NULL, 'r'},                            \
-        {"format", required_argument, NULL, 'F'},                            \
-    {                                                                        \
-        NULL, 0, NULL, 0                                                     \
+#define BENCH_OPTIONS                             \
+    {"size", required_argument, NULL, 's'},       \
+        {"repeat", required_argument, NULL, 'r'}, \
+        {"format", required_argument, NULL, 'F'}, \
+    {                                             \
+        NULL, 0, NULL, 0                          \
     }
 
 #endif

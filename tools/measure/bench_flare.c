@@ -2,13 +2,10 @@
  *
  * glint bench of flares: lenses, image sizes and options to time.
  */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "glint/measure.h"
 #include "measure/bench.h"
-#include "linux/sets.h"
 #include "options/command_line.h"
 #include "options/json_writer.h"
 
@@ -26,16 +23,9 @@ static const char help[] =
     "the machine affects all of them equally. Prints medians and their ratios "
     "to\n"
     "the floor. One light 12 degrees off the axis, exposed so that the\n"
-    "99.9th percentile of the flare is display white; further lights lie on a\n"
-    "spiral around it. Without lenses: heliar-tronnier, "
-    "double-gauss-angenieux\n"
-    "and itoh-zoom-short.\n"
+    "99.9th percentile of the flare is display white. Without lenses:\n"
+    "heliar-tronnier, double-gauss-angenieux and itoh-zoom-short.\n"
     "\n"
-    "  --all           also: all kernels, 2 threads, 2 to 10000 lights, 360p "
-    "to\n"
-    "                  2160p, no light, a light far off-screen; only the\n"
-    "                  starburst of one light 12 stops above white, and of\n"
-    "                  ten lights 2 stops above white\n"
     "  --size WxH      default 1920x1080\n"
     "  --repeat N      rounds (default 15)\n"
     "  --moving        move the first light from 8 to 16 degrees during the "
@@ -58,99 +48,30 @@ struct lenses {
 struct flare_case {
     struct bench_case base;
     struct glint_engine *engine;
-    struct glint_lamp *lamp;
-    int n_lamps;
-    bool is_star; /* whether only starbursts are drawn */
+    struct glint_lamp lamp;
     double scale;
     struct glint_engine_report report;
 };
 
 /* ------------------------------------------------------------------- cases */
 
-static const struct bench_variation plain = {.lights = 1};
-
-static const struct bench_variation all[] = {
-    {.lights = 1},
-    {.lights = 1, .kernels = "c"},
-    {.lights = 1, .kernels = "sse41", .sets = GLINT_SET_SSE41},
-    {.lights = 1, .two_threads = true},
-    {.lights = 2},
-    {.lights = 8},
-    {.lights = 64},
-    {.lights = 588},
-    {.lights = 10000},
-    {.lights = 1, .width = 640, .height = 360},
-    {.lights = 1, .width = 1280, .height = 720},
-    {.lights = 1, .width = 3840, .height = 2160},
-    {.lights = 0},
-    {.lights = 1, .star_stops = 12},
-    {.lights = 10, .star_stops = 2},
-    {.lights = 1, .angle = 75}, /* a lamp far off-screen, outside the angles of
-                                 * baked models */
-};
-
-/* Sets the exposure of T so that lights 12 degrees off the axis have a well
- * exposed flare. Lights at other angles get the same exposure; starbursts get
- * 1. */
-static enum glint_status set_exposure(struct flare_case *t,
-                                      const struct bench_variation *v)
-{
-    enum glint_status status = GLINT_OK;
-
-    canvas_set_lamps(t->lamp, t->n_lamps, 12);
-    if (!t->is_star)
-        status =
-            canvas_compute_exposure(t->engine, t->lamp, t->n_lamps, &t->scale);
-    if (v->angle > 0)
-        canvas_set_lamps(t->lamp, t->n_lamps, v->angle);
-    if (v->star_stops > 0) {
-        for (int i = 0; i < t->n_lamps; i++)
-            t->lamp[i].power = exp2(v->star_stops);
-        t->scale = 1;
-    }
-    return status;
-}
-
-static int add_bench_case(struct bench *b, const struct opened_lens *lens,
-                          const struct bench_variation *v)
+static int add_bench_case(struct bench *b, const struct opened_lens *lens)
 {
     struct flare_case *const t =
-        (struct flare_case *)bench_add_case(b, lens->table.name, v);
+        (struct flare_case *)bench_add_case(b, lens->table.name);
     struct glint_engine_config cfg;
     struct glint_error error = {""};
     enum glint_status status;
 
-    if (!t || !(t->lamp = calloc((size_t)v->lights + 1, sizeof *t->lamp)))
+    if (!t)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-    t->n_lamps = v->lights;
-    canvas_open_engine(b->tool, lens, &b->base, t->base.canvas->image.width,
-                       t->base.canvas->image.height, &cfg);
-    cfg.workers = t->base.workers;
-    if (v->kernels)
-        cfg.sets &= v->sets;
-    t->is_star = v->star_stops > 0;
-    if (t->is_star) {
-        cfg.drawing.parts = GLINT_ENGINE_STAR | GLINT_ENGINE_CORES;
-        cfg.light.starburst = 1;
-    }
+    canvas_set_lamps(&t->lamp, 1, 12);
+    canvas_open_engine(b->tool, lens, &b->base, b->width, b->height, &cfg);
     status = glint_engine_create(&t->engine, &cfg, &error);
     if (status == GLINT_OK)
-        status = set_exposure(t, v);
+        status = canvas_compute_exposure(t->engine, &t->lamp, 1, &t->scale);
     return status == GLINT_OK ? EXIT_OK
                               : tool_fail(b->tool, status, error.text);
-}
-
-/* Adds a case for each of V[N] whose instruction sets this CPU has. */
-static int add_supported_variations(struct bench *b,
-                                    const struct opened_lens *lens,
-                                    const struct bench_variation *v, size_t n)
-{
-    int code = EXIT_OK;
-
-    for (size_t i = 0; i < n && code == EXIT_OK; i++)
-        if (bench_is_variation_supported(&v[i]))
-            code = add_bench_case(b, lens, &v[i]);
-    return code;
 }
 
 /* ------------------------------------------------------------------ rounds */
@@ -164,11 +85,11 @@ static enum glint_status bench_run(struct bench *b, struct bench_case *c,
     enum glint_status status;
     double t0;
 
-    if (b->moving && t->n_lamps > 0)
-        t->lamp[0].theta_deg = 8 + 8 * (round + 0.5) / b->rounds;
+    if (b->moving)
+        t->lamp.theta_deg = 8 + 8 * (round + 0.5) / b->rounds;
     t0 = tool_clock_s();
-    status = glint_engine_draw_at(t->engine, t->lamp, t->n_lamps, t->scale,
-                                  &c->canvas->image, &t->report);
+    status = glint_engine_draw_at(t->engine, &t->lamp, 1, t->scale,
+                                  &b->canvas.image, &t->report);
     c->ms[WHOLE][round] = 1e3 * (tool_clock_s() - t0);
     c->ms[PLAN][round] = r->plan_ms;
     c->ms[TRANSFER][round] = r->trace_ms;
@@ -178,13 +99,6 @@ static enum glint_status bench_run(struct bench *b, struct bench_case *c,
 }
 
 /* ----------------------------------------------------------------- opening */
-
-static int add_bench_cases(struct bench *b, const struct opened_lens *lens)
-{
-    return b->all ? add_supported_variations(b, lens, all,
-                                             sizeof all / sizeof *all)
-                  : add_bench_case(b, lens, &plain);
-}
 
 static int open_bench_lens(struct bench *b, struct lenses *lenses,
                            const char *name)
@@ -212,7 +126,7 @@ static int open_bench_lenses(struct bench *b, int n, const char *const *name)
     for (int i = 0; i < n && code == EXIT_OK; i++)
         code = open_bench_lens(b, lenses, name[i]);
     for (int i = 0; i < n && code == EXIT_OK; i++)
-        code = add_bench_cases(b, &lenses->lens[i]);
+        code = add_bench_case(b, &lenses->lens[i]);
     return code;
 }
 
@@ -221,7 +135,6 @@ static void close_bench_case(struct bench_case *c)
     struct flare_case *const t = (struct flare_case *)c;
 
     glint_engine_destroy(t->engine);
-    free(t->lamp);
 }
 
 static void close_bench_lenses(struct bench *b)
@@ -235,19 +148,10 @@ static void close_bench_lenses(struct bench *b)
 
 /* ------------------------------------------------------------------ output */
 
-static const char *get_rasteriser_name(const struct flare_case *t)
-{
-    return t->is_star ? "star" : "edges";
-}
-
 static void print_bench_case(const struct bench *b, const struct bench_case *c)
 {
-    const struct flare_case *const t = (const struct flare_case *)c;
-
-    (void)b;
-    printf("%-22s %4dx%-4d %5d %2d %-5s %-5s", c->name, c->canvas->image.width,
-           c->canvas->image.height, t->n_lamps, c->threads,
-           get_rasteriser_name(t), c->kernels);
+    printf("%-22s %4dx%-4d %5d %2d %-5s %-5s", c->name, b->width, b->height, 1,
+           bench_get_threads(b), "edges", b->tool->kernels);
 }
 
 static void print_bench_result(const struct bench *b,
@@ -267,11 +171,11 @@ static void write_bench_json(struct json_writer *to, const struct bench *b,
     const struct flare_case *const t = (const struct flare_case *)c;
     const struct glint_engine_report *const r = &t->report;
 
-    bench_write_json_format(to, b, c);
+    bench_write_json_format(to, b);
     json_write(to,
                "lights: %d, threads: %d, raster: %s, kernels: %s, "
                "quality: %.3f",
-               t->n_lamps, c->threads, get_rasteriser_name(t), c->kernels,
+               1, bench_get_threads(b), "edges", b->tool->kernels,
                r->quality >= 0 ? r->quality : b->base.options.quality);
     bench_write_json_times(to, b, c);
     json_write(to,

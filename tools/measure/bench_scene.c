@@ -5,11 +5,9 @@
  */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "measure/bench.h"
 #include "linux/instructions.h"
-#include "linux/sets.h"
 #include "options/command_line.h"
 #include "options/json_writer.h"
 #include "scenes/account.h"
@@ -27,9 +25,6 @@ static const char help[] =
     "mirrors and glass; draw; shadows, the part of draw that a scene without\n"
     "shadows saves; lights, the visibility of the scene's lights to the lens.\n"
     "\n"
-    "  --all               also: every value of each quality parameter, "
-    "kernels, 2\n"
-    "                      threads, 360p to 2160p\n"
     "  --size WxH          default 1920x1080\n"
     "  --repeat N          rounds, 1 to 100 (default 15)\n"
     "  --format F          yuyv (default) | i420 | nv12 | rgb24 | xrgb8888 |\n"
@@ -48,29 +43,12 @@ struct opened {
 
 struct scene_case {
     struct bench_case base;
-    struct tool tool; /* copy of the command's tool with the threads and
-                         instruction sets of the case */
     struct scene_frame frame, bare;
     double instructions; /* instructions of the last frame; NAN: not counted */
     int covered_px;
 };
 
 /* ------------------------------------------------------------------- cases */
-
-static const struct bench_variation all[] = {
-    {.option = "edge-samples", .value = 1},
-    {.option = "edge-samples", .value = 8},
-    {.option = "edge-samples", .value = 16},
-    {.option = "shadow-points", .value = 1},
-    {.option = "shadow-points", .value = 16},
-    {.option = "shading", .value = 1},
-    {.kernels = "c"},
-    {.kernels = "sse41", .sets = GLINT_SET_SSE41},
-    {.two_threads = true},
-    {.width = 640, .height = 360},
-    {.width = 1280, .height = 720},
-    {.width = 3840, .height = 2160},
-};
 
 /* Sets the first object to its current position. This invalidates the shadow
  * lists, so that each frame rebuilds them, as for a moving object. */
@@ -85,88 +63,38 @@ static void invalidate_shadows(void *ctx, struct glint_scene *scene)
 }
 
 /* Opens FRAME of MODEL and draws one frame, which allocates all memory. */
-static int open_bench_frame(struct scene_case *t, struct scene_frame *frame,
+static int open_bench_frame(struct bench *b, struct scene_frame *frame,
                             const struct glint_scene_model *model,
                             const struct scene_dials *dials)
 {
-    int code = scene_frame_open(frame, &t->tool, model, dials);
+    int code = scene_frame_open(frame, b->tool, model, dials);
 
     frame->pose = invalidate_shadows;
     frame->pose_ctx = frame;
-    canvas_restore_background(t->base.canvas);
-    return code == EXIT_OK ? scene_frame_draw(frame, &t->base.canvas->image)
-                           : code;
+    canvas_restore_background(&b->canvas);
+    return code == EXIT_OK ? scene_frame_draw(frame, &b->canvas.image) : code;
 }
 
-/* Sets DIALS to the quality parameters of the command line, changed by
- * variation V. Returns false if V has an option or a size but changes none of
- * them. */
-static bool set_quality_parameters(const struct bench *b,
-                                   const struct bench_variation *v,
-                                   struct scene_dials *dials)
+static int add_bench_case(struct bench *b)
 {
-    struct glint_options options = b->base.options;
-    struct scene_dials plain = {.width = b->width,
+    struct opened *const o = b->opened;
+    struct scene_dials dials = {.width = b->width,
                                 .height = b->height,
                                 .edge_samples = 4,
                                 .shadow_points = 4};
-    struct glint_error error;
-    char text[16];
-
-    scene_dials_set_defaults(&plain, &options);
-    *dials = plain;
-    if (v->option && strcmp(v->option, "shading") == 0)
-        glint_options_set(&options, v->option, v->value, &error);
-    else if (v->option) {
-        snprintf(text, sizeof text, "%g", v->value);
-        glint_options_set_text(&options, v->option, text, &error);
-    }
-    scene_dials_set_defaults(dials, &options);
-    if (v->width) {
-        dials->width = v->width;
-        dials->height = v->height;
-    }
-    return !(v->option || v->width) ||
-           dials->edge_samples != plain.edge_samples ||
-           dials->shadow_points != plain.shadow_points ||
-           dials->half_shading != plain.half_shading ||
-           dials->width != plain.width || dials->height != plain.height;
-}
-
-static int add_bench_case(struct bench *b, const struct bench_variation *v)
-{
-    struct opened *const o = b->opened;
-    struct scene_dials dials;
-    struct scene_case *t;
+    struct scene_case *const t =
+        (struct scene_case *)bench_add_case(b, o->scene.model.header->name);
     int code;
 
-    if (!set_quality_parameters(b, v, &dials) ||
-        !bench_is_variation_supported(v))
-        return EXIT_OK;
-    t = (struct scene_case *)bench_add_case(b, o->scene.model.header->name, v);
     if (!t)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
-    t->tool = *b->tool;
-    t->tool.workers = t->base.workers;
-    t->tool.n_threads = t->base.threads;
-    t->tool.sets_off |= v->kernels ? ~v->sets : 0;
+    scene_dials_set_defaults(&dials, &b->base.options);
     t->instructions = (double)NAN;
-    code = open_bench_frame(t, &t->frame, &o->scene.model, &dials);
+    code = open_bench_frame(b, &t->frame, &o->scene.model, &dials);
     if (code == EXIT_OK && o->bare.data)
-        code = open_bench_frame(t, &t->bare, &o->bare.model, &dials);
+        code = open_bench_frame(b, &t->bare, &o->bare.model, &dials);
     if (code == EXIT_OK)
         t->covered_px = scene_count_covered_px(&t->frame);
-    return code;
-}
-
-static int add_bench_cases(struct bench *b)
-{
-    static const struct bench_variation plain = {0};
-    int code = add_bench_case(b, &plain);
-
-    for (size_t i = 0;
-         i < sizeof all / sizeof *all && b->all && code == EXIT_OK; i++)
-        code = add_bench_case(b, &all[i]);
     return code;
 }
 
@@ -205,7 +133,7 @@ static enum glint_status draw_bench_frame(struct bench *b, struct bench_case *c,
 
     if (o->counter >= 0)
         before = glint_instructions_read(o->counter);
-    time_frame_stages(&t->frame, &c->canvas->image, at_s);
+    time_frame_stages(&t->frame, &b->canvas.image, at_s);
     if (o->counter >= 0)
         t->instructions =
             (double)(glint_instructions_read(o->counter) - before);
@@ -213,8 +141,8 @@ static enum glint_status draw_bench_frame(struct bench *b, struct bench_case *c,
         c->ms[span[i][0]][round] = 1e3 * (at_s[span[i][2]] - at_s[span[i][1]]);
     c->ms[SHADOWS][round] = 0;
     if (t->bare.scene) {
-        canvas_restore_background(c->canvas);
-        time_frame_stages(&t->bare, &c->canvas->image, at_s);
+        canvas_restore_background(&b->canvas);
+        time_frame_stages(&t->bare, &b->canvas.image, at_s);
         c->ms[SHADOWS][round] = c->ms[DRAW][round] - 1e3 * (at_s[3] - at_s[2]);
     }
     return GLINT_OK;
@@ -254,7 +182,7 @@ static int open_bench_scene(struct bench *b, int n, const char *const *name)
     if (code != EXIT_OK)
         return code;
     o->counter = glint_instructions_open();
-    return add_bench_cases(b);
+    return add_bench_case(b);
 }
 
 static void close_bench_case(struct bench_case *c)
@@ -289,10 +217,9 @@ static void print_bench_case(const struct bench *b, const struct bench_case *c)
     const struct scene_case *const t = (const struct scene_case *)c;
     const struct glint_scene_config *const cfg = &t->frame.cfg;
 
-    (void)b;
     printf("%-16.16s %4dx%-4d %5d %6d %-7s %2d %-5s", c->name, cfg->width,
            cfg->height, cfg->edge_samples, cfg->shadow_points,
-           get_shading_method_name(t), c->threads, c->kernels);
+           get_shading_method_name(t), bench_get_threads(b), b->tool->kernels);
 }
 
 static void print_bench_result(const struct bench *b,
@@ -312,12 +239,13 @@ static void write_bench_json(struct json_writer *to, const struct bench *b,
     const struct glint_scene_config *const cfg = &t->frame.cfg;
     const struct opened *const o = b->opened;
 
-    bench_write_json_format(to, b, c);
+    bench_write_json_format(to, b);
     json_write(to,
                "edge_samples: %d, shadow_points: %d, shading: %s, threads: %d, "
                "kernels: %s",
                cfg->edge_samples, cfg->shadow_points,
-               get_shading_method_name(t), c->threads, c->kernels);
+               get_shading_method_name(t), bench_get_threads(b),
+               b->tool->kernels);
     bench_write_json_times(to, b, c);
     json_write(to,
                "whole_ms: %.4f, instructions: %.0f, covered_px: %d, "
