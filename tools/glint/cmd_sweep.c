@@ -10,7 +10,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "linux/instructions.h"
 #include "measure/sweep.h"
 #include "options/command_line.h"
 #include "posix/output.h"
@@ -21,10 +20,9 @@ static const char help[] =
     "Draws the same frames with each quality parameter varied separately, "
     "with\n"
     "several varied together, and along --quality, and compares each with the\n"
-    "exact picture: time (as in glint bench, in rounds), instructions where "
+    "exact picture: time (as in glint bench, in rounds), memory, PSNR, SSIM, "
     "the\n"
-    "processor counts them, memory, PSNR, SSIM, the 99th percentile of the\n"
-    "differences in codes, and flux. FOLDER gets\n"
+    "99th percentile of the differences in codes, and flux. FOLDER gets\n"
     "  sweep.csv     all results, with version and machine\n"
     "  front.svg     error against time, with the Pareto front\n"
     "  dials.svg     the results of each parameter\n"
@@ -189,9 +187,7 @@ static int run_sweep(struct sweep *s, const struct asked *a)
     add_requested_cases(s, a);
     if (sweep_plan_points(s) != GLINT_OK)
         return tool_fail(s->tool, GLINT_E_MEMORY, NULL);
-    s->counter = glint_instructions_open();
     code = measure_sweep_cases(s);
-    glint_instructions_close(s->counter);
     if (code != EXIT_OK)
         return code;
     sweep_mark_fronts(s);
@@ -337,7 +333,6 @@ int cmd_sweep(int argc, char **argv)
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
     s->tool = &tool;
-    s->counter = -1;
     settings_set_defaults(&s->base);
     code = parse_options(&tool, argc, argv, s, &asked);
     if (code < 0)

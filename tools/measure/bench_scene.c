@@ -7,7 +7,6 @@
 #include <stdlib.h>
 
 #include "measure/bench.h"
-#include "linux/instructions.h"
 #include "options/command_line.h"
 #include "options/json_writer.h"
 #include "scenes/account.h"
@@ -38,13 +37,11 @@ struct opened {
     const char *file;
     /* bare: copy of the scene without shadows; only set if it has shadows */
     struct baked_scene scene, bare;
-    int counter; /* descriptor of the instruction counter; -1: not available */
 };
 
 struct scene_case {
     struct bench_case base;
     struct scene_frame frame, bare;
-    double instructions; /* instructions of the last frame; NAN: not counted */
     int covered_px;
 };
 
@@ -89,7 +86,6 @@ static int add_bench_case(struct bench *b)
     if (!t)
         return tool_fail(b->tool, GLINT_E_MEMORY, NULL);
     scene_dials_set_defaults(&dials, &b->base.options);
-    t->instructions = (double)NAN;
     code = open_bench_frame(b, &t->frame, &o->scene.model, &dials);
     if (code == EXIT_OK && o->bare.data)
         code = open_bench_frame(b, &t->bare, &o->bare.model, &dials);
@@ -126,17 +122,10 @@ static enum glint_status draw_bench_frame(struct bench *b, struct bench_case *c,
                                   {DRAW, 2, 3},
                                   {LIGHTS, 3, 4},
                                   {WHOLE, 0, 4}};
-    const struct opened *const o = b->opened;
     struct scene_case *const t = (struct scene_case *)c;
     double at_s[5];
-    uint64_t before = 0;
 
-    if (o->counter >= 0)
-        before = glint_instructions_read(o->counter);
     time_frame_stages(&t->frame, &b->canvas.image, at_s);
-    if (o->counter >= 0)
-        t->instructions =
-            (double)(glint_instructions_read(o->counter) - before);
     for (size_t i = 0; i < sizeof span / sizeof *span; i++)
         c->ms[span[i][0]][round] = 1e3 * (at_s[span[i][2]] - at_s[span[i][1]]);
     c->ms[SHADOWS][round] = 0;
@@ -181,7 +170,6 @@ static int open_bench_scene(struct bench *b, int n, const char *const *name)
         code = open_scene_without_shadows(b, o);
     if (code != EXIT_OK)
         return code;
-    o->counter = glint_instructions_open();
     return add_bench_case(b);
 }
 
@@ -201,7 +189,6 @@ static void close_bench_scene(struct bench *b)
         return;
     baked_scene_close(&o->scene);
     baked_scene_close(&o->bare);
-    glint_instructions_close(o->counter);
     free(o);
 }
 
@@ -248,11 +235,10 @@ static void write_bench_json(struct json_writer *to, const struct bench *b,
                b->tool->kernels);
     bench_write_json_times(to, b, c);
     json_write(to,
-               "whole_ms: %.4f, instructions: %.0f, covered_px: %d, "
+               "whole_ms: %.4f, covered_px: %d, "
                "triangles: %d, arena_bytes: %zu, model_bytes: %zu",
-               bench_compute_median_ms(b, c, WHOLE), t->instructions,
-               t->covered_px, t->frame.stats.triangles, t->frame.bytes,
-               o->scene.bytes);
+               bench_compute_median_ms(b, c, WHOLE), t->covered_px,
+               t->frame.stats.triangles, t->frame.bytes, o->scene.bytes);
 }
 
 /* ----------------------------------------------------------------- options */
@@ -270,7 +256,6 @@ static int parse_bench_option(struct bench *b, int c, const char *value)
         o = b->opened = calloc(1, sizeof *o);
         if (!o)
             return 0;
-        o->counter = -1;
     }
     o->file = value;
     return *value != '\0';

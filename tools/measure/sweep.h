@@ -49,7 +49,6 @@ enum sweep_metric {
     SWEEP_MS,
     SWEEP_FLOOR_MS,
     SWEEP_RATIO,
-    SWEEP_INSTRUCTIONS,
     SWEEP_ARENA_BYTES,
     SWEEP_MODEL_BYTES,
     SWEEP_PSNR_DB,
@@ -103,7 +102,6 @@ struct sweep {
      * exact picture's ray grid, 4 .. 1024, even */
     int rounds, grid;
     bool small;
-    int counter; /* descriptor of the instruction counter; -1: not available */
 };
 
 /* Applies SET to SETTINGS. OPENING: only parameters that affect opening the

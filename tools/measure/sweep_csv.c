@@ -12,9 +12,9 @@
 static const char *const kinds[] = {"standard", "alone", "together", "quality"};
 
 static const char *const metrics[SWEEP_METRICS] = {
-    "ms",          "floor_ms", "ratio", "instructions", "arena_bytes",
-    "model_bytes", "psnr_db",  "ssim",  "p99",          "flux_error",
-    "ghosts",      "bundles",  "edges", "tiles"};
+    "ms",      "floor_ms", "ratio", "arena_bytes", "model_bytes",
+    "psnr_db", "ssim",     "p99",   "flux_error",  "ghosts",
+    "bundles", "edges",    "tiles"};
 
 /* Prints a comma, and then X unless it is infinite or NAN. */
 static void print_csv_number(FILE *file, double x)

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "linux/instructions.h"
 #include "glint/measure.h"
 #include "measure/sweep.h"
 #include "options/timed_text.h"
@@ -139,18 +138,15 @@ static void close_case_measurement(struct bay *b)
 
 /* ------------------------------------------------------------------ timing */
 
-/* Draws R's frame and records its time and instructions. Round -1 warms up the
- * caches and records nothing. */
+/* Draws R's frame and records its time. Round -1 warms up the caches and
+ * records nothing. */
 static enum glint_status draw_and_time_run(struct bay *b, struct run *r,
                                            int round)
 {
-    const int counter = b->s->counter;
     enum glint_status status;
-    uint64_t n0;
     double t0;
 
     canvas_restore_background(&b->canvas);
-    n0 = counter >= 0 ? glint_instructions_read(counter) : 0;
     t0 = tool_clock_s();
     status = glint_engine_draw_at(r->engine, b->lamp, b->c->n_lamps,
                                   b->exposure, &b->canvas.image, &r->report);
@@ -158,9 +154,6 @@ static enum glint_status draw_and_time_run(struct bay *b, struct run *r,
         return status;
     r->ms[r->n] = 1e3 * (tool_clock_s() - t0);
     r->spent_ms += r->ms[r->n++];
-    if (counter >= 0)
-        r->point->metric[SWEEP_INSTRUCTIONS] =
-            (double)(glint_instructions_read(counter) - n0);
     return status;
 }
 
