@@ -230,13 +230,13 @@ static bool list_lens(void *ctx, const char *name)
     return code == EXIT_OK || code == EXIT_LENS;
 }
 
-/* Prints which search words no lens contains. Returns an exit code. */
 static int report_no_matching_lens(const struct lenses *l)
 {
-    if (l->n_words)
-        return lens_report_unknown_words(l->tool, l->words, l->n_words);
-    fprintf(stderr, "glint lenses: no lens was found; set $GLINT_LENSES to a "
-                    "folder of lens tables\n");
+    fputs(l->n_words ? "glint lenses: no lens has all of these words in its "
+                       "name, source or character\n"
+                     : "glint lenses: no lens was found; set $GLINT_LENSES to "
+                       "a folder of lens tables\n",
+          stderr);
     return EXIT_LENS;
 }
 

@@ -11,10 +11,6 @@
 bool lens_has_words(const char *name, const struct glint_prescription *lens,
                     char **words, int n);
 
-/* Prints which of the N WORDS (at least 1) no lens has, with a similar word, or
- * that no single lens has all N words. Returns an exit code. */
-int lens_report_unknown_words(const struct tool *tool, char **words, int n);
-
 /* Rejects the first of N NAMES that is not a lens of the library, and prints a
  * similar name. Returns an exit code. */
 int lens_check_requested_names(const char *const *names, int n);
