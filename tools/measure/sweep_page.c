@@ -120,6 +120,11 @@ static void write_picture_strips(const struct sweep *s, FILE *file)
 {
     const struct sweep_picture *exact = NULL;
 
+    if (!html_can_write_png()) {
+        fputs("<p>Pictures need the image plug-in, which is missing.</p>\n",
+              file);
+        return;
+    }
     fputs("<h2>Pictures</h2>\n"
           "<p>To the right of each picture: its difference from the exact "
           "picture, times 16; grey is no difference.</p>\n",

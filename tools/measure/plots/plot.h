@@ -76,7 +76,12 @@ void html_write_text(FILE *file, const char *text);
 void html_write_table_row(FILE *file, const char *tag, const char *format, ...)
     GLINT_PRINTF(3, 4);
 
-/* Writes RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG (png.c). */
+/* Returns whether the image plug-in, which html_write_png() needs, is
+ * available. */
+bool html_can_write_png(void);
+
+/* Writes RGB[HEIGHT][WIDTH][3] as a data: URI of a PNG (png.c); nothing if that
+ * fails. */
 void html_write_png(FILE *file, const uint8_t *rgb, int width, int height);
 
 void html_write_end(FILE *file);
