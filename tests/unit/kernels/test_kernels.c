@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
  * Tests that every variant of a kernel gives the bits of its C definition and
- * writes only to its arrays. With GLINT_BENCH=1 the kernels are timed as well.
- * The program needs only the kernels, so that it runs in an emulator.
+ * writes only to its arrays. The program needs only the kernels, so that it
+ * runs in an emulator.
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #ifdef __wasm__
 #define mprotect(mem, bytes, protection) 0 /* WebAssembly has no pages */
 #else
@@ -68,53 +67,12 @@ static void free_blocks_at_page_end(void)
     }
 }
 
-struct variant {
-    const char *name;
-    unsigned set;
-};
-
-static const struct variant variants[] = {{"sse41", GLINT_SET_SSE41},
-                                          {"avx2", GLINT_SET_AVX2},
-                                          {"neon", GLINT_SET_NEON}};
-
 /* The kernels as defined in C. */
 static const struct glint_kernels kernels_c = {
     glint_add_luma_c, glint_add_pairs_c, glint_add_packed_c, glint_add_code_c,
     glint_run_sum_c};
 static const struct glint_quad_kernels quad_kernels_c = {
     glint_add_quads_c, glint_add_quads_packed_c};
-
-enum { N_VARIANTS = sizeof variants / sizeof *variants };
-
-static double read_clock_ns(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
-/* If GLINT_BENCH is set, prints the min times of the C definition and of the
- * variant over many rounds. */
-#define BENCH(what, name, of_c, of_variant)                                \
-    do {                                                                   \
-        double best[2] = {1e9, 1e9};                                       \
-        if (!getenv("GLINT_BENCH"))                                        \
-            break;                                                         \
-        for (int round_ = 0; round_ < 1000; round_++) {                    \
-            double t0_ = read_clock_ns(), t1_, t2_;                        \
-            for (int i_ = 0; i_ < 20; i_++)                                \
-                of_c;                                                      \
-            t1_ = read_clock_ns();                                         \
-            for (int i_ = 0; i_ < 20; i_++)                                \
-                of_variant;                                                \
-            t2_ = read_clock_ns();                                         \
-            best[0] = t1_ - t0_ < best[0] ? t1_ - t0_ : best[0];           \
-            best[1] = t2_ - t1_ < best[1] ? t2_ - t1_ : best[1];           \
-        }                                                                  \
-        printf("%-10s %-6s %d px: C %.0f ns, %.0f ns, %.1f times\n", what, \
-               name, N, best[0] / 20, best[1] / 20, best[0] / best[1]);    \
-    } while (0)
 
 /* Returns random light: often 0, often the max, otherwise of any magnitude. */
 static uint16_t random_light(void)
@@ -162,7 +120,7 @@ static void add_luma_light(const struct glint_kernels *k, const struct rows *r,
     k->add_luma(r->luma, r->cb, r->cr, light, r->change, n, mix, round);
 }
 
-static void check_luma_kernel(const struct glint_kernels *k, const char *name)
+static void check_luma_kernel(const struct glint_kernels *k)
 {
     const struct glint_kernels *plain = &kernels_c;
     struct glint_mix mix;
@@ -193,8 +151,6 @@ static void check_luma_kernel(const struct glint_kernels *k, const char *name)
         for (int c = 0; c < 3; c++)
             EXPECT_SAME(got.change[c], want.change[c], 2 * N);
     }
-    BENCH("add_luma", name, add_luma_light(plain, &want, N, &mix, round),
-          add_luma_light(k, &got, N, &mix, round));
 }
 
 struct pairs {
@@ -225,8 +181,7 @@ static void add_light_to_pairs(const struct glint_kernels *k,
                  round + 8);
 }
 
-static void check_pixel_pair_kernel(const struct glint_kernels *k,
-                                    const char *name)
+static void check_pixel_pair_kernel(const struct glint_kernels *k)
 {
     const struct glint_kernels *plain = &kernels_c;
     struct glint_mix mix;
@@ -260,9 +215,6 @@ static void check_pixel_pair_kernel(const struct glint_kernels *k,
         for (int c = 0; c < 3; c++)
             EXPECT_SAME(got.mean[c], want.mean[c], 2 * N);
     }
-    BENCH("add_pairs", name,
-          add_light_to_pairs(plain, &want, N, GLINT_PAIRS_ALONE, &mix, round),
-          add_light_to_pairs(k, &got, N, GLINT_PAIRS_ALONE, &mix, round));
 }
 
 static void add_light_to_packed_pixels(const struct glint_kernels *k,
@@ -277,7 +229,7 @@ static void add_light_to_packed_pixels(const struct glint_kernels *k,
 }
 
 /* Checks packed pixels at odd addresses, including spans without light. */
-static void check_packed_kernel(const struct glint_kernels *k, const char *name)
+static void check_packed_kernel(const struct glint_kernels *k)
 {
     const struct glint_kernels *plain = &kernels_c;
     uint8_t *want = allocate_at_page_end(2 * N + 1),
@@ -307,9 +259,6 @@ static void check_packed_kernel(const struct glint_kernels *k, const char *name)
         add_light_to_packed_pixels(k, got + at, light, n, luma_at, &mix, round);
         EXPECT_SAME(got, want, 2 * N + 1);
     }
-    BENCH("add_packed", name,
-          add_light_to_packed_pixels(plain, want, light, N, 0, &mix, round),
-          add_light_to_packed_pixels(k, got, light, N, 0, &mix, round));
 }
 
 /* Two rows of luma and of chroma. For packed formats, `luma` contains the
@@ -335,8 +284,7 @@ static void add_light_to_quads(const struct glint_quad_kernels *k,
 
 /* Checks blocks of 2 x 2 pixels, including spans without light. Both rows may
  * be the same, or have common chroma. */
-static void check_2x2_block_kernel(const struct glint_quad_kernels *k,
-                                   const char *name)
+static void check_2x2_block_kernel(const struct glint_quad_kernels *k)
 {
     const struct glint_quad_kernels *plain = &quad_kernels_c;
     uint8_t *want[4], *got[4];
@@ -379,14 +327,10 @@ static void check_2x2_block_kernel(const struct glint_quad_kernels *k,
         for (int i = 0; i < 4; i++)
             EXPECT_SAME(got[i], want[i], 2 * N);
     }
-    BENCH("add_quads", name,
-          add_light_to_quads(plain, &a, light, N, 1, &mix, round),
-          add_light_to_quads(k, &b, light, N, 1, &mix, round));
 }
 
 /* Checks all pairs of a code and a light. */
-static void check_8bit_code_kernel(const struct glint_kernels *k,
-                                   const char *name)
+static void check_8bit_code_kernel(const struct glint_kernels *k)
 {
     const int16_t round[8] = {64, 0, 127, 1, 63, 65, 100, 30};
     const struct glint_kernels *plain = &kernels_c;
@@ -407,14 +351,9 @@ static void check_8bit_code_kernel(const struct glint_kernels *k,
                 k->add_code(got, light, N, tone, round);
                 EXPECT_SAME(got, want, N);
             }
-    BENCH("add_code", name,
-          plain->add_code(want, light, N,
-                          glint_get_tone_constants(GLINT_TONE_SRGB), round),
-          k->add_code(got, light, N, glint_get_tone_constants(GLINT_TONE_SRGB),
-                      round));
 }
 
-static void check_sum_kernel(const struct glint_kernels *k, const char *name)
+static void check_sum_kernel(const struct glint_kernels *k)
 {
     const struct glint_kernels *plain = &kernels_c;
     uint32_t *want = allocate_at_page_end(N * sizeof *want),
@@ -444,13 +383,11 @@ static void check_sum_kernel(const struct glint_kernels *k, const char *name)
         EXPECT_SAME(got, want, 4 * N);
         EXPECT_SAME(light[0], light[1], 2 * N);
     }
-    BENCH("run_sum", name, plain->run_sum(want, &carry[0], light[0], N, 8),
-          k->run_sum(got, &carry[1], light[1], N, 8));
 }
 
 /* Checks polynomials like those of baked models: the magnitudes of their
  * coefficients sum to less than 2^30. */
-static void check_horner_kernel(const struct glint_horner *k, const char *name)
+static void check_horner_kernel(const struct glint_horner *k)
 {
     const struct glint_horner *plain = glint_choose_horner_kernels(0);
     int32_t *c = allocate_at_page_end(160 * sizeof *c),
@@ -476,10 +413,6 @@ static void check_horner_kernel(const struct glint_horner *k, const char *name)
         k->across(got, c, 16, degree, x[0], 16);
         EXPECT_SAME(got, want, 4 * N);
     }
-    BENCH("along 9", name, plain->along(want, c, 9, x, N),
-          k->along(got, c, 9, x, N));
-    BENCH("across 4", name, plain->across(want, c, 32, 4, x[0], 16),
-          k->across(got, c, 32, 4, x[0], 16));
 }
 
 /* Returns a random number whose magnitude is below MOST, often MOST - 1. */
@@ -491,7 +424,7 @@ static int32_t random_signed_below(int64_t most)
     return (int32_t)(x & 4 ? -size : size);
 }
 
-static void check_turn_kernel(glint_turn_fn *turn, const char *name)
+static void check_turn_kernel(glint_turn_fn *turn)
 {
     const int64_t most = INT64_C(1) << 30;
     const size_t bytes = GLINT_TURNED * sizeof(int32_t);
@@ -527,14 +460,11 @@ static void check_turn_kernel(glint_turn_fn *turn, const char *name)
         }
     }
     EXPECT(n_lost > ROUNDS && n_kept > ROUNDS);
-    BENCH("turn 8", name, glint_turn_c(&t, x, y, out[0], lost[0]),
-          turn(&t, x, y, out[1], lost[1]));
 }
 
 /* Checks convolutions with the largest kernels and values that a baked
  * translucent medium may have: sums are below 2^31 in any order. */
-static void check_convolution_kernel(glint_convolve_fn *convolve,
-                                     const char *name)
+static void check_convolution_kernel(glint_convolve_fn *convolve)
 {
     enum { TAPS = 32, VALUES = N + 2 * TAPS };
     int32_t *value = allocate_at_page_end(VALUES * sizeof *value);
@@ -562,31 +492,27 @@ static void check_convolution_kernel(glint_convolve_fn *convolve,
         convolve(got, value, stride, tap, n_taps, n);
         EXPECT_SAME(got, want, N * sizeof *got);
     }
-    BENCH("convolve 15", name, glint_convolve_c(want, value, 2, tap, 15, 32),
-          convolve(got, value, 2, tap, 15, 32));
 }
 
 static void test_kernels_are_identical(void)
 {
-    for (int v = 0; v < N_VARIANTS; v++) {
-        const struct glint_kernels *k =
-            glint_choose_pixel_kernels(variants[v].set);
+    static const unsigned sets[] = {GLINT_SET_SSE41, GLINT_SET_AVX2,
+                                    GLINT_SET_NEON};
 
-        if (!(variants[v].set & glint_system_sets()))
+    for (size_t v = 0; v < sizeof sets / sizeof *sets; v++) {
+        const struct glint_kernels *k = glint_choose_pixel_kernels(sets[v]);
+
+        if (!(sets[v] & glint_system_sets()))
             continue;
-        check_horner_kernel(glint_choose_horner_kernels(variants[v].set),
-                            variants[v].name);
-        check_turn_kernel(glint_choose_turn_kernel(variants[v].set),
-                          variants[v].name);
-        check_convolution_kernel(glint_choose_convolve_kernel(variants[v].set),
-                                 variants[v].name);
-        check_luma_kernel(k, variants[v].name);
-        check_pixel_pair_kernel(k, variants[v].name);
-        check_packed_kernel(k, variants[v].name);
-        check_2x2_block_kernel(glint_choose_quad_kernels(variants[v].set),
-                               variants[v].name);
-        check_8bit_code_kernel(k, variants[v].name);
-        check_sum_kernel(k, variants[v].name);
+        check_horner_kernel(glint_choose_horner_kernels(sets[v]));
+        check_turn_kernel(glint_choose_turn_kernel(sets[v]));
+        check_convolution_kernel(glint_choose_convolve_kernel(sets[v]));
+        check_luma_kernel(k);
+        check_pixel_pair_kernel(k);
+        check_packed_kernel(k);
+        check_2x2_block_kernel(glint_choose_quad_kernels(sets[v]));
+        check_8bit_code_kernel(k);
+        check_sum_kernel(k);
     }
 }
 

@@ -2,9 +2,8 @@
  *
  * Tests that every variant of the kernel for brushed metal gives the bits of
  * its C definition for random lobes, levels and texels, and reads no texel out
- * of range: the array of texels ends at an inaccessible page. With
- * GLINT_BENCH=1 the kernels are timed as well. The program needs only the
- * kernels, so that it runs in an emulator.
+ * of range: the array of texels ends at an inaccessible page. The program
+ * needs only the kernels, so that it runs in an emulator.
  */
 #include <math.h>
 #include <stdio.h>
@@ -15,7 +14,6 @@
 #else
 #include <sys/mman.h>
 #endif
-#include <time.h>
 
 #include "glint/kernels.h"
 #include "kernels/ward/ward.h"
@@ -135,42 +133,7 @@ static void make_random_view(struct glint_ward_place *p)
     p->root_log2 = random_below(8) - 1;
 }
 
-static double read_clock_ns(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
-/* Prints the min time, over many rounds of 8 samples, of the C definition and
- * of SUM. */
-static void print_kernel_time(const char *name, glint_ward_sum_fn *sum,
-                              struct glint_ward_lobe *l,
-                              const struct glint_texels *t)
-{
-    struct glint_ward_place p;
-    double best[2] = {1e9, 1e9};
-    uint64_t rgb[3];
-
-    make_random_view(&p);
-    p.out_q14[0] = p.out_q14[1] = 0;
-    p.out_q14[2] = 1 << 14;
-    l->n = 8;
-    l->norm = GLINT_WARD_BOUNDED;
-    for (int round = 0; round < 4000; round++)
-        for (int which = 0; which < 2; which++) {
-            const double begin = read_clock_ns();
-
-            for (int k = 0; k < 20; k++)
-                (which ? sum : glint_ward_sum_c)(l, t, &p, rgb);
-            best[which] = fmin(best[which], (read_clock_ns() - begin) / 20);
-        }
-    printf("ward 8     %-6s C %.0f ns, %.0f ns, %.1f times\n", name, best[0],
-           best[1], best[0] / best[1]);
-}
-
-static void check_kernel_variant(const char *name, glint_ward_sum_fn *sum)
+static void check_kernel_variant(glint_ward_sum_fn *sum)
 {
     uint8_t *const code = allocate_texels();
     struct glint_texels texels;
@@ -195,21 +158,15 @@ static void check_kernel_variant(const char *name, glint_ward_sum_fn *sum)
         }
     }
     EXPECT(n_lit > LOBES * PLACES / 2);
-    make_random_texels(&texels, code);
-    if (getenv("GLINT_BENCH"))
-        print_kernel_time(name, sum, &lobe, &texels);
     EXPECT(mprotect(code + 4 * CODES, PAGE, PROT_READ | PROT_WRITE) == 0);
     free(code);
 }
 
 int main(void)
 {
-    check_kernel_variant("c", glint_choose_ward_kernel(0));
+    check_kernel_variant(glint_choose_ward_kernel(0));
     for (unsigned set = 1; set; set <<= 1)
         if (set & glint_system_sets())
-            check_kernel_variant(set == GLINT_SET_SSE41  ? "sse41"
-                                 : set == GLINT_SET_AVX2 ? "avx2"
-                                                         : "neon",
-                                 glint_choose_ward_kernel(set));
+            check_kernel_variant(glint_choose_ward_kernel(set));
     return 0;
 }
