@@ -6,9 +6,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
-#include "lens_pages/search.h"
 #include "model/lens_files.h"
 #include "options/json_writer.h"
 #include "model/settings.h"
@@ -179,6 +179,30 @@ static int copy_or_bake_model(const struct lenses *l, const struct entry *e)
 
 /* ----------------------------------------------------------------- command */
 
+static bool contains_search_word(const char *text, const char *word)
+{
+    const size_t n = strlen(word);
+
+    for (; *text; text++)
+        if (strncasecmp(text, word, n) == 0)
+            return true;
+    return false;
+}
+
+/* Returns whether name, source and character of the lens NAME contain all N
+ * WORDS, ignoring case. */
+static bool lens_has_words(const char *name,
+                           const struct glint_prescription *lens, char **words,
+                           int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!contains_search_word(name, words[i]) &&
+            !contains_search_word(lens->source, words[i]) &&
+            !contains_search_word(lens->character, words[i]))
+            return false;
+    return true;
+}
+
 static bool is_lens_requested(const struct lenses *l, const char *name)
 {
     for (int i = 0; i < l->n_only; i++)
@@ -242,10 +266,13 @@ static int report_no_matching_lens(const struct lenses *l)
 
 static int print_lens_list(struct lenses *l)
 {
-    const int code = lens_check_requested_names(l->only, l->n_only);
+    char path[1024];
 
-    if (code != EXIT_OK)
-        return code;
+    for (int i = 0; i < l->n_only; i++)
+        if (!lens_find_file(l->only[i], path, sizeof path)) {
+            tool_report_unknown_lens(l->tool, l->only[i]);
+            return EXIT_LENS;
+        }
     if (l->folder && mkdir(l->folder, 0777) != 0 && errno != EEXIST) {
         fprintf(stderr, "glint lenses: %s: %s\n", l->folder, strerror(errno));
         return EXIT_OUTPUT;

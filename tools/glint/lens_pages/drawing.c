@@ -263,6 +263,7 @@ static double get_field_angle_deg(const struct figure *f, int field)
 }
 
 enum { PROFILE = 24 };
+#define WIDTH_PX  960.0
 #define TITLE_PX  52.0
 #define HEIGHT_PX 400.0 /* max height of the section */
 
@@ -346,7 +347,7 @@ static void set_section_image_extent(struct figure *f)
 static void begin_lens_figure(struct figure *f)
 {
     const struct glint_prescription *lens = f->drawing->lens;
-    const double width = f->drawing->width_px - 2 * FIGURE_MARGIN_PX;
+    const double width = WIDTH_PX - 2 * FIGURE_MARGIN_PX;
     double length, least, at[3];
 
     place_surface_vertices(f);
@@ -367,10 +368,8 @@ static void begin_lens_figure(struct figure *f)
     /* The width that remains becomes space in front of the lens. */
     f->z0 = fmax(f->z1 - width / f->scale, least - 0.6 * length);
     f->height_px = 2 * f->x1 * f->scale;
-    f->left = 0.5 * (f->drawing->width_px - f->scale * (f->z1 - f->z0)) -
-              f->scale * f->z0;
-    f->middle =
-        (f->drawing->title ? TITLE_PX : FIGURE_MARGIN_PX) + 0.5 * f->height_px;
+    f->left = 0.5 * (WIDTH_PX - f->scale * (f->z1 - f->z0)) - f->scale * f->z0;
+    f->middle = TITLE_PX + 0.5 * f->height_px;
 }
 
 /* ---------------------------------------------------------------- the lens */
@@ -554,8 +553,7 @@ static void draw_spot_diagram_box(const struct figure *f, double x, double y)
 static void draw_spot_diagram(const struct figure *f, const struct spots *s,
                               int field, double theta)
 {
-    const double step =
-        (f->drawing->width_px - 2 * FIGURE_MARGIN_PX) / DRAWING_FIELDS;
+    const double step = (WIDTH_PX - 2 * FIGURE_MARGIN_PX) / DRAWING_FIELDS;
     const double cx = FIGURE_MARGIN_PX + step * (field + 0.5);
     const double cy = compute_spot_diagrams_top_px(f) + 0.5 * SPOT_PX;
     const double half_mm = round_up_to_1_2_5(s->radius_mm);
@@ -587,7 +585,7 @@ static void draw_spot_diagram(const struct figure *f, const struct spots *s,
 static void draw_colour_legend(const struct figure *f)
 {
     const double y = compute_spot_diagrams_top_px(f) + SPOT_PX + 34;
-    const double end = f->drawing->width_px - FIGURE_MARGIN_PX;
+    const double end = WIDTH_PX - FIGURE_MARGIN_PX;
 
     for (int c = 0; c < SPOT_COLOURS; c++) {
         const double x = end - 66 * (SPOT_COLOURS - c);
@@ -616,13 +614,8 @@ static void draw_all_spot_diagrams(const struct figure *f)
 void lens_drawing_set_defaults(struct lens_drawing *d,
                                const struct glint_prescription *lens)
 {
-    *d = (struct lens_drawing){.lens = lens,
-                               .ghost = -1,
-                               .angle_deg = -1,
-                               .rays = 7,
-                               .spots = true,
-                               .title = true,
-                               .width_px = 960};
+    *d = (struct lens_drawing){
+        .lens = lens, .ghost = -1, .angle_deg = -1, .rays = 7, .spots = true};
 }
 
 /* -------------------------------------------------------------------- rays */
@@ -764,7 +757,7 @@ static void draw_scale_bar(const struct figure *f)
 
 static void open_svg_file(const struct figure *f)
 {
-    const double width = f->drawing->width_px;
+    const double width = WIDTH_PX;
     const double height = f->middle + 0.5 * f->height_px + FIGURE_MARGIN_PX +
                           compute_spot_diagrams_height_px(f);
 
@@ -821,10 +814,8 @@ int lens_drawing_write(const struct lens_drawing *drawing, FILE *file)
     draw_rays_or_ghost(&f, path, sizeof path);
     fputs("</g>\n", file);
     draw_aperture_stop(&f, optics.stop_radius_mm);
-    if (drawing->title) {
-        draw_figure_title(&f, &optics, path);
-        draw_scale_bar(&f);
-    }
+    draw_figure_title(&f, &optics, path);
+    draw_scale_bar(&f);
     if (drawing->spots)
         draw_all_spot_diagrams(&f);
     fputs("</svg>\n", file);

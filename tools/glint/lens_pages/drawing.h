@@ -22,10 +22,8 @@ struct lens_drawing {
                          0 or 90 */
     int rays;         /* rays per fan, 1 .. DRAWING_MAX_RAYS */
     bool spots;       /* spot diagrams below the section */
-    bool title;
-    double focus_m; /* focus distance, printed in the title; 0: infinity. Rays
-                       are always from infinity. */
-    double width_px;
+    double focus_m;   /* focus distance, printed in the title; 0: infinity. Rays
+                         are always from infinity. */
 };
 
 void lens_drawing_set_defaults(struct lens_drawing *drawing,

@@ -56,7 +56,7 @@ static int print_matching_lenses(const struct tool *tool, const char *name)
     return m.n;
 }
 
-static void print_lens_not_found(const struct tool *tool, const char *name)
+void tool_report_unknown_lens(const struct tool *tool, const char *name)
 {
     struct suggest s;
 
@@ -138,7 +138,7 @@ const char *tool_find_lens_file(const struct tool *tool, const char *argument,
         return argument;
     if (lens_find_file(argument, path, bytes))
         return path;
-    print_lens_not_found(tool, argument);
+    tool_report_unknown_lens(tool, argument);
     return NULL;
 }
 

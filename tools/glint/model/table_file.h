@@ -8,6 +8,9 @@
 #include "glint/prescription.h"
 #include "options/tool.h"
 
+/* Prints that no lens has the name NAME, and similar names. */
+void tool_report_unknown_lens(const struct tool *tool, const char *name);
+
 /* Returns the path of the lens ARGUMENT: ARGUMENT itself if it is a file name,
  * else PATH, which receives the path of the lens's table. If there is no such
  * lens, prints similar names and returns NULL. */

@@ -12,6 +12,16 @@ static const char shared[] =
     "margin:0 8px 14px 0;vertical-align:top;font-size:12px}"
     "img{display:block}svg{max-width:100%;height:auto}.worse{color:#b01e1e}";
 
+/* Writes TEXT with < > & and " escaped as HTML entities. */
+static void html_write_text(FILE *file, const char *text)
+{
+    for (; *text; text++)
+        if (strchr("&<>\"", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+}
+
 void html_write_head(FILE *file, const char *title, const char *style)
 {
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
@@ -22,15 +32,6 @@ void html_write_head(FILE *file, const char *title, const char *style)
             style);
     html_write_text(file, title);
     fputs("</h1>\n", file);
-}
-
-void html_write_text(FILE *file, const char *text)
-{
-    for (; *text; text++)
-        if (strchr("&<>\"", *text))
-            fprintf(file, "&#%d;", *text);
-        else
-            fputc(*text, file);
 }
 
 void html_write_table_row(FILE *file, const char *tag, const char *format, ...)

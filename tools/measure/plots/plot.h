@@ -67,9 +67,6 @@ const char *plot_get_colour_of_series(int i);
  * replace the rules of all pages. */
 void html_write_head(FILE *file, const char *title, const char *style);
 
-/* Writes TEXT with < > & and " escaped as HTML entities. */
-void html_write_text(FILE *file, const char *text);
-
 /* Writes a table row with cells <TAG> (th or td): the printf text of FORMAT,
  * up to 1023 bytes, split at each |. A cell that begins with ! gets the CSS
  * class "worse". */
