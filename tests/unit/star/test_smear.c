@@ -176,11 +176,6 @@ TEST(stars_match_direct_summation)
 
         squares += off * off / n;
         most = fmax(most, fabs(off));
-        if (getenv("SHOW"))
-            fprintf(stderr, "r %.1f: %.2f, direct %.2f\n", r,
-                    canvas_encode_srgb_exactly(linear[3 * (y * SIDE + x) + 1] *
-                                               0x1p-20),
-                    canvas_encode_srgb_exactly(light));
     }
     printf("smear: %.1f dB against direct summation, %.1f codes at most\n",
            10 * log10(255 * 255 / squares), most);
