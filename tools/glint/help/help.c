@@ -18,9 +18,9 @@ static const struct {
              "quality stats config "},
     {"render", " output size light lens f-number only starburst exposure gain "
                "quality "},
-    {"explain", " output scene size save-ghosts sort top lens "
+    {"explain", " output scene size save-ghosts top lens "
                 "light-at quality "},
-    {"bench", " all size repeat quality rays "},
+    {"bench", " size repeat quality rays "},
     {"styles", " output width lens light-at strength gain quality "},
 };
 
