@@ -213,6 +213,13 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
                               const double direction[3], double stop_radius_mm,
                               double field_mm, const struct glint_pupil *near);
 
+/* Like glint_pupil_find_towards(), in a fifth of the time, for drafts: light
+ * that enters through less than 1/16 of the front element can be missed. The
+ * energy of PUPIL is 0. */
+bool glint_pupil_find_roughly(struct glint_pupil *pupil,
+                              const struct glint_path *path,
+                              const double direction[3], double stop_radius_mm);
+
 /* Extends PUPIL by the pupil of PATH for light along DIRECTION. PUPIL must be
  * the pupil for a similar wavelength and direction. This costs a tenth of
  * glint_pupil_find(). Returns false if no light passes. */

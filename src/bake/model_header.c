@@ -213,7 +213,7 @@ static double measure_direct_flux(const struct glint_setup *whole, double area,
     setup.optics.stop_radius_mm *= sqrt(area);
     if (whole->lens->f_number < GLINT_WIDE)
         setup.n_blades = BLADES;
-    return glint_direct_compute_flux(&setup, nm) / area /
+    return glint_direct_compute_flux(&setup, nm, GLINT_FLUX_CELLS) / area /
            glint_iris_compute_area_fraction(&setup);
 }
 

@@ -696,10 +696,11 @@ static bool is_same_lens_and_band(const struct traced *t,
 {
     const struct glint_optics *const a = &t->optics;
     const struct glint_optics *const b = &cfg->setup->optics;
-    bool same =
-        t->cfg.setup == cfg->setup && t->n_ghosts == cfg->setup->n_ghosts &&
-        a->stop_radius_mm == b->stop_radius_mm && a->focal_mm == b->focal_mm &&
-        a->length_mm == b->length_mm && a->squeeze == b->squeeze;
+    bool same = t->cfg.setup == cfg->setup && t->cfg.draft == cfg->draft &&
+                t->n_ghosts == cfg->setup->n_ghosts &&
+                a->stop_radius_mm == b->stop_radius_mm &&
+                a->focal_mm == b->focal_mm && a->length_mm == b->length_mm &&
+                a->squeeze == b->squeeze;
 
     for (int k = 0; k < 3; k++)
         same = same && t->cfg.wave_nm[k] == cfg->wave_nm[k];
@@ -863,7 +864,8 @@ static enum glint_status measure_frame_fields(struct glint_frame *f,
                                    .round =
                                        glint_prescription_is_round(s->lens),
                                    .max_cells = f->dials.fineness,
-                                   .uniform = f->picture.uniform};
+                                   .uniform = f->picture.uniform,
+                                   .draft = glint_frame_is_draft(f)};
     enum glint_status status = GLINT_OK;
     struct measured_fields had;
 

@@ -10,8 +10,13 @@
 
 /* Cells per side of two coarse grids of rays. SAMPLING: the grid from which the
  * barrels and the number of grid cells are chosen. LOOKS: the grid with which
- * the brightness of a ghost is measured. */
-enum { SAMPLING = 24, LOOKS = 16 };
+ * the brightness of a ghost is measured. DRAFT_SAMPLING, DRAFT_LOOKS: the same
+ * for drafts. */
+enum { SAMPLING = 24, LOOKS = 16, DRAFT_SAMPLING = 12, DRAFT_LOOKS = 8 };
+
+/* In drafts, the pupil of one direction and wavelength is enlarged on each side
+ * by this fraction of its size, to contain the pupils of the others. */
+#define DRAFT_MARGIN 0.05
 /* FEW_INSIDE: min number of visible rays in the grid SAMPLING from which the
  * number of grid cells can be computed. CELLS_A_RADIUS: number of cells per
  * stop radius if fewer rays are visible. */
@@ -172,7 +177,7 @@ static void enlarge_pupil_by_pixel(const struct ray_field_config *cfg,
 
 /* a coarse grid of rays over the pupil, at one wavelength */
 struct coarse_grid {
-    int rows;
+    int side, rows; /* numbers of cells across and of rows of rays */
     double cell_mm2;
     struct glint_ray ray[LOOKS + 1][LOOKS + 1];
     bool traced[LOOKS + 1][LOOKS + 1], inside[LOOKS + 1][LOOKS + 1];
@@ -231,7 +236,8 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
                               struct coarse_grid *coarse_grid)
 {
     const struct glint_pupil *p = &field->pupil;
-    const int rows = p->mirrored ? LOOKS / 2 + 1 : LOOKS + 1;
+    const int side = cfg->draft ? DRAFT_LOOKS : LOOKS;
+    const int rows = p->mirrored ? side / 2 + 1 : side + 1;
     double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
     struct glint_launch from[SOME];
     struct glint_ray ray[SOME];
@@ -242,22 +248,23 @@ static void trace_coarse_grid(const struct ray_field_config *cfg,
 
     init_field_path(cfg, field, nm, &path);
     glint_ray_compute_direction(cfg, field->patch->middle, d);
+    coarse_grid->side = side;
     coarse_grid->rows = rows;
     coarse_grid->cell_mm2 =
-        (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) / (LOOKS * (rows - 1));
-    for (int at = 0; at < rows * (LOOKS + 1); at += n) {
-        for (n = 0; n < SOME && at + n < rows * (LOOKS + 1); n++) {
-            const int i = (at + n) % (LOOKS + 1), j = (at + n) / (LOOKS + 1);
+        (p->x1_mm - p->x0_mm) * (p->y1_mm - p->y0_mm) / (side * (rows - 1));
+    for (int at = 0; at < rows * (side + 1); at += n) {
+        for (n = 0; n < SOME && at + n < rows * (side + 1); n++) {
+            const int i = (at + n) % (side + 1), j = (at + n) / (side + 1);
 
             from[n] = (struct glint_launch){
-                p->x0_mm + i * ((p->x1_mm - p->x0_mm) / LOOKS),
+                p->x0_mm + i * ((p->x1_mm - p->x0_mm) / side),
                 p->y0_mm + (p->y1_mm - p->y0_mm) * j / (rows - 1),
                 {d[0], d[1], d[2]}};
         }
         glint_trace_many(&path, n, from, ray, status, hits);
         for (int k = 0; k < n; k++)
-            set_coarse_ray(cfg, field, &path, (at + k) % (LOOKS + 1),
-                           (at + k) / (LOOKS + 1), status[k], &ray[k],
+            set_coarse_ray(cfg, field, &path, (at + k) % (side + 1),
+                           (at + k) / (side + 1), status[k], &ray[k],
                            hits + k * path.n_events, coarse_grid);
     }
 }
@@ -321,7 +328,7 @@ static void add_second_differences(const struct coarse_grid *l, int i, int j,
 {
     const struct glint_ray *here = &l->ray[j][i], *next;
 
-    if (i + di > LOOKS || j + dj >= l->rows || !l->inside[j][i] ||
+    if (i + di > l->side || j + dj >= l->rows || !l->inside[j][i] ||
         !l->traced[j + dj][i + di])
         return;
     next = &l->ray[j + dj][i + di];
@@ -345,14 +352,14 @@ static void add_second_differences(const struct coarse_grid *l, int i, int j,
 static void compute_barrel_sags(struct ray_measures *measures, double stop_mm,
                                 const struct coarse_grid *l)
 {
-    const double by = LOOKS;
+    const double by = l->side;
 
     measures->sag[0] = measures->sag[1] = measures->sag[2] = 0;
     for (int way = 0; way < 2; way++) {
         struct difference_sums b = {0, 0, 0, {0, 0}};
 
         for (int j = 0; j < l->rows; j++)
-            for (int i = 0; i <= LOOKS; i++)
+            for (int i = 0; i <= l->side; i++)
                 add_second_differences(l, i, j, !way, way, stop_mm, &b);
         for (int k = 0; k < 2 && b.n_bends; k++)
             measures->sag[k] += b.bend[k] / b.n_bends * by * by / 12;
@@ -388,7 +395,7 @@ static void compute_root_slope(struct ray_measures *measures,
 
     for (int way = 0; way < 2; way++)
         for (int j = 0; j + 1 + way < l->rows; j++)
-            for (int i = 0; i + !way < LOOKS; i++) {
+            for (int i = 0; i + !way < l->side; i++) {
                 double here = 0, next = 0;
                 const double area =
                     fmin(compute_open_cell(l, i, j, &here),
@@ -399,7 +406,48 @@ static void compute_root_slope(struct ray_measures *measures,
                     areas += area;
                 }
             }
-    measures->root_slope = areas > 0 ? LOOKS * sqrt(squares / areas) : 0;
+    measures->root_slope = areas > 0 ? l->side * sqrt(squares / areas) : 0;
+}
+
+/* Adds the light of GRID at one wavelength to the flux and brightness of FIELD.
+ * Returns the max energy of a visible ray, at least MOST. */
+static double add_grid_light(const struct coarse_grid *grid,
+                             struct ray_field *field, double most)
+{
+    double flux = 0;
+
+    for (int j = 0; j + 1 < grid->rows; j++)
+        for (int i = 0; i < grid->side; i++)
+            add_cell_flux(grid, i, j, &flux, &field->measures);
+    for (int j = 0; j < grid->rows; j++)
+        for (int i = 0; i <= grid->side; i++)
+            if (grid->inside[j][i])
+                most = fmax(most, grid->ray[j][i].energy);
+    field->flux = fmax(field->flux, (field->pupil.mirrored ? 2 : 1) * flux);
+    return most;
+}
+
+/* Returns the distance on the sensor, mm, RMS over the rays, between the same
+ * rays of A and B. */
+static double compute_grid_distance(const struct coarse_grid *a,
+                                    const struct coarse_grid *b)
+{
+    double squares = 0;
+    int n = 0;
+
+    for (int j = 0; j < a->rows; j++)
+        for (int i = 0; i <= a->side; i++)
+            if (a->traced[j][i] && b->traced[j][i] &&
+                (a->inside[j][i] || b->inside[j][i])) {
+                const double x =
+                    a->ray[j][i].sensor_x_mm - b->ray[j][i].sensor_x_mm;
+                const double y =
+                    a->ray[j][i].sensor_y_mm - b->ray[j][i].sensor_y_mm;
+
+                squares += x * x + y * y;
+                n++;
+            }
+    return n ? sqrt(squares / n) : HUGE_VAL;
 }
 
 /* Measures FIELD: its flux, brightness, interpolation errors (sags), and how
@@ -408,38 +456,15 @@ static void measure_brightness(const struct ray_field_config *cfg,
                                struct ray_field *field)
 {
     struct ray_measures *const measures = &field->measures;
-    const double both = field->pupil.mirrored ? 2 : 1;
     struct coarse_grid look[3];
-    double most = field->pupil.energy, squares = 0;
-    int n = 0;
+    double most = field->pupil.energy;
 
     field->flux = measures->cell_flux = measures->density = 0;
     for (int w = 0; w < 3; w++) {
-        double flux = 0;
-
         trace_coarse_grid(cfg, field, cfg->wave_nm[w], &look[w]);
-        for (int j = 0; j + 1 < look[w].rows; j++)
-            for (int i = 0; i < LOOKS; i++)
-                add_cell_flux(&look[w], i, j, &flux, measures);
-        for (int j = 0; j < look[w].rows; j++)
-            for (int i = 0; i <= LOOKS; i++)
-                if (look[w].inside[j][i])
-                    most = fmax(most, look[w].ray[j][i].energy);
-        field->flux = fmax(field->flux, both * flux);
+        most = add_grid_light(&look[w], field, most);
     }
-    for (int j = 0; j < look[0].rows; j++)
-        for (int i = 0; i <= LOOKS; i++)
-            if (look[0].traced[j][i] && look[2].traced[j][i] &&
-                (look[0].inside[j][i] || look[2].inside[j][i])) {
-                const double x = look[0].ray[j][i].sensor_x_mm -
-                                 look[2].ray[j][i].sensor_x_mm;
-                const double y = look[0].ray[j][i].sensor_y_mm -
-                                 look[2].ray[j][i].sensor_y_mm;
-
-                squares += x * x + y * y;
-                n++;
-            }
-    field->apart_mm = n ? sqrt(squares / n) : HUGE_VAL;
+    field->apart_mm = compute_grid_distance(&look[0], &look[2]);
     compute_barrel_sags(measures, cfg->setup->optics.stop_radius_mm, &look[1]);
     compute_root_slope(measures, &look[1]);
     field->energy_unit = 1.5 * most;
@@ -450,6 +475,28 @@ static void measure_brightness(const struct ray_field_config *cfg,
                       glint_pupil_height(&field->pupil);
         measures->density = measures->cell_flux = HUGE_VAL;
     }
+}
+
+/* Finds the part of the pupil of a draft: for the middle of the patch and of
+ * the band of wavelengths, from coarse grids, with a margin for the others. */
+static bool find_draft_pupil(const struct ray_field_config *cfg,
+                             struct ray_field *field, struct glint_path *path)
+{
+    struct glint_pupil *const p = &field->pupil;
+    double d[3], more;
+
+    init_field_path(cfg, field, cfg->wave_nm[1], path);
+    glint_ray_compute_direction(cfg, field->patch->middle, d);
+    if (!glint_pupil_find_roughly(p, path, d,
+                                  cfg->setup->optics.stop_radius_mm))
+        return false;
+    more = DRAFT_MARGIN * (p->x1_mm - p->x0_mm);
+    p->x0_mm -= more;
+    p->x1_mm += more;
+    more = DRAFT_MARGIN * (p->y1_mm - p->y0_mm);
+    p->y0_mm -= p->mirrored ? 0 : more;
+    p->y1_mm += more;
+    return true;
 }
 
 /* Finds the part of the pupil through which visible rays enter, for all
@@ -491,14 +538,15 @@ void glint_ray_field_measure(const struct ray_field_config *cfg,
     double at[2], d[3];
 
     field->is_measured = true;
-    field->is_open = find_pupil_of_whole_patch(cfg, field, &path);
+    field->is_open = cfg->draft ? find_draft_pupil(cfg, field, &path)
+                                : find_pupil_of_whole_patch(cfg, field, &path);
     if (!field->is_open)
         return;
     init_field_path(cfg, field, cfg->wave_nm[1], &path);
     glint_ray_compute_direction(cfg, patch->middle, d);
     glint_sampling_trace_grid(&sampling, &path, &field->pupil, d, stop_mm,
-                              SAMPLING);
-    for (int k = 0; k < 4; k++)
+                              cfg->draft ? DRAFT_SAMPLING : SAMPLING);
+    for (int k = 0; k < 4 && !cfg->draft; k++)
         if (get_patch_side_middle(cfg, patch, k, at)) {
             glint_ray_compute_direction(cfg, at, d);
             glint_sampling_trace_grid(&more, &path, &field->pupil, d, stop_mm,
@@ -513,6 +561,8 @@ void glint_ray_field_measure(const struct ray_field_config *cfg,
                                             .step = sampling.step,
                                             .n_inside = sampling.n_inside};
     measure_brightness(cfg, field);
+    field->is_open = field->energy_unit > 0; /* in drafts, rays of the coarse
+                                                grid may miss the stop */
 }
 
 void glint_ray_field_choose_grid(const struct ray_field_config *cfg,

@@ -49,6 +49,7 @@ struct ray_field_config {
     bool round;    /* true: the lens is rotationally symmetric */
     int max_cells; /* max number of cells per side of a grid, 1 .. 1024 */
     bool uniform;  /* true: all ghosts get max_cells cells per side */
+    bool draft;    /* true: fields are measured with fewer rays */
     /* wavelengths, nm: both ends of the band and one near its middle */
     double wave_nm[3];
 };

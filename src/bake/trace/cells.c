@@ -388,7 +388,7 @@ bool glint_cells_overlap_range(const struct glint_cells *cells, int i, int j,
 }
 
 double glint_direct_compute_flux(const struct glint_setup *setup,
-                                 double wavelength_nm)
+                                 double wavelength_nm, int n)
 {
     struct glint_cells cells;
     struct glint_path path;
@@ -396,7 +396,7 @@ double glint_direct_compute_flux(const struct glint_setup *setup,
     double sum = 0;
 
     glint_path_init(&path, setup->lens, NULL, wavelength_nm);
-    if (!glint_cells_init(&cells, setup, &path, 0, 0, 256))
+    if (!glint_cells_init(&cells, setup, &path, 0, 0, n))
         return 0;
     cells.node = malloc(glint_cells_compute_bytes(&cells));
     if (!cells.node)
@@ -404,7 +404,7 @@ double glint_direct_compute_flux(const struct glint_setup *setup,
     for (int j = 0; j < glint_cells_count_traced_rows(&cells); j++)
         glint_cells_trace_row(&cells, j);
     for (int k = 0; k < 2 * cells.n * cells.n; k++) {
-        /* NOLINTNEXTLINE: n is 256 */
+        /* NOLINTNEXTLINE: n > 0 */
         if (clip_triangle(&cells, k / 2 % cells.n, k / 2 / cells.n, k & 1, &s))
             sum += compute_visible_share(&s) * compute_mean_energy(&cells, &s);
     }

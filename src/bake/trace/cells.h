@@ -91,9 +91,13 @@ bool glint_cells_overlap_range(const struct glint_cells *cells, int i, int j,
 /* Returns the area of a cell on the pupil, mm^2. */
 double glint_cells_compute_cell_area(const struct glint_cells *cells);
 
+/* numbers of cells per side of the pupil for glint_direct_compute_flux() */
+enum { GLINT_FLUX_CELLS = 256, GLINT_FLUX_DRAFT_CELLS = 32 };
+
 /* Returns the flux of the direct image of a light on the axis at irradiance 1,
- * mm^2; -1 if there is no memory. */
+ * mm^2, from rays at the corners of CELLS x CELLS cells; -1 if there is no
+ * memory. */
 double glint_direct_compute_flux(const struct glint_setup *setup,
-                                 double wavelength_nm);
+                                 double wavelength_nm, int cells);
 
 #endif

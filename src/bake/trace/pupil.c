@@ -25,6 +25,8 @@ enum { ACROSS = 64, DOWN = 32, ROUNDS = 8, TURNS = 16 };
 
 /* numbers of cells in later rounds, which cover a smaller region */
 enum { NEXT_ACROSS = 24, NEXT_DOWN = 12 };
+/* numbers of cells and rounds of glint_pupil_find_roughly() */
+enum { ROUGH_ACROSS = 16, ROUGH_DOWN = 8, ROUGH_ROUNDS = 4 };
 
 /* A pupil is enlarged on each side by this fraction of its size, so that it
  * contains the pupils of nearby wavelengths and directions. */
@@ -424,6 +426,29 @@ bool glint_pupil_find_towards(struct glint_pupil *pupil,
     if (found)
         *pupil = p;
     return found;
+}
+
+bool glint_pupil_find_roughly(struct glint_pupil *pupil,
+                              const struct glint_path *path,
+                              const double direction[3], double stop_radius_mm)
+{
+    struct search s;
+    struct glint_pupil p;
+    double before = HUGE_VAL;
+
+    if (!begin_pupil_search(&s, path, direction, stop_radius_mm, HUGE_VAL, &p))
+        return false;
+    s.across = ROUGH_ACROSS;
+    s.down = ROUGH_DOWN;
+    for (int round = 0;
+         round < ROUGH_ROUNDS && compute_box_area(&p) < 0.8 * before; round++) {
+        before = compute_box_area(&p);
+        if (!shrink_to_visible_cells(&s, &p))
+            return false;
+    }
+    p.energy = 0;
+    *pupil = p;
+    return true;
 }
 
 /* Returns whether A reaches a side of B at which B ends inside FRONT. */

@@ -10,11 +10,13 @@
 #include "bake/trace/cells.h"
 #include "glint/trace.h"
 
-enum glint_status glint_setup_init(struct glint_setup *setup,
-                                   const struct glint_prescription *lens,
-                                   int n_blades, double blade_rotation_deg,
-                                   const double *wavelength_nm, int n,
-                                   struct glint_error *error)
+/* Initialises SETUP as glint_setup_init() does. The flux of the direct light is
+ * measured with CELLS x CELLS cells. */
+static enum glint_status init_setup(struct glint_setup *setup,
+                                    const struct glint_prescription *lens,
+                                    int n_blades, double blade_rotation_deg,
+                                    const double *wavelength_nm, int n,
+                                    int cells, struct glint_error *error)
 {
     const enum glint_status status = glint_setup_check_arguments(
         n_blades, blade_rotation_deg, wavelength_nm, n, error);
@@ -31,11 +33,32 @@ enum glint_status glint_setup_init(struct glint_setup *setup,
                             n);
     for (int i = 0; i < n; i++) {
         setup->direct_flux[i] =
-            glint_direct_compute_flux(setup, wavelength_nm[i]);
+            glint_direct_compute_flux(setup, wavelength_nm[i], cells);
         if (setup->direct_flux[i] < 0) {
             snprintf(error->text, sizeof error->text, "not enough memory");
             return GLINT_E_MEMORY;
         }
     }
     return glint_setup_set_unit_flux(setup, lens->name, error);
+}
+
+enum glint_status glint_setup_init(struct glint_setup *setup,
+                                   const struct glint_prescription *lens,
+                                   int n_blades, double blade_rotation_deg,
+                                   const double *wavelength_nm, int n,
+                                   struct glint_error *error)
+{
+    return init_setup(setup, lens, n_blades, blade_rotation_deg, wavelength_nm,
+                      n, GLINT_FLUX_CELLS, error);
+}
+
+enum glint_status glint_setup_init_draft(struct glint_setup *setup,
+                                         const struct glint_prescription *lens,
+                                         int n_blades,
+                                         double blade_rotation_deg,
+                                         const double *wavelength_nm, int n,
+                                         struct glint_error *error)
+{
+    return init_setup(setup, lens, n_blades, blade_rotation_deg, wavelength_nm,
+                      n, GLINT_FLUX_DRAFT_CELLS, error);
 }

@@ -23,6 +23,17 @@ static inline double read_frame_clock(const struct glint_frame *f)
     return f->clock ? f->clock() : 0;
 }
 
+/* Returns whether F has the quality of a draft: grids as coarse as those of
+ * --quality draft, and one set of wavelengths. Exact rays and their starbursts
+ * are then measured with fewer samples. */
+static inline bool glint_frame_is_draft(const struct glint_frame *f)
+{
+    enum { DRAFT_CELLS = 32 };
+
+    return f->trace && f->dials.fineness <= DRAFT_CELLS &&
+           f->dials.dispersion_q8 == 0;
+}
+
 /* Returns whether the flare is planned for 8-bit codes: IMAGE has codes, or the
  * flare will be added to codes later. */
 static inline bool is_planned_for_codes(const struct glint_frame *f,

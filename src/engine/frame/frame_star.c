@@ -59,7 +59,8 @@ static struct glint_star_optics make_star_optics(const struct glint_frame *f)
         .round = f->setup->iris.roundness,
         .soft = f->setup->iris.softness,
         .f_number = fabs(o->focal_mm) / (2 * o->entrance_radius_mm),
-        .pixel_um = 1e3 * f->view.sensor_width_mm / f->view.width};
+        .pixel_um = 1e3 * f->view.sensor_width_mm / f->view.width,
+        .draft = glint_frame_is_draft(f)};
 }
 
 static bool are_star_optics_equal(const struct glint_star_optics *a,
@@ -67,7 +68,8 @@ static bool are_star_optics_equal(const struct glint_star_optics *a,
 {
     return a->n_blades == b->n_blades && a->rotation_deg == b->rotation_deg &&
            a->round == b->round && a->soft == b->soft && a->smear == b->smear &&
-           a->f_number == b->f_number && a->pixel_um == b->pixel_um;
+           a->f_number == b->f_number && a->pixel_um == b->pixel_um &&
+           a->draft == b->draft;
 }
 
 /* Recomputes the smear, the diffraction by dirt in the stop, if the dirt has

@@ -47,7 +47,7 @@ static int count_cell_samples(const struct glint_psf *psf, double r)
     const double fine = r < 12 * psf->airy_px + 0.5
                             ? psf->airy_px / 8
                             : fmin(psf->width_px, 1) / 5;
-    const int most = r < 1 ? 48 : 12;
+    const int most = (r < 1 ? 48 : 12) / (psf->draft ? 4 : 1);
 
     return (int)fmin(fmax(ceil(1.0 / CELLS / fine), 1), most);
 }

@@ -15,7 +15,9 @@ enum {
     PER_OCTAVE = 4,
     EVERY = 2, /* every second wavelength is used */
     WAVES = (GLINT_PSF_WAVES + EVERY - 1) / EVERY,
-    GROUP = 3 /* number of rows that are computed together */
+    GROUP = 3,     /* number of rows that are computed together */
+    DRAFT_STEP = 8 /* drafts: distance of the columns that are computed; those
+                      between are interpolated */
 };
 
 /* distances from the lamp at which the table begins, in orders of diffraction,
@@ -102,8 +104,25 @@ static void blend_circle_light(const struct glint_psf *p, double r,
     }
 }
 
+/* Interpolates column K of the table between the nearest columns whose numbers
+ * are multiples of DRAFT_STEP. */
+static void interpolate_fan_column(struct glint_psf *p, int k)
+{
+    const int rest = k % DRAFT_STEP;
+    const double part = (double)rest / DRAFT_STEP;
+
+    for (int row = 0; row < p->n_far; row++) {
+        double(*const at)[3] = p->far + row * COLUMNS + k;
+
+        for (int c = 0; c < 3; c++)
+            at[0][c] =
+                (1 - part) * at[-rest][c] + part * at[DRAFT_STEP - rest][c];
+    }
+}
+
 enum glint_status glint_fans_make_table(struct glint_psf *p)
 {
+    const int step = p->draft ? DRAFT_STEP : 1;
     const double first = first_order * p->airy_px;
     double sum[3] = {0, 0, 0};
 
@@ -114,8 +133,11 @@ enum glint_status glint_fans_make_table(struct glint_psf *p)
     for (int i = 0; i < GLINT_PSF_WAVES; i += EVERY)
         for (int c = 0; c < 3; c++)
             sum[c] += p->weight[i][c];
-    for (int k = 0; k < COLUMNS; k++)
+    for (int k = 0; k < COLUMNS; k += step)
         compute_fan_column(p, first, k);
+    for (int k = 0; k < COLUMNS; k++)
+        if (k % step)
+            interpolate_fan_column(p, k);
     for (int k = 0; k < p->n_far * COLUMNS; k++) {
         const double r = compute_row_distance(first, k / COLUMNS);
 

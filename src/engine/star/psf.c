@@ -256,9 +256,10 @@ static enum glint_status make_near_table(struct glint_psf *p)
     double *table;
 
     p->n_rows = ORDERS * GLINT_PSF_STEPS + 2;
-    p->n_columns = p->n_blades ? 2 + (int)(0.5 * GLINT_PI / p->n_lines *
-                                           ORDERS * 0.7 * GLINT_PSF_STEPS)
-                               : 1;
+    p->n_columns = p->n_blades
+                       ? 2 + (int)(0.5 * GLINT_PI / p->n_lines * ORDERS *
+                                   (p->draft ? 0.2 : 0.7) * GLINT_PSF_STEPS)
+                       : 1;
     p->near = calloc((size_t)p->n_rows * (size_t)p->n_columns, sizeof *p->near);
     table = tabulate_patterns(p, n_rows);
     for (int i = 0; i < GLINT_PSF_WAVES && table && p->near; i++)
@@ -301,12 +302,13 @@ static void set_fan_arcs(struct glint_psf *p, double round)
 enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
                                  double rotation_deg, double airy_px)
 {
-    return glint_psf_init_iris(psf, n_blades, rotation_deg, airy_px, 0, 0);
+    return glint_psf_init_iris(psf, n_blades, rotation_deg, airy_px, 0, 0,
+                               false);
 }
 
 enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
                                       double rotation_deg, double airy_px,
-                                      double round, double soft)
+                                      double round, double soft, bool draft)
 {
     const int n = round >= circle_round ? 0 : n_blades;
     const int is_straight = round < straight_round && soft < straight_soft;
@@ -314,6 +316,7 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
     *psf = (struct glint_psf){.n_blades = n,
                               .rotation_deg = rotation_deg,
                               .airy_px = airy_px,
+                              .draft = draft,
                               .n_lines = n == 0       ? 1
                                          : n % 2 == 0 ? n / 2
                                                       : n,
@@ -331,8 +334,10 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
         psf->normal[i][1] = -sin(a);
     }
     set_spectrum_weights(psf);
-    compute_line_profile(psf);
-    compute_smooth_line_profile(psf);
+    if (n && is_straight) {
+        compute_line_profile(psf);
+        compute_smooth_line_profile(psf);
+    }
     if (soft > 0 && !(n && is_straight))
         move_soft_edge_to_slope_middle(psf, soft);
     if (n && !is_straight)

@@ -23,6 +23,8 @@
 #ifndef GLINT_ENGINE_STAR_PSF_H
 #define GLINT_ENGINE_STAR_PSF_H
 
+#include <stdbool.h>
+
 #include "engine/star/arcs.h"
 #include "glint/light.h"
 #include "glint/status.h"
@@ -38,6 +40,7 @@ struct glint_psf {
     double rotation_deg;
     double soft; /* width of the soft edge of the stop, stop radii; 0: hard edge
                   */
+    bool draft;  /* true: tables have fewer columns or samples */
     int fans;    /* 1: blades are round or have a soft edge, and diffract light
                     into fans instead of lines */
     double round;           /* curvature of blades with fans, 1 / stop radius */
@@ -84,10 +87,11 @@ void glint_psf_finish(struct glint_psf *psf);
 /* Computes the pattern of a stop with blades of curvature ROUND, 0 .. 1, and an
  * edge of softness SOFT, 0 .. 1, as in struct glint_iris. ROUND below 0.01 with
  * SOFT below 0.002 is treated as straight, ROUND from 0.98 on as a circle.
- * Returns GLINT_E_MEMORY on failure. */
+ * DRAFT: computes coarser tables, for pictures of draft quality. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
                                       double rotation_deg, double airy_px,
-                                      double round, double soft);
+                                      double round, double soft, bool draft);
 
 /* Computes the table of fans, for orders of diffraction above 12. Returns
  * GLINT_E_MEMORY on failure. */

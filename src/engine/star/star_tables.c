@@ -66,14 +66,16 @@ static void filter_profile_by_pixel(const struct glint_psf *psf,
                                     const struct window *window, double angle,
                                     double v, double rgb[3])
 {
-    enum { N = 192 };
+    const int n = psf->draft ? 24 : 192;
     const double a = fabs(cos(angle)), b = fabs(sin(angle));
     const double wide = fmax(a, b), narrow = fmin(a, b);
     double total = 0;
 
     rgb[0] = rgb[1] = rgb[2] = 0;
-    for (int i = 0; i < N; i++) {
-        const double at = (wide + narrow) * ((i + 0.5) / N - 0.5);
+    if (psf->n_blades == 0 || psf->fans)
+        return; /* there are no lines */
+    for (int i = 0; i < n; i++) {
+        const double at = (wide + narrow) * ((i + 0.5) / n - 0.5);
         const double rim = 0.5 * (wide + narrow) - fabs(at);
         const double part = rim < narrow ? rim / narrow : 1;
         double here[3];
@@ -133,9 +135,10 @@ struct disc {
     double part[100];
 };
 
-static struct disc make_lamp_disc(double radius)
+static struct disc make_lamp_disc(double radius, bool draft)
 {
-    struct disc d = {.n = 8 + (int)(radius / 1.5), .radius = radius};
+    struct disc d = {.n = (8 + (int)(radius / 1.5)) / (draft ? 4 : 1),
+                     .radius = radius};
     double total = 0;
 
     for (int i = 0; i <= d.n; i++) {
@@ -217,7 +220,7 @@ static void make_halo_table(struct glint_star_tables *t,
                             const struct window *window)
 {
     const double reach = t->reach_q8 / 256.0;
-    const struct disc point = make_lamp_disc(0);
+    const struct disc point = make_lamp_disc(0, psf->draft);
     double top = -60, log2_of[3];
 
     for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
@@ -239,7 +242,7 @@ static void make_wide_lamp_halos(struct glint_star_tables *t,
                                  glint_star_halo_row *wide)
 {
     for (int k = 0; k < GLINT_STAR_WIDE; k++) {
-        const struct disc disc = make_lamp_disc(exp2(k - 1));
+        const struct disc disc = make_lamp_disc(exp2(k - 1), psf->draft);
 
         for (int i = 0; i < GLINT_STAR_HALO_ROWS; i++)
             encode_halo_row(t, psf, window, &disc, i,
@@ -296,8 +299,9 @@ enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
     struct window window;
     struct glint_star_tables *t = NULL;
     struct glint_star_line *line;
-    enum glint_status status = glint_psf_init_iris(
-        &psf, o->n_blades, o->rotation_deg, airy_px, o->round, o->soft);
+    enum glint_status status =
+        glint_psf_init_iris(&psf, o->n_blades, o->rotation_deg, airy_px,
+                            o->round, o->soft, o->draft);
     const size_t smear_bytes = o->smear ? sizeof *t->smear : 0;
 
     if (status == GLINT_OK)

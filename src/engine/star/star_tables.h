@@ -13,6 +13,7 @@ struct glint_star_optics {
     double rotation_deg, f_number;
     double round, soft; /* as in struct glint_iris */
     double pixel_um;    /* side of a pixel on the sensor, um */
+    bool draft;         /* true: coarser tables */
     /* diffraction by dirt in the stop, or NULL */
     const struct glint_smear *smear;
 };

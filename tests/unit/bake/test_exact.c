@@ -13,6 +13,7 @@
 #include "engine/response.h"
 #include "glint/measure.h"
 #include "glint/pool.h"
+#include "glint/quality.h"
 #include "formats/pnm.h"
 #include "posix/input.h"
 #include "support/lens_check.h"
@@ -480,6 +481,48 @@ TEST(earlier_pictures_do_not_change_the_picture)
         assert_ok(glint_frame_draw_flare_alone(&used, lamps, 2, 1, linear[1],
                                                &report));
         assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
+        glint_frame_finish(&fresh);
+        glint_frame_finish(&used);
+    }
+}
+
+/* Checks that a draft, whose ghosts are measured with fewer rays, resembles the
+ * picture, and that the frame then draws the same bits as a new one. */
+TEST(drafts_resemble_the_picture)
+{
+    static float linear[2][3 * 240 * 135], draft[3 * 240 * 135];
+    const struct glint_view view = {
+        .width = 240, .height = 135, .sensor_width_mm = 36};
+    const struct glint_lamp lamps[2] = {make_white_lamp(7.58, 33.2),
+                                        make_white_lamp(3.1, -100)};
+    static const char *const names[] = {"heliar-tronnier",
+                                        "double-gauss-angenieux"};
+
+    for (int k = 0; k < 2; k++) {
+        struct glint_frame fresh, used;
+        struct glint_engine_report report;
+        struct glint_dials dials;
+        double db;
+
+        load_setup(&setup, &lens, names[k]);
+        draw_lamps_linear(&fresh, view, lamps, 2, linear[0]);
+        glint_frame_init(&used, &setup, view, NULL);
+        used.trace = &glint_frame_traces;
+        dials = used.dials;
+        used.dials = used.asked = glint_quality_at(0.25).dials;
+        assert_ok(
+            glint_frame_draw_flare_alone(&used, lamps, 2, 1, draft, &report));
+        used.dials = used.asked = dials;
+        assert_ok(glint_frame_draw_flare_alone(&used, lamps, 2, 1, linear[1],
+                                               &report));
+        assert_memory_equal(linear[0], linear[1], sizeof linear[0]);
+        for (int i = 0; i < 3 * 240 * 135; i++) {
+            rgb[i] = (double)linear[0][i];
+            other[i] = (double)draft[i];
+        }
+        db = compute_psnr(rgb, other, view);
+        print_message("draft of %s: %.1f dB\n", names[k], db);
+        assert_true(db >= 30);
         glint_frame_finish(&fresh);
         glint_frame_finish(&used);
     }

@@ -208,8 +208,9 @@ TEST(fans_rotate_with_the_blades)
         struct glint_psf one, turned;
         double a[3], b[3];
 
-        assert_ok(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0));
-        assert_ok(glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0));
+        assert_ok(glint_psf_init_iris(&one, blades[i], 20, 1, 0.2, 0, false));
+        assert_ok(
+            glint_psf_init_iris(&turned, blades[i], 21, 1, 0.2, 0, false));
         assert_int_equal(count_peaks_on_circle(&one, 200), fans[i]);
         for (int k = 0; k < 90; k++) {
             const double phi = k * GLINT_PI / 180, turn = GLINT_PI / 180;
@@ -234,8 +235,8 @@ TEST(soft_edge_removes_distant_light)
 
     assert_true(fabs(glint_psf_compute_soft_edge_factor(0.1, 0) - 1) < 1e-9);
     assert_true(glint_psf_compute_soft_edge_factor(0.1, 100) < 1e-3);
-    assert_ok(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0));
-    assert_ok(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1));
+    assert_ok(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0, false));
+    assert_ok(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1, false));
     glint_psf_compute_light(&hard, 0, 0, a);
     glint_psf_compute_light(&soft, 0, 0, b);
     assert_true(b[1] > 0.75 * a[1] && b[1] < a[1]);

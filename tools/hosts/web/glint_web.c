@@ -11,10 +11,14 @@
 #include "glint/engine.h"
 #include "glint/explain.h"
 #include "glint/options.h"
+#include "glint/quality.h"
 
 /* default roundness of the aperture blades, as in glint overlay; --stop may set
  * another one */
 #define PHOTO_ROUNDNESS 0.2
+
+/* number of the name of a quality, as in glint_quality_name: draft */
+enum { DRAFT = 1 };
 
 static struct {
     struct glint_error error;
@@ -202,6 +206,7 @@ static int open_web_lens(void)
  * table define others. */
 static int set_up_camera(struct glint_engine_camera *camera)
 {
+    const bool draft = web.options.quality <= glint_quality_named(DRAFT);
     double nm[GLINT_MAX_WAVELENGTHS];
     int n;
 
@@ -210,7 +215,7 @@ static int set_up_camera(struct glint_engine_camera *camera)
         camera->iris.roundness = 0;
     }
     n = glint_waves_list(&camera->waves, nm);
-    return record_status(glint_setup_init(
+    return record_status((draft ? glint_setup_init_draft : glint_setup_init)(
                &web.setup, &web.table, camera->n_blades,
                camera->blade_rotation_deg, nm, n, &web.error)) &&
            record_status(glint_engine_setup(&web.setup, NULL, camera, &web.dirt,

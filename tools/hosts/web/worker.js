@@ -15,7 +15,7 @@ import {init} from "./glint.js";
 
 // Options that an engine takes up from picture to picture.
 const LIGHT = ["strength", "exposure", "gain", "starburst"];
-const DRAFT = {quality: "draft", "area-samples": "1"}; // as --preview
+const DRAFT = {quality: "0.125", "area-samples": "1"};
 
 let setModule;
 const engine = new Promise(done => setModule = module => done(init(module)));
