@@ -31,6 +31,8 @@ static const char help[] =
     "a frame\n"
     "  glint styles -o OUT             draw a photograph in each --style\n"
     "  glint synth BACKGROUNDS ...     draw pairs to train flare removal with\n"
+    "  glint web [PHOTO]               show a page that adds flares, for "
+    "browsers\n"
     "  glint compare A B               measure the difference of two pictures\n"
     "  glint bench                     measure the time of a frame\n"
     "  glint sweep -o FOLDER           measure time against accuracy: plots, "
@@ -56,7 +58,7 @@ static const struct command commands[] = {
     {"compare", cmd_compare}, {"bake", cmd_bake},       {"bench", cmd_bench},
     {"sweep", cmd_sweep},     {"lenses", cmd_lenses},   {"styles", cmd_styles},
     {"draw", cmd_draw},       {"synth", cmd_synth},     {"import", cmd_import},
-    {"lint", cmd_lint},
+    {"lint", cmd_lint},       {"web", cmd_web},
 };
 
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

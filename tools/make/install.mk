@@ -36,6 +36,7 @@ install: install-library install-programs $(if $(filter yes,$(PLUGIN)),build/gli
 	$(if $(filter yes,$(FREI0R)),install -d $(to)/lib/frei0r-1 && install $(strip_too) -m 644 build/glint-frei0r.so $(to)/lib/frei0r-1/glint.so)
 	$(if $(filter yes,$(ELEMENT)),install -d $(DESTDIR)$(element_to) && install $(strip_too) -m 644 $(placed_gstreamer) $(DESTDIR)$(element_to))
 	$(if $(filter yes-no,$(ELEMENT)-$(if $(filter /usr,$(PREFIX)),yes,no)),@echo 'for GStreamer: export GST_PLUGIN_PATH=$(element_to)')
+	if [ -e build/web/glint.wasm ]; then install -d $(to)/share/glint/web && install -m 644 build/web/* $(to)/share/glint/web; fi
 	install -d $(addprefix $(to)/share/,$(dir $(shells)) $(if $(filter yes,$(MANUAL)),man/man1 man/man3 man/man5))
 	for s in $(shells); do install -m 644 tools/man/$${s##*/} $(to)/share/$$s || exit 1; done
 	mv $(to)/share/bash-completion/completions/glint.bash $(to)/share/bash-completion/completions/glint
@@ -94,8 +95,9 @@ uninstall:
 	        $(patsubst %,$(to)/share/glint/%,$(wildcard lenses/*.lens lenses/*/*.lens)) \
 	        $(addprefix $(to)/share/,$(shells:.bash=)) $(to)/share/man/man1/glint.1 $(to)/share/man/man1/glint-*.1 \
 	        $(to)/share/man/man3/glint.3 $(to)/share/man/man5/glint-lens.5 $(to)/share/man/man5/glint-scene.5 \
-	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm
-	@for d in include/glint/scene include/glint $(lib)/pkgconfig $(lib)/glint lib/frei0r-1 $(lib)/gstreamer-1.0 share/glint/models $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
+	        $(to)/share/glint/models/*.glint $(to)/share/glint/bridge.jpg $(to)/share/glint/bridge.ppm \
+	        $(patsubst %,$(to)/share/glint/web/%,glint.wasm sample.jpg $(notdir $(web_files)))
+	@for d in include/glint/scene include/glint $(lib)/pkgconfig $(lib)/glint lib/frei0r-1 $(lib)/gstreamer-1.0 share/glint/models share/glint/web $(lens_rooms:%=share/glint/%) share/glint/lenses share/glint \
 	        $(patsubst %/,share/%,$(dir $(shells))) share/bash-completion share/zsh share/fish \
 	        share/man/man1 share/man/man3 share/man/man5 share/man lib/systemd/system lib/systemd; do \
 	        if [ -d $(to)/$$d ]; then rmdir --ignore-fail-on-non-empty $(to)/$$d; fi; done

@@ -191,5 +191,6 @@ int cmd_import(int argc, char **argv);
 int cmd_lint(int argc, char **argv);
 int cmd_styles(int argc, char **argv);
 int cmd_synth(int argc, char **argv);
+int cmd_web(int argc, char **argv);
 
 #endif

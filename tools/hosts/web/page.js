@@ -10,7 +10,7 @@ const $ = id => document.getElementById(id);
 const MAX_PIXELS = 40e6;
 const MAX_BYTES = 200e6;
 const DRAFT_SIDE = 640; // pixels of the longer side of coarse pictures
-const DRAFT_MS = 100; // that drawing one may take; the number of its lamps follows
+const DRAFT_MS = 60; // that drawing one may take, or half more; the number of its lamps follows
 const FRAME_MS = 50; // the same, of a camera
 const THUMB_LAMPS = 4;
 const GHOSTS = 12; // that are listed
@@ -774,16 +774,21 @@ function start(read) {
     report("Open a photograph, or take the sample");
     document.body.dataset.loaded = Math.round(performance.now());
     render();
+    if (location.hash.length > 1)
+        openFrom("photo", decodeURIComponent(location.hash.slice(1)));
+}
+
+// Opens a file of the server. URL "photo" is the photograph of glint web, whose name follows '#' in the address.
+async function openFrom(url, name) {
+    const answer = await fetch(url).catch(() => null);
+    if (!answer?.ok)
+        return report(name + " is missing", true);
+    const blob = await answer.blob();
+    open(new File([blob], name, {type: blob.type}));
 }
 
 $("file").onchange = event => open(event.target.files[0]);
-$("sample").onclick = async () => {
-    const answer = await fetch("sample.jpg").catch(() => null);
-    if (answer && answer.ok)
-        open(new File([await answer.blob()], "sample.jpg", {type: "image/jpeg"}));
-    else
-        report("sample.jpg is missing", true);
-};
+$("sample").onclick = () => openFrom("sample.jpg", "sample.jpg");
 $("camera").onclick = async () => isLive() ? open(await live.off()) : startCamera();
 $("record").onclick = () => live.record();
 $("undo").onclick = () => travel(past, future);
