@@ -19,6 +19,11 @@ enum { WIDE = 480, MOST_HIGH = 480 };
 static const double near_deg[] = {0, 0.3, 2, 5};
 enum { NEAR = sizeof near_deg / sizeof *near_deg, STEPS = 6 };
 
+/* the constants of a linear congruential generator (Knuth, TAOCP 3.3.4) */
+enum { SEED = 46 };
+#define MULTIPLIER UINT64_C(6364136223846793005)
+#define INCREMENT  UINT64_C(1442695040888963407)
+
 enum glint_status picture_pair_open(struct picture_pair *pair,
                                     const struct glint_setup *setup,
                                     const struct glint_lens *model,
@@ -54,7 +59,7 @@ void picture_pair_close(struct picture_pair *pair)
 
 /* A light, and the result of the comparison of its images */
 struct light {
-    double angle_deg;
+    double angle_deg, azimuth_deg;
     bool is_black; /* whether no light reaches either image */
     struct glint_measure measure;
     struct glint_error error;
@@ -65,18 +70,18 @@ struct job {
     const struct glint_setup *setup;
     const struct glint_lens *model;
     struct glint_view view;
-    struct light light[NEAR + STEPS];
+    struct light light[PICTURE_CHECK_LIGHTS];
     int n;
     int first; /* index of the first light that is being compared */
 };
 
 static enum glint_status
 render_model_and_exact_pictures(const struct picture_pair *pair,
-                                double angle_deg,
+                                const struct light *light,
                                 struct glint_float_image image[2])
 {
-    const struct glint_lamp lamp = {.theta_deg = angle_deg,
-                                    .phi_deg = AZIMUTH_DEG,
+    const struct glint_lamp lamp = {.theta_deg = light->angle_deg,
+                                    .phi_deg = light->azimuth_deg,
                                     .power = 1,
                                     .rgb = {1, 1, 1}};
     struct glint_engine_report report;
@@ -117,8 +122,7 @@ static void compare_pictures_of_light(void *ctx, int i, int worker)
         light->status = picture_pair_open(&pair, job->setup, job->model,
                                           &job->view, &light->error);
     if (light->status == GLINT_OK)
-        light->status =
-            render_model_and_exact_pictures(&pair, light->angle_deg, image);
+        light->status = render_model_and_exact_pictures(&pair, light, image);
     if (light->status == GLINT_OK &&
         !glint_measure_compare(&image[0], &image[1], false, &light->measure))
         light->status = GLINT_E_MEMORY;
@@ -149,27 +153,60 @@ static void compare_all_lights(const struct tool *tool, struct job *job)
     tool_progress_end(&progress);
 }
 
+static void add_test_light(struct job *job, double angle_deg,
+                           double azimuth_deg)
+{
+    job->light[job->n].angle_deg = angle_deg;
+    job->light[job->n++].azimuth_deg = azimuth_deg;
+}
+
+/* Lists the lights of picture_check_run(), up to the angle MOST, degrees. */
 static void list_test_lights(struct job *job, double most)
 {
     for (int i = 0; i < NEAR; i++)
         if (near_deg[i] < most)
-            job->light[job->n++].angle_deg = near_deg[i];
+            add_test_light(job, near_deg[i], AZIMUTH_DEG);
     for (int i = 1; i <= STEPS; i++)
-        job->light[job->n++].angle_deg = most * i / STEPS;
+        add_test_light(job, most * i / STEPS, AZIMUTH_DEG);
 }
 
-static enum glint_status
-find_light_with_lowest_psnr(const struct job *job, struct picture_check *check,
-                            struct glint_error *error)
+/* Returns the next random number of STATE, 0 .. 1. */
+static double compute_random_fraction(uint64_t *state)
+{
+    *state = *state * MULTIPLIER + INCREMENT;
+    return (double)(*state >> 32) / 0x1p32;
+}
+
+/* Lists N random lights up to the angle MOST, degrees. */
+static void list_random_lights(struct job *job, int n, double most)
+{
+    uint64_t state = SEED;
+
+    for (int i = 0; i < n; i++) {
+        const double angle_deg = most * compute_random_fraction(&state);
+
+        add_test_light(job, angle_deg, 360 * compute_random_fraction(&state));
+    }
+}
+
+static enum glint_status find_failed_light(const struct job *job,
+                                           struct glint_error *error)
+{
+    for (int i = 0; i < job->n; i++)
+        if (job->light[i].status != GLINT_OK) {
+            *error = job->light[i].error;
+            return job->light[i].status;
+        }
+    return GLINT_OK;
+}
+
+static void find_light_with_lowest_psnr(const struct job *job,
+                                        struct picture_check *check)
 {
     *check = (struct picture_check){.psnr_db = PICTURE_IDENTICAL_DB};
     for (int i = 0; i < job->n; i++) {
         const struct light *const light = &job->light[i];
 
-        if (light->status != GLINT_OK) {
-            *error = light->error;
-            return light->status;
-        }
         if (light->is_black)
             continue;
         if (check->n++ == 0 || light->measure.psnr_db < check->psnr_db) {
@@ -179,15 +216,16 @@ find_light_with_lowest_psnr(const struct job *job, struct picture_check *check,
     }
     check->psnr_db = fmax(0, floor(ldexp(check->psnr_db, 8)) / 256);
     check->angle_deg = rint(ldexp(check->angle_deg, 8)) / 256;
-    return GLINT_OK;
 }
 
-enum glint_status picture_check_run(const struct tool *tool,
-                                    const struct glint_prescription *lens,
-                                    const struct glint_lens *model,
-                                    const struct glint_bake_options *baked,
-                                    struct picture_check *check,
-                                    struct glint_error *error)
+/* Compares the pictures of N random lights, or, if N is 0, of those of
+ * picture_check_run(), and leaves the results in JOB. */
+static enum glint_status compare_lights(const struct tool *tool,
+                                        const struct glint_prescription *lens,
+                                        const struct glint_lens *model,
+                                        const struct glint_bake_options *baked,
+                                        int n, struct job *job,
+                                        struct glint_error *error)
 {
     const double *const band = baked->band_nm, span = band[1] - band[0];
     /* about 620, 540 and 460 nm for the default wavelength range */
@@ -199,28 +237,72 @@ enum glint_status picture_check_run(const struct tool *tool,
         baked->field_mm > 0 ? fmin(1, 2 * baked->field_mm / diagonal_mm) : 1;
     const double high = ceil(WIDE * lens->film_height_mm / lens->film_width_mm);
     struct glint_setup *const setup = malloc(sizeof *setup);
-    struct job job = {
+    enum glint_status status = GLINT_E_MEMORY;
+    struct glint_optics optics;
+    double most_deg;
+
+    *job = (struct job){
         .setup = setup,
         .model = model,
         .view = glint_view_fit(WIDE, (int)fmin(fmax(high, 8), MOST_HIGH),
                                part * lens->film_width_mm,
                                part * lens->film_height_mm)};
-    enum glint_status status = GLINT_E_MEMORY;
-    struct glint_optics optics;
-
     glint_optics_of(lens, &optics);
-    list_test_lights(
-        &job, fmin(baked->max_deg,
-                   180 / GLINT_PI *
-                       atan(0.5 * part * diagonal_mm / optics.focal_mm)));
+    most_deg =
+        fmin(baked->max_deg,
+             180 / GLINT_PI * atan(0.5 * part * diagonal_mm / optics.focal_mm));
+    if (n)
+        list_random_lights(job, n, most_deg);
+    else
+        list_test_lights(job, most_deg);
     if (setup)
         status = glint_setup_init(setup, lens, 0, 0, wave_nm,
                                   sizeof wave_nm / sizeof *wave_nm, error);
     if (status == GLINT_OK) {
-        compare_all_lights(tool, &job);
-        status = find_light_with_lowest_psnr(&job, check, error);
+        compare_all_lights(tool, job);
+        status = find_failed_light(job, error);
     }
     free(setup);
+    return status;
+}
+
+enum glint_status picture_check_run(const struct tool *tool,
+                                    const struct glint_prescription *lens,
+                                    const struct glint_lens *model,
+                                    const struct glint_bake_options *baked,
+                                    struct picture_check *check,
+                                    struct glint_error *error)
+{
+    struct job job;
+    const enum glint_status status =
+        compare_lights(tool, lens, model, baked, 0, &job, error);
+
+    if (status == GLINT_OK)
+        find_light_with_lowest_psnr(&job, check);
+    return status;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+
+    return (x > y) - (x < y);
+}
+
+enum glint_status picture_check_run_random(
+    const struct tool *tool, const struct glint_prescription *lens,
+    const struct glint_lens *model, const struct glint_bake_options *baked,
+    int *n, double *psnr_db, struct glint_error *error)
+{
+    struct job job;
+    const enum glint_status status =
+        compare_lights(tool, lens, model, baked, *n, &job, error);
+
+    *n = 0;
+    for (int i = 0; i < job.n; i++)
+        if (!job.light[i].is_black)
+            psnr_db[(*n)++] = job.light[i].measure.psnr_db;
+    qsort(psnr_db, (size_t)*n, sizeof *psnr_db, compare_numbers);
     return status;
 }
 

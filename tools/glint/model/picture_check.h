@@ -50,6 +50,16 @@ enum glint_status picture_check_run(const struct tool *tool,
                                     struct picture_check *check,
                                     struct glint_error *error);
 
+/* Compares images like picture_check_run(), for *N lights, at most
+ * PICTURE_CHECK_LIGHTS, at random angles and azimuths in the field. The lights
+ * are the same in each run. Sets *N to the number of lights whose images are
+ * not black, and PSNR_DB[*N] to their PSNR, in rising order. */
+enum { PICTURE_CHECK_LIGHTS = 16 };
+enum glint_status picture_check_run_random(
+    const struct tool *tool, const struct glint_prescription *lens,
+    const struct glint_lens *model, const struct glint_bake_options *baked,
+    int *n, double *psnr_db, struct glint_error *error);
+
 /* Appends a note with COATING and the result of CHECK (NULL: not compared) to
  * the model DATA[BYTES], which may move. Returns GLINT_E_MEMORY and changes
  * nothing if there is no memory. */

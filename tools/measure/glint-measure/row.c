@@ -10,9 +10,11 @@
 #include "measure/canvas.h"
 #include "model/model_cache.h"
 #include "model/model_summary.h"
+#include "model/picture_check.h"
 #include "model/table_file.h"
 
 #define ROW_BAKE    "bake_s,model_kib,mean_terms,barrel_rms,f_number,table_ghosts"
+#define ROW_CHECK   "told_db,least_db,median_db"
 #define ROW_PICTURE "psnr_db,ssim,flux"
 #define ROW_FRAME                                                           \
     "edges,refs,bundles,ghosts,arena_kib,arena_mib,plan_ms,bin_ms,draw_ms," \
@@ -169,6 +171,31 @@ int row_parse(struct figure_row *row, struct tool *tool, int n,
 
 /* ------------------------------------------------------------------- lenses */
 
+/* Compares pictures by the model with pictures by exact rays, for the lights of
+ * 'glint bake' and for 12 random lights. */
+static int check_row_model(struct figure_row *r,
+                           const struct glint_bake_options *options)
+{
+    const struct glint_lens *const model = &r->opened.model.lens;
+    struct glint_error error = {""};
+    struct picture_check check;
+    double psnr_db[PICTURE_CHECK_LIGHTS];
+    int n = 12;
+    enum glint_status status =
+        picture_check_run(r->tool, &r->table, model, options, &check, &error);
+
+    if (status == GLINT_OK)
+        status = picture_check_run_random(r->tool, &r->table, model, options,
+                                          &n, psnr_db, &error);
+    if (status != GLINT_OK)
+        return tool_fail(r->tool, status, error.text);
+    json_write(&r->json, "told_db: %.2f", check.psnr_db);
+    if (n)
+        json_write(&r->json, "least_db: %.2f, median_db: %.2f", psnr_db[0],
+                   0.5 * (psnr_db[(n - 1) / 2] + psnr_db[n / 2]));
+    return EXIT_OK;
+}
+
 /* Bakes the table like 'glint bake', opens the model, and writes the CPU time
  * of the bake, s. */
 static int bake_row_table(struct figure_row *r)
@@ -182,6 +209,7 @@ static int bake_row_table(struct figure_row *r)
     const double from = get_process_cpu_s();
     char path[1024];
     FILE *file;
+    int code;
 
     if (r->bake_stop > r->table.f_number)
         status =
@@ -204,7 +232,10 @@ static int bake_row_table(struct figure_row *r)
     free(model);
     if (fclose(file) != 0 || status != GLINT_OK)
         return tool_fail(r->tool, GLINT_E_IO, path);
-    return opened_lens_open(r->tool, &r->opened, &r->settings, path);
+    code = opened_lens_open(r->tool, &r->opened, &r->settings, path);
+    if (code == EXIT_OK && is_any_metric_requested(r, ROW_CHECK))
+        code = check_row_model(r, &options);
+    return code;
 }
 
 static int open_row_lens(struct figure_row *r)
