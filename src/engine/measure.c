@@ -73,15 +73,57 @@ double glint_measure_code(double light)
     return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055);
 }
 
+/* The light at which one code ends and the next one begins, and the code of
+ * every multiple of 1 / STEPS */
+enum { STEPS = 4096 };
+struct code_table {
+    double end[256];
+    uint8_t first[STEPS + 1];
+};
+
+/* Light this close to the end of a code is encoded by glint_measure_code(). */
+#define NEAR_END 1e-12
+
+static void init_code_table(struct code_table *t)
+{
+    int code = 0;
+
+    for (int k = 0; k < 255; k++) {
+        const double v = (k + 0.5) / 255;
+
+        t->end[k] = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    }
+    t->end[255] = 2;
+    for (int i = 0; i <= STEPS; i++) {
+        while ((double)i / STEPS > t->end[code] + NEAR_END)
+            code++;
+        t->first[i] = (uint8_t)code;
+    }
+}
+
+/* Returns glint_measure_code(LIGHT), rounded. */
+static uint8_t encode_light(const struct code_table *t, double light)
+{
+    const double v = fmin(1, fmax(0, light));
+    int code = t->first[(int)(v * STEPS)];
+
+    while (v > t->end[code] + NEAR_END)
+        code++;
+    return (uint8_t)(v < t->end[code] - NEAR_END
+                         ? code
+                         : lrint(glint_measure_code(v)));
+}
+
 uint8_t *glint_measure_encode(const struct glint_float_image *image,
                               double exposure)
 {
     const size_t n = count_rgb_samples(image);
     uint8_t *codes = calloc(n, 1);
+    struct code_table table;
 
+    init_code_table(&table);
     for (size_t i = 0; codes && i < n; i++)
-        codes[i] = (uint8_t)lrint(
-            glint_measure_code((double)image->rgb[i] * exposure));
+        codes[i] = encode_light(&table, (double)image->rgb[i] * exposure);
     return codes;
 }
 

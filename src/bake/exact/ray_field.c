@@ -22,7 +22,7 @@ enum { SAMPLING = 24, LOOKS = 16, DRAFT_SAMPLING = 12, DRAFT_LOOKS = 8 };
  * stop radius if fewer rays are visible. */
 enum { FEW_INSIDE = 6, CELLS_A_RADIUS = 4 };
 /* number of rays that one call of the tracer traces */
-enum { SOME = 8 };
+enum { SOME = 16 };
 /* Channels of a node: X, Y: position in pixels; STOP_X, STOP_Y: position in
  * stop radii; both are in the light's frame. BARREL_0, BARREL_1: as in struct
  * glint_vertex. ENERGY: energy / energy_unit. */
@@ -716,7 +716,7 @@ static struct glint_launch launch_node_ray(const struct ray_field *field,
     const double step_mm = (p->x1_mm - p->x0_mm) / n;
 
     return (struct glint_launch){
-        (p->x0_mm + (i - i % SOME) * step_mm) + i % SOME * step_mm,
+        (p->x0_mm + (i - i % 8) * step_mm) + i % 8 * step_mm,
         p->mirrored ? p->y1_mm * (2.0 * j - n) / n
                     : p->y0_mm + (p->y1_mm - p->y0_mm) * j / n,
         {d[0], d[1], d[2]}};

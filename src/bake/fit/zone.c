@@ -358,18 +358,40 @@ static void shrink_interval(double low, double high, double *from, double *to)
     *to = middle + fmin(1, high) * half;
 }
 
-/* bounding box of visible rays in u, v, s and w */
+/* numbers of angles, columns and rows of the rays that look for the visible
+ * region of a part */
+enum { ANGLES = 5, COLUMNS = 32, ROWS = 12 };
+
+/* bounds of the visible rays in u and w, and the max of v */
 struct sighting {
-    double low[GLINT_VARIABLES], high[GLINT_VARIABLES];
+    double u[2], w[2], v;
 };
 
+static bool is_ray_in_sighting(const struct sighting *seen,
+                               const double x[GLINT_VARIABLES])
+{
+    return x[0] >= seen->u[0] && x[0] <= seen->u[1] && x[1] <= seen->v &&
+           x[GLINT_W] >= seen->w[0] && x[GLINT_W] <= seen->w[1];
+}
+
+static void extend_sighting(struct sighting *seen,
+                            const double x[GLINT_VARIABLES])
+{
+    seen->u[0] = fmin(seen->u[0], x[0]);
+    seen->u[1] = fmax(seen->u[1], x[0]);
+    seen->v = fmax(seen->v, x[1]);
+    seen->w[0] = fmin(seen->w[0], x[GLINT_W]);
+    seen->w[1] = fmax(seen->w[1], x[GLINT_W]);
+}
+
 /* Traces the rays of batch T, at wavelength index WAVE, at this and all
- * neighbouring zoom positions, and extends SEEN by the visible ones. */
+ * neighbouring zoom positions, extends SEEN by the visible ones, and empties
+ * T. */
 static void trace_at_zoom_positions(const struct glint_visible *visible,
                                     int wave, struct glint_zone_batch *t,
                                     struct sighting *seen)
 {
-    for (int m = 0; m <= visible->n_beside; m++) {
+    for (int m = 0; m <= visible->n_beside && t->n; m++) {
         const struct glint_visible *const h =
             glint_visible_get_member(visible, m);
 
@@ -378,49 +400,59 @@ static void trace_at_zoom_positions(const struct glint_visible *visible,
         for (int i = 0; i < t->n; i++)
             if (t->status[i] == GLINT_RAY_OK &&
                 glint_visible_is_ray_visible(h, &t->ray[i]))
-                for (int k = 0; k < GLINT_VARIABLES; k++) {
-                    seen->low[k] = fmin(seen->low[k], t->x[i][k]);
-                    seen->high[k] = fmax(seen->high[k], t->x[i][k]);
-                }
+                extend_sighting(seen, t->x[i]);
     }
+    t->n = 0;
+}
+
+/* Extends SEEN by the visible rays of a grid over ZONE at wavelength index
+ * WAVE, ANGLES x (ROWS + 1) x COLUMNS. Rows are traced from the last one on,
+ * and only rays that can extend SEEN. */
+static void sight_rays_of_wave(const struct glint_zone *zone,
+                               const struct glint_visible *visible, int wave,
+                               struct sighting *seen)
+{
+    const double w = glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES);
+    struct glint_zone_batch t = {.n = 0};
+
+    for (int k = ANGLES * (ROWS + 1) * COLUMNS - 1; k >= 0; k--) {
+        const int line = k / COLUMNS;
+        const double x[GLINT_VARIABLES] = {
+            2.0 * (k % COLUMNS) / (COLUMNS - 1) - 1,
+            (double)(line / ANGLES) / ROWS,
+            2.0 * (line % ANGLES) / (ANGLES - 1) - 1, w};
+
+        glint_zone_batch_add_ray(&t, zone, x);
+        t.n -= is_ray_in_sighting(seen, t.x[t.n - 1]);
+        if (t.n == GLINT_ZONE_BATCH)
+            trace_at_zoom_positions(visible, wave, &t, seen);
+    }
+    trace_at_zoom_positions(visible, wave, &t, seen);
 }
 
 double glint_zone_crop_part(const struct glint_zone *zone,
                             const struct glint_visible *visible,
                             struct glint_zone_part *part)
 {
-    enum { ANGLES = 5, COLUMNS = GLINT_ZONE_BATCH, ROWS = 12 };
     /* Fewer wavelengths for non-spherical surfaces, through which rays are slow
      * to trace; the colours of such lenses rarely separate. */
     const int stride = visible->shaped ? (GLINT_VISIBLE_WAVES - 1) / 2 : 1;
+    const int last = GLINT_VISIBLE_WAVES - 1;
     const double margin = 3.0 / COLUMNS;
     const struct glint_zone_part before = *part;
-    struct sighting seen = {{9, 9, 9, 9}, {-9, -9, -9, -9}};
-    struct glint_zone_batch t;
+    struct sighting seen = {{9, -9}, {9, -9}, -9};
 
-    for (int k = 0; k < ANGLES * GLINT_VISIBLE_WAVES * (ROWS + 1); k++) {
-        const int row = k % (ROWS + 1), wave = k / (ROWS + 1) / ANGLES;
-
-        if (wave % stride)
-            continue;
-        for (t.n = 0; t.n < COLUMNS;) {
-            const double x[GLINT_VARIABLES] = {
-                2.0 * t.n / (COLUMNS - 1) - 1, (double)row / ROWS,
-                2.0 * (k / (ROWS + 1) % ANGLES) / (ANGLES - 1) - 1,
-                glint_zone_compute_node(wave, GLINT_VISIBLE_WAVES)};
-
-            glint_zone_batch_add_ray(&t, zone, x);
-        }
-        trace_at_zoom_positions(visible, wave, &t, &seen);
-    }
-    if (seen.high[0] < seen.low[0])
+    /* the ends of the band first: they set its bounds */
+    sight_rays_of_wave(zone, visible, last, &seen);
+    for (int wave = 0; wave < last; wave += stride)
+        sight_rays_of_wave(zone, visible, wave, &seen);
+    if (seen.u[1] < seen.u[0])
         return 0;
-    shrink_interval(seen.low[0] - margin, seen.high[0] + margin, &part->u0,
+    shrink_interval(seen.u[0] - margin, seen.u[1] + margin, &part->u0,
                     &part->u1);
-    shrink_interval(seen.low[3] - 0.3, seen.high[3] + 0.3, &part->w0,
-                    &part->w1);
+    shrink_interval(seen.w[0] - 0.3, seen.w[1] + 0.3, &part->w0, &part->w1);
     if (!part->annulus)
-        part->top *= fmin(1, seen.high[1] + 1.5 / ROWS);
+        part->top *= fmin(1, seen.v + 1.5 / ROWS);
     return (part->u1 - part->u0) / (before.u1 - before.u0) *
            (part->w1 - part->w0) / (before.w1 - before.w0) * part->top /
            before.top;

@@ -18,7 +18,7 @@
  * of loops over N lanes, and conditions select between two values, so that
  * compilers can vectorise; an invalid ray continues with meaningless values. A
  * ray's results are bit-identical for every N. */
-enum { LANES = 8 };
+enum { LANES = 16 };
 
 struct beam {
     /* position, mm, relative to the vertex of the current surface */

@@ -109,35 +109,46 @@ static void set_ray_node(const struct glint_cells *c,
     node[NODE_STATE] = clear ? 2 : 1;
 }
 
+/* Returns the start of ray I of a row at height Y_MM. Positions are computed
+ * from that of every eighth ray, as pictures' bytes depend on their last bit.
+ */
+static struct glint_launch launch_row_ray(const struct glint_cells *c, int i,
+                                          double y_mm)
+{
+    const double x0_mm = c->pupil.x0_mm, *d = c->direction;
+    const double step_mm = (c->pupil.x1_mm - x0_mm) / c->n;
+
+    return (struct glint_launch){(x0_mm + (i - i % 8) * step_mm) +
+                                     i % 8 * step_mm,
+                                 y_mm,
+                                 {d[0], d[1], d[2]}};
+}
+
 void glint_cells_trace_row(const struct glint_cells *cells, int row)
 {
-    enum { SOME = 8 };
+    enum { SOME = 16 };
     const struct glint_pupil *p = &cells->pupil;
-    const double *d = cells->direction;
     const int n = cells->n;
+    const double y_mm = cells->path->round
+                            ? p->y1_mm * (2.0 * row - n) / n
+                            : p->y0_mm + (p->y1_mm - p->y0_mm) * row / n;
     double hits[SOME * (GLINT_MAX_EVENTS + 1)][2];
+    struct glint_launch from[SOME];
     struct glint_ray ray[SOME];
     enum glint_ray_status status[SOME];
-    struct glint_row rays = {0,
-                             0,
-                             (p->x1_mm - p->x0_mm) / n,
-                             cells->path->round
-                                 ? p->y1_mm * (2.0 * row - n) / n
-                                 : p->y0_mm + (p->y1_mm - p->y0_mm) * row / n,
-                             {d[0], d[1], d[2]}};
 
     for (int i = 0; i <= n; i++) {
         double *node = get_ray_node(cells, i, row);
         double *mirrored =
             get_ray_node(cells, i, cells->path->round ? n - row : row);
-        const int k = i % SOME;
+        const int k = i % SOME, left = n + 1 - i;
         double(*h)[2] = hits + k * cells->path->n_events;
 
-        if (k == 0) {
-            rays.n = n + 1 - i < SOME ? n + 1 - i : SOME;
-            rays.x0_mm = p->x0_mm + i * rays.step_mm;
-            glint_trace_row(cells->path, &rays, ray, status, hits);
-        }
+        for (int m = 0; k == 0 && m < SOME && m < left; m++)
+            from[m] = launch_row_ray(cells, i + m, y_mm);
+        if (k == 0)
+            glint_trace_many(cells->path, left < SOME ? left : SOME, from, ray,
+                             status, hits);
         node[NODE_STATE] = mirrored[NODE_STATE] = 0;
         if (status[k] != GLINT_RAY_OK)
             continue;

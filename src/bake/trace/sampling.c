@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 /* number of rays per call of the tracer */
-enum { SOME = 8 };
+enum { SOME = 16 };
 
 /* Weight that a pair of rays adds to a barrel if it proves that the barrel
  * blocks light. A pair that only suggests it adds 1. */

@@ -278,14 +278,17 @@ static WHOLLY_INLINE void update_max_radius(struct beam *b, int n,
 /* N: LANES or 1. */
 static WHOLLY_INLINE bool are_all_rays_invalid(const struct beam *b, int n)
 {
-    enum { HALF = LANES / 2 };
-    double least[HALF];
+    enum { QUARTER = 4 };
+    double least[QUARTER];
 
     if (n == 1)
         return b->status[0] > GLINT_RAY_OK;
-    for (int k = 0; k < HALF; k++)
-        least[k] = b->status[k] < b->status[k + HALF] ? b->status[k]
-                                                      : b->status[k + HALF];
+    for (int k = 0; k < QUARTER; k++)
+        least[k] = b->status[k];
+    for (int at = QUARTER; at < LANES; at += QUARTER)
+        for (int k = 0; k < QUARTER; k++)
+            least[k] =
+                least[k] < b->status[at + k] ? least[k] : b->status[at + k];
     return (least[0] > GLINT_RAY_OK) & (least[1] > GLINT_RAY_OK) &
            (least[2] > GLINT_RAY_OK) & (least[3] > GLINT_RAY_OK);
 }

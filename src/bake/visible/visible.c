@@ -109,33 +109,48 @@ struct extent {
     int i0, i1, j1;
 };
 
+static void extend_by_grid_ray(struct extent *e, int i, int j)
+{
+    e->i0 = i < e->i0 ? i : e->i0;
+    e->i1 = i > e->i1 ? i : e->i1;
+    e->j1 = j > e->j1 ? j : e->j1;
+}
+
+/* Finds the unblocked rays of a grid over BOX with ACROSS x DOWN cells. Rows
+ * are traced from the last one on, and only rays that can extend EXTENT: those
+ * outside the columns found so far. Returns false if all rays are blocked. */
 static bool trace_box_grid(const struct glint_visible *h,
                            const struct glint_path *path, double sine,
                            int across, int down, const struct glint_pupil *box,
                            struct extent *extent)
 {
-    const struct glint_row row = {across + 1,
-                                  box->x0_mm,
-                                  (box->x1_mm - box->x0_mm) / across,
-                                  0,
-                                  {sine, 0, sqrt(1 - sine * sine)}};
-    struct glint_ray ray[(ACROSS + 1) * (DOWN + 1)];
-    enum glint_ray_status status[(ACROSS + 1) * (DOWN + 1)];
-    double y_mm[DOWN + 1];
+    enum { SOME = 16 };
+    const double step_mm = (box->x1_mm - box->x0_mm) / across;
+    const double cosine = sqrt(1 - sine * sine);
+    struct glint_launch from[SOME];
+    struct glint_ray ray[SOME];
+    enum glint_ray_status status[SOME];
+    int at[SOME], n = 0;
 
-    for (int j = 0; j <= down; j++)
-        y_mm[j] = box->y1_mm * j / down;
-    glint_trace_grid(path, &row, down + 1, y_mm, ray, status, NULL);
     *extent = (struct extent){across + 1, -1, -1};
-    for (int k = 0; k < (across + 1) * (down + 1); k++) {
-        const int i = k % (across + 1);
+    for (int k = (across + 1) * (down + 1) - 1; k >= 0; k--) {
+        const int i = k % (across + 1), j = k / (across + 1);
 
-        if (status[k] != GLINT_RAY_OK ||
-            !glint_visible_is_ray_visible(h, &ray[k]))
+        if (i < extent->i0 || i > extent->i1) {
+            at[n] = k;
+            from[n++] = (struct glint_launch){box->x0_mm + i * step_mm,
+                                              box->y1_mm * j / down,
+                                              {sine, 0, cosine}};
+        }
+        if (n < SOME && k > 0)
             continue;
-        extent->i0 = i < extent->i0 ? i : extent->i0;
-        extent->i1 = i > extent->i1 ? i : extent->i1;
-        extent->j1 = k / (across + 1);
+        glint_trace_many(path, n, from, ray, status, NULL);
+        for (int r = 0; r < n; r++)
+            if (status[r] == GLINT_RAY_OK &&
+                glint_visible_is_ray_visible(h, &ray[r]))
+                extend_by_grid_ray(extent, at[r] % (across + 1),
+                                   at[r] / (across + 1));
+        n = 0;
     }
     return extent->i1 >= 0;
 }

@@ -52,6 +52,7 @@ enum glint_status glint_frame_draw_flare_alone(
     const double share = frame->star.share;
     const double glare = frame->veil.glare, haze = frame->veil.haze;
     const struct glint_front_dirt *front = frame->veil.front;
+    double unit;
     int up = 1;
 
     frame->star.share = frame->veil.glare = frame->veil.haze = 0;
@@ -65,8 +66,9 @@ enum glint_status glint_frame_draw_flare_alone(
                                        scale);
         scale.likely += i < 3 ? up : 0;
     }
+    unit = status == GLINT_OK ? exp2(-20 - scale.likely) : 0;
     for (size_t i = 0; i < n && status == GLINT_OK; i++)
-        rgb[i] = (float)(linear_q20[i] * exp2(-20 - scale.likely) * gain);
+        rgb[i] = (float)(linear_q20[i] * unit * gain);
     frame->star.share = share;
     frame->veil.glare = glare;
     frame->veil.haze = haze;
