@@ -88,8 +88,9 @@ struct glint_model_header {
      * the axis are not drawn. */
     int32_t sine_hi_q30;
     /* Flux of the direct image at angle 0 through a circular stop, if the
-     * irradiance is 1, mm^2. The flux is a polynomial in w over the wavelength
-     * band; these are the coefficients. */
+     * irradiance is 1, mm^2; of lenses faster than f/10 through eight straight
+     * blades, divided by their fraction of the circle's area. The flux is a
+     * polynomial in w over the wavelength band; these are the coefficients. */
     struct glint_real direct_flux[GLINT_FLUX_TERMS];
     /* Correction for smaller stops: at R times the radius of the stop, the flux
      * is R^2 (direct_flux + c (stopped_flux[0] + c stopped_flux[1])) with c = 1

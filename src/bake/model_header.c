@@ -162,11 +162,7 @@ uint64_t glint_bake_key(const struct glint_prescription *lens,
     return key;
 }
 
-enum {
-    FLUX_NODES = 9,
-    /* number of stop blades for measuring the flux of fast lenses */
-    BLADES = 8
-};
+enum { FLUX_NODES = 9 };
 
 /* Fits a polynomial in the wavelength coordinate w to FLUX at the nodes W and
  * writes its coefficients, divided by SCALE, to COEF. */
@@ -199,11 +195,12 @@ static void fit_flux_polynomial(const double *w, const double *flux,
  * closed to the fraction AREA of its full area, divided by AREA; below 0 if
  * there is no memory.
  *
- * Lenses faster than GLINT_WIDE: barrels vignette the rim of the full stop,
- * which a stop of blades reaches only with its corners. Their flux is measured
- * through such a stop and divided by (area of the blades' opening / area of the
- * circle), because the run time multiplies by that ratio. A circular stop would
- * be 10 % too bright at f/1.4 (merte-biotar) and 2.6 % at f/2
+ * Lenses faster than GLINT_FLUX_F_NUMBER: barrels vignette the rim of the full
+ * stop, which a stop of blades reaches only with its corners. Their flux is
+ * measured through such a stop and divided by (area of the blades' opening /
+ * area of the circle), because the run time multiplies by that ratio and
+ * corrects it for other stops (glint_iris_compute_light_fraction()). A circular
+ * stop would be 10 % too bright at f/1.4 (merte-biotar) and 2.6 % at f/2
  * (tronnier-double-gauss). */
 static double measure_direct_flux(const struct glint_setup *whole, double area,
                                   double nm)
@@ -211,8 +208,8 @@ static double measure_direct_flux(const struct glint_setup *whole, double area,
     struct glint_setup setup = *whole;
 
     setup.optics.stop_radius_mm *= sqrt(area);
-    if (whole->lens->f_number < GLINT_WIDE)
-        setup.n_blades = BLADES;
+    if (whole->lens->f_number < GLINT_FLUX_F_NUMBER)
+        setup.n_blades = GLINT_FLUX_BLADES;
     return glint_direct_compute_flux(&setup, nm, GLINT_FLUX_CELLS) / area /
            glint_iris_compute_area_fraction(&setup);
 }

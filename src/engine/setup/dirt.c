@@ -270,12 +270,30 @@ double glint_dirt_light(const struct glint_dirt *dirt, double x, double y)
     return dirt->through(dirt, x, y);
 }
 
+/* Multiplies the direct flux of SETUP by that through IRIS / that through its
+ * own iris. */
+static void scale_direct_flux_to_iris(struct glint_setup *setup,
+                                      const struct glint_iris *iris)
+{
+    const struct glint_iris own = setup->iris;
+
+    for (int i = 0; i < setup->n_wavelengths; i++) {
+        const double *const falloff = setup->falloff[i];
+        double before;
+
+        setup->iris = own;
+        before = glint_iris_compute_light_fraction(setup, falloff);
+        setup->iris = *iris;
+        setup->direct_flux[i] *=
+            glint_iris_compute_light_fraction(setup, falloff) / before;
+    }
+}
+
 enum glint_status glint_setup_iris(struct glint_setup *setup,
                                    const struct glint_iris *iris,
                                    struct glint_dirt **dirt,
                                    struct glint_error *error)
 {
-    const double before = glint_iris_compute_area_fraction(setup);
     const char *const wrong = check_iris_config(iris);
 
     *dirt = NULL;
@@ -283,7 +301,7 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
         snprintf(error->text, sizeof error->text, "%s", wrong);
         return GLINT_E_ARGUMENT;
     }
-    setup->iris = *iris;
+    scale_direct_flux_to_iris(setup, iris);
     setup->dirt = NULL;
     setup->clear = 1;
     if (has_iris_dirt(iris)) {
@@ -295,8 +313,5 @@ enum glint_status glint_setup_iris(struct glint_setup *setup,
         setup->dirt = *dirt;
         setup->clear = (*dirt)->mean;
     }
-    for (int i = 0; i < setup->n_wavelengths; i++)
-        setup->direct_flux[i] *=
-            glint_iris_compute_area_fraction(setup) / before;
     return glint_setup_set_unit_flux(setup, "the lens", error);
 }

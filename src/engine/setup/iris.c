@@ -76,3 +76,43 @@ double glint_iris_compute_area_fraction(const struct glint_setup *setup)
                      GLINT_PI
                : 1;
 }
+
+/* Returns the mean of r^POWER over a stop with N sides of curvature ROUND, r in
+ * stop radii. N 0: a circle. */
+static double compute_mean_power(int n, double round, int power)
+{
+    enum { STEPS = 64 };
+    const double apothem = cos(GLINT_PI / n);
+    const double off =
+        sqrt(1 - round * round * (1 - apothem * apothem)) - apothem * round;
+    double sum = 0, area = 0;
+
+    if (n == 0)
+        return 2.0 / (power + 2);
+    for (int i = 0; i < STEPS; i++) {
+        const double a = (i + 0.5) * GLINT_PI / n / STEPS;
+        const double s = off * sin(a);
+        const double r = round < 1e-6
+                             ? apothem / cos(a)
+                             : (sqrt(1 - s * s) - off * cos(a)) / round;
+
+        area += r * r;
+        sum += pow(r, power + 2);
+    }
+    return sum / area * 2 / (power + 2);
+}
+
+double glint_iris_compute_light_fraction(const struct glint_setup *setup,
+                                         const double falloff[2])
+{
+    const double round = fmin(setup->iris.roundness, most_round);
+    double light = 1;
+
+    for (int k = 0; k < 2; k++)
+        if (falloff[k] != 0)
+            light += falloff[k] *
+                     (compute_mean_power(setup->n_blades, round, 2 * k + 2) /
+                          compute_mean_power(GLINT_FLUX_BLADES, 0, 2 * k + 2) -
+                      1);
+    return light * glint_iris_compute_area_fraction(setup);
+}

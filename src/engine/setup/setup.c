@@ -81,6 +81,7 @@ void glint_setup_init_common(struct glint_setup *s, int n_blades,
     s->iris = (struct glint_iris){0};
     s->dirt = NULL;
     s->clear = 1;
+    memset(s->falloff, 0, sizeof s->falloff);
     s->n_blades = n_blades;
     s->blade_rotation_deg = rotation_deg;
     s->n_sets = 0;
@@ -120,15 +121,17 @@ static double evaluate_polynomial(const struct glint_real *coef, int n,
     return sum;
 }
 
-/* Returns the flux of the direct image, mm^2, at wavelength NM, clamped to the
- * model's wavelengths. OPENING is the radius of the stop / the model's
- * radius. */
-static double compute_direct_flux_of_model(const struct glint_model_header *h,
-                                           double opening, double nm)
+/* Returns the flux of the direct image, mm^2, of the model H through the stop
+ * of SETUP at wavelength NM, clamped to the model's wavelengths. Sets FALLOFF
+ * as in struct glint_setup. */
+static double compute_direct_flux_of_model(const struct glint_setup *setup,
+                                           const struct glint_model_header *h,
+                                           double nm, double falloff[2])
 {
     const double lo = h->wave_lo_q24, hi = h->wave_hi_q24;
     const double wave = 0x1p24 * 1e6 / (nm * nm);
     const double w = fmax(-1, fmin(1, (2 * wave - lo - hi) / fmax(1, hi - lo)));
+    const double opening = setup->opening, area = opening * opening;
     const double closed = 1 - opening * opening;
     const double flux =
         evaluate_polynomial(h->direct_flux, GLINT_FLUX_TERMS, w);
@@ -136,8 +139,23 @@ static double compute_direct_flux_of_model(const struct glint_model_header *h,
         evaluate_polynomial(h->stopped_flux[0], GLINT_FLUX_TERMS, w);
     const double second =
         evaluate_polynomial(h->stopped_flux[1], GLINT_FLUX_TERMS, w);
+    const double light = flux + closed * (first + closed * second);
+    const bool fast = glint_real_value(h->f_number) < GLINT_FLUX_F_NUMBER;
 
-    return opening * opening * (flux + closed * (first + closed * second));
+    /* the coefficients of area and area^2 in LIGHT */
+    falloff[0] = fast ? -(first + 2 * second) * area / light : 0;
+    falloff[1] = fast ? second * area * area / light : 0;
+    return glint_iris_compute_light_fraction(setup, falloff) *
+           (opening * opening * light);
+}
+
+/* Sets direct_flux and falloff of SETUP from the model H. */
+static void set_direct_flux_of_model(struct glint_setup *setup,
+                                     const struct glint_model_header *h)
+{
+    for (int i = 0; i < setup->n_wavelengths; i++)
+        setup->direct_flux[i] = compute_direct_flux_of_model(
+            setup, h, setup->wavelength_nm[i], setup->falloff[i]);
 }
 
 enum glint_status glint_setup_from_model(struct glint_setup *setup,
@@ -174,10 +192,7 @@ enum glint_status glint_setup_from_model(struct glint_setup *setup,
             (struct glint_ghost){(int)lens->ghost[k].i, (int)lens->ghost[k].j};
     glint_setup_init_common(setup, n_blades, blade_rotation_deg, wavelength_nm,
                             n);
-    for (int i = 0; i < n; i++)
-        setup->direct_flux[i] =
-            glint_iris_compute_area_fraction(setup) *
-            compute_direct_flux_of_model(h, 1, wavelength_nm[i]);
+    set_direct_flux_of_model(setup, h);
     return glint_setup_set_unit_flux(setup, h->name, error);
 }
 
@@ -202,10 +217,7 @@ enum glint_status glint_setup_stop_down(struct glint_setup *setup,
     setup->opening = by;
     setup->optics.entrance_radius_mm *= by;
     setup->optics.stop_radius_mm *= by;
-    for (int i = 0; i < setup->n_wavelengths; i++)
-        setup->direct_flux[i] =
-            glint_iris_compute_area_fraction(setup) *
-            compute_direct_flux_of_model(h, by, setup->wavelength_nm[i]);
+    set_direct_flux_of_model(setup, h);
     return glint_setup_set_unit_flux(setup, h->name, error);
 }
 
@@ -257,7 +269,7 @@ void glint_setup_spread(struct glint_setup *setup,
     setup->n_sets = N_SETS;
     for (int s = 0; s < N_SETS; wave += sizes[s++]) {
         double nm[GLINT_MAX_WAVELENGTHS], share[GLINT_MAX_WAVELENGTHS];
-        double rgb[GLINT_MAX_WAVELENGTHS][3], mean = 0;
+        double rgb[GLINT_MAX_WAVELENGTHS][3], falloff[2], mean = 0;
 
         setup->set_size[s] = sizes[s];
         glint_spectrum(sizes[s], nm, rgb, share);
@@ -265,9 +277,8 @@ void glint_setup_spread(struct glint_setup *setup,
             wave[i].nm = nm[i];
             memcpy(wave[i].rgb, rgb[i], sizeof rgb[i]);
             wave[i].direct_flux =
-                lens ? glint_iris_compute_area_fraction(setup) *
-                           compute_direct_flux_of_model(lens->header,
-                                                        setup->opening, nm[i])
+                lens ? compute_direct_flux_of_model(setup, lens->header, nm[i],
+                                                    falloff)
                      : interpolate_direct_flux(setup, nm[i]);
             mean += share[i] * wave[i].direct_flux;
         }

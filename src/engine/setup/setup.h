@@ -24,9 +24,19 @@ enum glint_status glint_setup_set_unit_flux(struct glint_setup *setup,
                                             const char *name,
                                             struct glint_error *error);
 
-/* Returns the area of SETUP's stop divided by the area of its circle. It is
- * also the fraction of direct light that passes the stop, as direct light is
- * uniform over the stop to 1/10000. */
+/* Models with a smaller f-number have the flux of the direct image through a
+ * stop of GLINT_FLUX_BLADES straight sides, all others through a circle. */
+#define GLINT_FLUX_F_NUMBER 10
+enum { GLINT_FLUX_BLADES = 8 };
+
+/* Returns the area of SETUP's stop divided by the area of its circle. */
 double glint_iris_compute_area_fraction(const struct glint_setup *setup);
+
+/* Returns glint_iris_compute_area_fraction(), corrected for direct light that
+ * falls off towards the rim of the stop by FALLOFF, as in struct glint_setup:
+ * the flux through the stop, in units of the area of its circle times the mean
+ * light over a stop of GLINT_FLUX_BLADES. */
+double glint_iris_compute_light_fraction(const struct glint_setup *setup,
+                                         const double falloff[2]);
 
 #endif
