@@ -75,3 +75,27 @@ TEST(exposure_is_a_percentile)
     fill_both_images(0);
     assert_true(glint_measure_exposure(&image_a) == 1);
 }
+
+/* Encoding pixels by a table rounds like the transfer function, also next to
+ * the light at which a code ends. */
+TEST(codes_are_those_of_the_transfer_function)
+{
+    enum { SAMPLES = 3 * 8192 };
+    static float rgb[SAMPLES];
+    const struct glint_float_image image = {SAMPLES / 3, 1, rgb};
+    uint8_t *codes;
+
+    for (int i = 0; i < SAMPLES; i++) {
+        const double v = (i % 255 + 0.5) / 255;
+        const double end =
+            v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+
+        rgb[i] = i < SAMPLES / 2 ? (float)i / (SAMPLES / 2) * 1.1F - 0.05F
+                                 : nextafterf((float)end, (float)(i % 3 - 1));
+    }
+    codes = glint_measure_encode(&image, 1);
+    assert_non_null(codes);
+    for (int i = 0; i < SAMPLES; i++)
+        assert_int_equal(codes[i], lrint(glint_measure_code((double)rgb[i])));
+    free(codes);
+}
