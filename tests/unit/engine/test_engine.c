@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "glint/engine.h"
+#include "glint/exact.h"
 #include "glint/options.h"
 #include "support/opened.h"
 
@@ -417,6 +418,64 @@ TEST(engine_continues_the_video_of_another)
     draw_frame_of_fading_lamps(second, 12, got);
     assert_memory_equal(got, want, BYTES);
     glint_engine_destroy(small);
+    glint_engine_destroy(second);
+    glint_engine_destroy(first);
+    glint_engine_destroy(whole);
+}
+
+/* Returns the max difference between the mean codes of blocks of 16 x 16 pixels
+ * of A and B, per channel. */
+static double find_max_block_step(const uint8_t *a, const uint8_t *b)
+{
+    enum { SIDE = 16 };
+    double most = 0;
+
+    for (int at = 0; at < BYTES / SIDE / SIDE; at++) {
+        const int c = at % 3, x = at / 3 % (WIDTH / SIDE) * SIDE;
+        const int y = at / 3 / (WIDTH / SIDE) * SIDE;
+        double sum = 0;
+
+        for (int k = 0; k < SIDE * SIDE && y + SIDE <= HEIGHT; k++) {
+            const int i = 3 * ((y + k / SIDE) * WIDTH + x + k % SIDE) + c;
+
+            sum += a[i] - b[i];
+        }
+        most = fmax(most, fabs(sum) / (SIDE * SIDE));
+    }
+    return most;
+}
+
+/* Checks that no block of a video steps visibly when a model takes over from
+ * exact rays while lamps fade in: against a video drawn by exact rays only. */
+TEST(model_takes_over_from_exact_rays_without_a_step)
+{
+    static uint8_t want[BYTES], got[BYTES];
+    struct glint_engine *whole, *first, *second;
+    struct glint_engine_config cfg;
+    static struct glint_setup setup;
+    struct glint_error error;
+    double step = 0;
+
+    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
+    assert_ok(glint_setup_init(&setup, &opened.lens.table, 8, 0,
+                               (const double[]){650, 532, 450}, 3, &error));
+    cfg.camera.setup = &setup;
+    cfg.camera.rays = &glint_frame_traces;
+    cfg.camera.sensor_width_mm = opened.lens.table.film_width_mm;
+    cfg.camera.sensor_height_mm = opened.lens.table.film_height_mm;
+    assert_ok(glint_engine_create(&whole, &cfg, &error));
+    assert_ok(glint_engine_create(&first, &cfg, &error));
+    cfg.model = &opened.lens.model.lens;
+    cfg.camera.rays = NULL;
+    assert_ok(glint_engine_create(&second, &cfg, &error));
+    for (int i = 0; i < 12; i++) {
+        draw_frame_of_fading_lamps(whole, i, want);
+        if (i == 5)
+            assert_ok(glint_engine_continue(second, first));
+        draw_frame_of_fading_lamps(i < 5 ? first : second, i, got);
+        step = fmax(step, find_max_block_step(got, want));
+    }
+    assert_true(step > 0 && step < 1);
     glint_engine_destroy(second);
     glint_engine_destroy(first);
     glint_engine_destroy(whole);
