@@ -93,7 +93,7 @@ async function printTimes() {
     }, base64(root + "/tests/data/bridge.jpg"));
     await wait(() => document.body.dataset.first);
     show("first flare, 12 megapixels", await page.evaluate(() => document.body.dataset.first) + " ms");
-    await time("a step of strength", i => page.fill("#option-strength", String(0.5 + 0.1 * i)).then(() => page.keyboard.press("Enter")));
+    await time("a step of strength", i => page.fill("#option-strength", String(0.6 + 0.1 * i)).then(() => page.keyboard.press("Enter")));
     await page.locator(".lamp").first().focus();
     await time("a step of a lamp", () => page.keyboard.press("Shift+ArrowRight"));
     const {processInfo} = await (await browser.newBrowserCDPSession()).send("SystemInfo.getProcessInfo");
