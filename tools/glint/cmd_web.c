@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "model/lens_files.h"
+#include "model/settings.h"
 #include "options/command_line.h"
 #include "options/tool.h"
 #include "posix/input.h"
@@ -202,7 +203,7 @@ static int run_web_server(struct tool *tool, struct site *site)
 int cmd_web(int argc, char **argv)
 {
     static const struct option options[] = {TOOL_COMMON_OPTIONS};
-    struct tool tool = {.name = "web", .help = help};
+    struct tool tool = {.name = "web", .help = help, .help_end = COMMON_HELP};
     struct glint_input photo = {.fd = -1};
     struct site site = {.photo = NULL};
     struct glint_error error;
