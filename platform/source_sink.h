@@ -92,6 +92,8 @@ struct glint_sink {
                              struct glint_error *error);
     void (*close)(struct glint_sink *sink); /* Closes SINK; may be called
                                                again. */
+    /* time that the last put() waited for the vertical blank, us */
+    int64_t wait_us;
 };
 
 #endif

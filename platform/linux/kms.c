@@ -11,12 +11,13 @@
 #include <unistd.h>
 
 #include "linux/request.h"
+#include "posix/clock.h"
 #include "posix/error.h"
 
 enum {
     MAX_CARDS = 8,
-    MAX_IDS = 32,   /* of CRTCs, connectors and encoders */
-    MAX_MODES = 64, /* of a connector */
+    MAX_IDS = 32,    /* of CRTCs, connectors and encoders */
+    MAX_MODES = 256, /* of a connector */
     /* Time to wait for a vertical blank; displays that are switched off have
      * none. */
     FLIP_TIMEOUT_MS = 100,
@@ -26,7 +27,7 @@ enum {
 /* What open_display() looks for, and what it found instead. */
 struct search {
     const char *connector; /* name, or NULL: any that is connected */
-    char others[160];      /* names of connectors without a display */
+    char others[240];      /* names of connectors without a display */
     struct kms_mode modes[MAX_MODES];
 };
 
@@ -58,10 +59,10 @@ static void name_connector(const struct kms_connector *c, char *name,
 static const struct kms_mode *find_preferred_mode(const struct kms_connector *c,
                                                   const struct search *search)
 {
-    for (uint32_t i = 0; i < c->n_modes; i++)
+    for (uint32_t i = 0; i < c->n_modes && c->n_modes <= MAX_MODES; i++)
         if (search->modes[i].type & KMS_MODE_PREFERRED)
             return &search->modes[i];
-    return c->n_modes > 0 ? &search->modes[0] : NULL;
+    return c->n_modes > 0 && c->n_modes <= MAX_MODES ? &search->modes[0] : NULL;
 }
 
 /* Sets kms->home to the CRTC that drives connector C, or else to one that can
@@ -91,6 +92,18 @@ static bool find_crtc(struct glint_kms *kms, const struct kms_connector *c,
     return false;
 }
 
+/* Adds the connector to those that SEARCH lists, with the reason WHY. Returns
+ * false. */
+static bool reject_connector(const struct glint_kms *kms, struct search *search,
+                             const char *why)
+{
+    const size_t used = strlen(search->others);
+
+    snprintf(search->others + used, sizeof search->others - used, "%s%s%s",
+             used > 0 ? ", " : "", kms->connector, why);
+    return false;
+}
+
 /* Reads connector ID. Returns whether KMS can show pictures on it. */
 static bool try_connector(struct glint_kms *kms, uint32_t id,
                           const struct kms_resources *res,
@@ -99,27 +112,28 @@ static bool try_connector(struct glint_kms *kms, uint32_t id,
     uint32_t encoders[MAX_IDS];
     struct kms_connector c = {.connector = id};
     const struct kms_mode *mode;
-    size_t used;
 
     /* The first call asks the display for its modes. */
     if (glint_ioctl(kms->fd, KMS_CONNECTOR, &c) < 0)
         return false;
     name_connector(&c, kms->connector, sizeof kms->connector);
     if (search->connector && strcmp(search->connector, kms->connector) != 0)
-        goto unsuitable;
+        return reject_connector(kms, search, "");
     c = (struct kms_connector){.connector = id,
                                .modes = (uintptr_t)search->modes,
                                .n_modes = MAX_MODES,
                                .encoders = (uintptr_t)encoders,
                                .n_encoders = MAX_IDS};
     if (glint_ioctl(kms->fd, KMS_CONNECTOR, &c) < 0 ||
-        c.connection != KMS_CONNECTED || c.n_modes > MAX_MODES ||
-        c.n_encoders > MAX_IDS || !find_crtc(kms, &c, res, crtcs, encoders))
-        goto unsuitable;
+        c.connection != KMS_CONNECTED)
+        return reject_connector(kms, search, "");
+    if (c.n_encoders > MAX_IDS || !find_crtc(kms, &c, res, crtcs, encoders))
+        return reject_connector(kms, search,
+                                " (connected, no free controller)");
     mode = kms->home.is_mode_valid ? &kms->home.mode
                                    : find_preferred_mode(&c, search);
     if (!mode)
-        goto unsuitable;
+        return reject_connector(kms, search, " (connected, no video mode)");
     kms->connector_id = id;
     kms->crtc = (struct kms_crtc){.crtc = kms->home.crtc,
                                   .connectors = (uintptr_t)&kms->connector_id,
@@ -127,11 +141,6 @@ static bool try_connector(struct glint_kms *kms, uint32_t id,
                                   .is_mode_valid = 1,
                                   .mode = *mode};
     return true;
-unsuitable:
-    used = strlen(search->others);
-    snprintf(search->others + used, sizeof search->others - used, "%s%s",
-             used > 0 ? ", " : "", kms->connector);
-    return false;
 }
 
 /* Opens card number CARD if a display for SEARCH is connected to it. */
@@ -201,7 +210,7 @@ static enum glint_status find_display(struct glint_kms *kms,
     return glint_error_report(
         error, GLINT_E_DEVICE, "/dev/dri",
         "there is no display; load its driver (dtoverlay=vc4-kms-v3d on a "
-        "Raspberry Pi), or use -o fb");
+        "Raspberry Pi)");
 }
 
 /* ------------------------------------------------------------------ buffers */
@@ -281,28 +290,33 @@ static enum glint_status allocate_buffers(struct glint_kms *kms,
 /* ------------------------------------------------------------------- frames */
 
 /* Waits until the buffers are swapped. Returns false if that takes too long,
- * because the display is switched off or another program draws on it. */
+ * because the display is switched off. */
 static bool finish_flip(struct glint_kms *kms)
 {
+    const int64_t begin_us = glint_get_time_us();
     struct pollfd event = {.fd = kms->fd, .events = POLLIN};
     char events[256]; /* each is of a flip, as glint requests no others */
+    int n;
 
+    kms->sink.wait_us = 0;
     if (!kms->is_flip_pending)
         return true;
-    if (poll(&event, 1, FLIP_TIMEOUT_MS) <= 0 ||
-        read(kms->fd, events, sizeof events) <= 0)
-        return false;
-    kms->is_flip_pending = false;
-    return true;
+    do
+        n = poll(&event, 1, FLIP_TIMEOUT_MS);
+    while (n < 0 && errno == EINTR);
+    kms->is_flip_pending = n <= 0 || read(kms->fd, events, sizeof events) <= 0;
+    kms->sink.wait_us = glint_get_time_us() - begin_us;
+    return !kms->is_flip_pending;
 }
 
 /* Shows the hidden buffer at once, and sets the video mode. */
 static bool set_mode(struct glint_kms *kms)
 {
     kms->crtc.fb = kms->buffer[kms->hidden].fb;
-    kms->is_flip_pending = false;
-    kms->is_shown = glint_ioctl(kms->fd, KMS_SET_CRTC, &kms->crtc) == 0;
-    return kms->is_shown;
+    if (glint_ioctl(kms->fd, KMS_SET_CRTC, &kms->crtc) < 0)
+        return false;
+    kms->is_shown = true;
+    return true;
 }
 
 /* Shows the hidden buffer at the next vertical blank, or at once if the display
@@ -321,8 +335,8 @@ static bool show_hidden_buffer(struct glint_kms *kms)
     return (!kms->is_shown || errno != ENODEV) && set_mode(kms);
 }
 
-/* Returns whether the display was unplugged, as far as the kernel has noticed;
- * does not ask the display. */
+/* Returns whether the display was unplugged or its device removed, as far as
+ * the kernel has noticed; does not ask the display. */
 static bool is_unplugged(struct glint_kms *kms)
 {
     struct kms_mode mode;
@@ -333,8 +347,9 @@ static bool is_unplugged(struct glint_kms *kms)
     if (--kms->n_until_check > 0)
         return false;
     kms->n_until_check = CHECK_FRAMES;
-    return glint_ioctl(kms->fd, KMS_CONNECTOR, &c) == 0 &&
-           c.connection == KMS_DISCONNECTED;
+    if (glint_ioctl(kms->fd, KMS_CONNECTOR, &c) < 0)
+        return errno == ENODEV || errno == ENOENT;
+    return c.connection == KMS_DISCONNECTED;
 }
 
 static enum glint_status open_panel_for_image(struct glint_kms *kms,
@@ -382,20 +397,15 @@ static enum glint_status show_frame(struct glint_sink *sink,
     status = open_panel_for_image(kms, image, error);
     if (status)
         return status;
-    if (finish_flip(kms)) {
-        draw_to_buffer(kms, &kms->buffer[kms->hidden], image);
-        if (show_hidden_buffer(kms)) {
-            kms->hidden = !kms->hidden;
-            return GLINT_OK;
-        }
-        if (errno != EACCES && errno != EPERM && errno != EBUSY)
-            return report_failure(kms, "SETCRTC", error);
+    if (!finish_flip(kms)) {
+        kms->n_until_check = 0; /* It may be unplugged. */
+        kms->n_dropped++;
+        return GLINT_OK;
     }
-    /* Another program may have become the display's master; glint requests the
-     * display again at each frame. */
-    kms->n_dropped++;
-    if (ioctl(kms->fd, KMS_SET_MASTER, 0) == 0)
-        kms->is_shown = kms->is_flip_pending = false;
+    draw_to_buffer(kms, &kms->buffer[kms->hidden], image);
+    if (!show_hidden_buffer(kms))
+        return report_failure(kms, "SETCRTC", error);
+    kms->hidden = !kms->hidden;
     return GLINT_OK;
 }
 

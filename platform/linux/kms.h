@@ -13,10 +13,11 @@
  * so that they do not tear. The first frame replaces the text console.
  *
  * Closing shows again what was there before. After kill -9 the kernel shows its
- * text console.
+ * text console, unless another program has the device open.
  *
- * One program at a time draws on a display. While another one does, because the
- * user has switched consoles, put() drops frames and counts them.
+ * One program at a time draws on a display: while the sink is open, consoles
+ * and desktops cannot. While the display is switched off, put() drops frames
+ * and counts them.
  */
 #ifndef GLINT_PLATFORM_LINUX_KMS_H
 #define GLINT_PLATFORM_LINUX_KMS_H

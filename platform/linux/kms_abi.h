@@ -25,8 +25,10 @@ struct kms_mode {
 };
 enum { KMS_MODE_PREFERRED = 8 }; /* a bit of TYPE */
 
-/* Pointers are 64 bits wide on all systems. The kernel writes at most as many
- * elements as a count allows, and sets the count to the number that exist. */
+/* Pointers are 64 bits wide on all systems. The kernel sets a count to the
+ * number of elements that exist, and writes as many as the count allowed, but
+ * no modes, encoders and properties of a connector if the count is too small.
+ */
 struct kms_resources {
     uint64_t fbs, crtcs, connectors, encoders;
     uint32_t n_fbs, n_crtcs, n_connectors, n_encoders;

@@ -254,10 +254,11 @@ enum glint_status glint_v4l2_sink_open(struct glint_v4l2_sink *out,
     enum glint_status status = GLINT_OK;
     struct v4l2_format format;
 
-    *out = (struct glint_v4l2_sink){.sink = {write_frame, close_v4l2_sink},
-                                    .name = path,
-                                    .fd = -1,
-                                    .frame = *like};
+    *out = (struct glint_v4l2_sink){
+        .sink = {.put = write_frame, .close = close_v4l2_sink},
+        .name = path,
+        .fd = -1,
+        .frame = *like};
     if (!fourcc)
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "V4L2 has no code for this pixel format");

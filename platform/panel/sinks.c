@@ -23,7 +23,8 @@ static void close_null_sink(struct glint_sink *sink)
 
 void glint_null_sink_open(struct glint_null_sink *null)
 {
-    *null = (struct glint_null_sink){.sink = {discard_frame, close_null_sink}};
+    *null = (struct glint_null_sink){
+        .sink = {.put = discard_frame, .close = close_null_sink}};
 }
 
 enum glint_pixel_format glint_get_planar_format(enum glint_pixel_format format)
@@ -286,7 +287,7 @@ void glint_y4m_sink_open(struct glint_y4m_sink *y4m, const char *path,
                          int fps_num, int fps_den)
 {
     *y4m = (struct glint_y4m_sink){
-        .sink = {write_y4m_frame, close_y4m_sink},
+        .sink = {.put = write_y4m_frame, .close = close_y4m_sink},
         .path = path,
         .fps_num = fps_num,
         .fps_den = fps_den,

@@ -84,9 +84,10 @@ enum glint_status glint_window_open(struct glint_window *window,
 {
     struct glint_error cause;
 
-    *window = (struct glint_window){.sink = {show_frame, close_window},
-                                    .sdl = glint_plugin_load(&plugin, &cause),
-                                    .title = title};
+    *window = (struct glint_window){
+        .sink = {.put = show_frame, .close = close_window},
+        .sdl = glint_plugin_load(&plugin, &cause),
+        .title = title};
     if (window->sdl)
         return GLINT_OK;
     return glint_error_report(

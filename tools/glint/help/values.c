@@ -33,11 +33,13 @@ static const struct {
     {"import", "position", "a position of a zoom, 1 to 16"},
     {"live", "count", "frames, from 1"},
     {"live", "device",
-     "/dev/videoN, a number, the name of a .y4m file, - or test"},
+     "/dev/videoN, a number, the name of a .y4m file, -, test or none"},
     {"live", "fit", "scale or centre"},
     {"live", "format", "a FOURCC such as YUYV, NV12 or MJPG"},
     {"live", "output",
-     "fb[:/dev/fb0], window, y4m:FILE, y4m:-, v4l2:/dev/videoN or null"},
+     "fb[:/dev/fb0], kms[:HDMI-A-1], window, FILE.y4m, y4m:-, v4l2:/dev/videoN "
+     "or "
+     "null"},
     {"overlay", "format", "i420, i422, i444 or grey"},
     {"overlay", "frames", "A-B, the first and last frame, from 0"},
     {NULL, "stride", "bytes of a row, 1 to 131072"},

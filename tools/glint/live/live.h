@@ -23,7 +23,7 @@
  * The outputs of live frames, by name:
  *   fb[:/dev/fb0]     the panel of a framebuffer
  *   kms[:HDMI-A-1]    a display, by the kernel's mode setting interface
- * Without a name behind it, each of the two stands in for the other.
+ * Without a device's name, each of the two replaces the other if it is missing.
  *   y4m:FILE | y4m:-  a video file or pipe; also FILE.y4m
  *   v4l2:/dev/videoN  an output node, as of v4l2loopback
  *   window            a desktop window; needs the SDL plug-in

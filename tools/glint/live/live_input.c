@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/timerfd.h>
@@ -390,21 +391,27 @@ static enum glint_status open_video_input(struct live_timed *video,
 
 /* ----------------------------------------------------- pipes of bare frames */
 
-/* Reads a frame. Returns the number of bytes that were read, less than those of
- * a frame at the end of the pipe. */
-static size_t read_bare_frame(struct live_timed *v)
+/* Reads bytes of a frame while there are any, without waiting. Returns 1 if the
+ * frame is complete, 0 if not, -1 at the end of the pipe or, with errno set, on
+ * failure. */
+static int read_bare_bytes(struct live_timed *v)
 {
-    size_t n = 0;
+    struct pollfd pipe = {.fd = v->pipe.fd, .events = POLLIN};
 
-    while (n < v->frame_bytes) {
-        const ptrdiff_t got = glint_input_read_available(
-            &v->pipe, (uint8_t *)v->mem + n, v->frame_bytes - n);
+    errno = 0;
+    while (v->n_read < v->frame_bytes) {
+        ptrdiff_t got;
 
+        if (poll(&pipe, 1, 0) <= 0)
+            return 0;
+        got =
+            glint_input_read_available(&v->pipe, (uint8_t *)v->mem + v->n_read,
+                                       v->frame_bytes - v->n_read);
         if (got <= 0)
-            break;
-        n += (size_t)got;
+            return -1;
+        v->n_read += (size_t)got;
     }
-    return n;
+    return 1;
 }
 
 static enum glint_status read_next_bare_frame(struct glint_source *source,
@@ -412,19 +419,26 @@ static enum glint_status read_next_bare_frame(struct glint_source *source,
                                               struct glint_error *error)
 {
     struct live_timed *v = (struct live_timed *)source;
-    const uint64_t n = begin_timed_frame(v, frame);
-    const size_t bytes = read_bare_frame(v);
+    const int state = read_bare_bytes(v);
 
-    if (bytes == 0)
+    *frame = (struct glint_source_frame){.is_drawable = true};
+    if (state < 0 && errno)
+        return glint_error_report(error, GLINT_E_IO, v->pipe.name, "%s",
+                                  strerror(errno));
+    if (state < 0 && v->n_read == 0)
         return GLINT_E_CLOSED;
-    if (bytes < v->frame_bytes)
+    if (state < 0)
         return glint_error_report(
-            error, GLINT_E_IO, v->name,
+            error, GLINT_E_IO, v->pipe.name,
             "ends within frame %lld, after %zu of %zu bytes; are --size, "
             "--format and --stride those of the frames?",
-            (long long)v->n, bytes, v->frame_bytes);
+            (long long)v->n, v->n_read, v->frame_bytes);
+    if (state == 0)
+        return GLINT_OK;
+    v->n_read = 0;
     v->n++;
-    complete_timed_frame(v, frame, &v->image, n);
+    frame->time_us = glint_get_time_us();
+    complete_timed_frame(v, frame, &v->image, 1);
     return GLINT_OK;
 }
 
@@ -441,12 +455,12 @@ static void close_bare_frames(struct glint_source *source)
 /* Places the planes of IMAGE in MEM, with rows of luma STRIDE bytes apart, and
  * those of half as many samples half as far; MEM may be NULL. Returns the
  * bytes of a frame. */
-static size_t place_bare_frame(struct glint_image *image, uint8_t *mem,
-                               size_t stride)
+static uint64_t place_bare_frame(struct glint_image *image, uint8_t *mem,
+                                 size_t stride)
 {
     const bool is_halved =
         image->format == GLINT_I420 || image->format == GLINT_I422;
-    size_t bytes = 0;
+    uint64_t bytes = 0;
 
     for (int p = 0; p < glint_image_planes(image->format); p++) {
         const size_t row =
@@ -457,8 +471,8 @@ static size_t place_bare_frame(struct glint_image *image, uint8_t *mem,
             apart = row;
         image->plane[p] = mem ? mem + bytes : NULL;
         image->stride_bytes[p] = (ptrdiff_t)apart;
-        bytes += apart * (size_t)glint_image_plane_height(image->format, p,
-                                                          image->height);
+        bytes += (uint64_t)apart * (uint64_t)glint_image_plane_height(
+                                       image->format, p, image->height);
     }
     return bytes;
 }
@@ -471,6 +485,7 @@ static enum glint_status open_bare_frames(struct live_timed *v,
     const struct glint_v4l2_config *const c = &wish->camera;
     struct glint_image image = make_test_format(c);
     size_t row, stride;
+    uint64_t bytes;
 
     if (!glint_fourcc_to_format(c->fourcc, &image.format) || c->width < 1)
         return glint_error_report(
@@ -487,12 +502,13 @@ static enum glint_status open_bare_frames(struct live_timed *v,
             "a row of %d pixels has %zu bytes, more than --stride %zu",
             image.width, row, stride);
     *v = (struct live_timed){.image = image};
-    v->frame_bytes = place_bare_frame(&v->image, NULL, stride);
-    v->mem = malloc(v->frame_bytes);
+    bytes = place_bare_frame(&v->image, NULL, stride);
+    v->frame_bytes = (size_t)bytes;
+    v->mem = bytes < SIZE_MAX / 2 ? malloc(v->frame_bytes) : NULL;
     if (!v->mem)
         return glint_error_report(error, GLINT_E_MEMORY, c->device,
-                                  "no memory for a frame of %zu bytes",
-                                  v->frame_bytes);
+                                  "no memory for a frame of %llu bytes",
+                                  (unsigned long long)bytes);
     place_bare_frame(&v->image, v->mem, stride);
     init_timed_source(v, &(struct glint_source_format){.image = image}, c,
                       "bare frames");

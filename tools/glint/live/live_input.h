@@ -31,8 +31,8 @@ struct live_timed {
     /* the last frame of the test image (I420, limited range) or of a pipe of
      * bare frames */
     struct glint_image image;
-    struct glint_input pipe; /* pipe of bare frames, each of FRAME_BYTES */
-    size_t frame_bytes;
+    struct glint_input pipe;    /* pipe of bare frames, each of FRAME_BYTES */
+    size_t frame_bytes, n_read; /* n_read: of the next frame, so far */
     /* members of the test image: */
     uint32_t seed;
     bool is_black;

@@ -359,7 +359,7 @@ static int draw_and_show_frame(struct live *l,
         status = l->output.sink->put(l->output.sink, image, &error);
     at_us[3] = glint_get_time_us();
     record_frame_statistics(l, frame, at_us);
-    adapt_quality(l, at_us[3] - at_us[0],
+    adapt_quality(l, at_us[3] - at_us[0] - l->output.sink->wait_us,
                   l->n_shown ? frame->n_dropped + frame->n_late : 0);
     l->n_shown++;
     return status == GLINT_OK ? -1 : handle_output_loss(l, status, error.text);
@@ -586,12 +586,13 @@ int live_run(struct tool *tool, struct live_options *o, live_reread_fn *reread,
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
     *l = (struct live){.tool = tool, .o = o, .reread = reread, .ctx = ctx};
     live_adapt_init(&l->adapt);
-    code = live_output_parse(&l->output, o->output)
-               ? EXIT_OK
-               : tool_usage(tool,
-                            "-o: '%s' is not an output; expected fb, window, "
-                            "FILE.y4m, y4m:-, v4l2:DEVICE or null",
-                            o->output);
+    code =
+        live_output_parse(&l->output, o->output)
+            ? EXIT_OK
+            : tool_usage(tool,
+                         "-o: '%s' is not an output; expected fb, kms, window, "
+                         "FILE.y4m, y4m:-, v4l2:DEVICE or null",
+                         o->output);
     l->output.fit = o->fit;
     live_log_init(&l->log, tool, o->report,
                   l->output.kind == LIVE_OUTPUT_Y4M &&

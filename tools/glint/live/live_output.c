@@ -35,7 +35,7 @@ bool live_output_accepts_any_size(const struct live_output *o)
 }
 
 /* Systems have a framebuffer, a device of KMS, or both. If no device is named,
- * the other one stands in for one that is not there. */
+ * the other one replaces one that is missing. */
 static void choose_display(struct live_output *o)
 {
     const bool has_kms = glint_kms_is_present();
