@@ -18,7 +18,8 @@ static double sum_magnitudes(const double *value, int n)
     return sum;
 }
 
-enum { LEAST_EXPONENT = -80 }; /* min binary exponent in a model */
+/* range of the binary exponents in a model */
+enum { LEAST_EXPONENT = -80, MOST_EXPONENT = 40 };
 
 /* Returns the smallest exponent E such that N values, divided by 2^E and
  * rounded, have magnitudes that sum to less than GLINT_COEF_LIMIT. SUM: sum of
@@ -42,10 +43,12 @@ static bool are_all_finite(const double *value, int n)
     return true;
 }
 
-static enum glint_status round_to_integers(const double *value, int n,
+/* Allocates ALL integers, of which the first N are VALUE / 2^EXPONENT, rounded,
+ * and the others 0. */
+static enum glint_status round_to_integers(const double *value, int n, int all,
                                            int exponent, int32_t **out)
 {
-    *out = malloc((size_t)n * sizeof **out);
+    *out = calloc((size_t)all, sizeof **out);
     if (!*out)
         return GLINT_E_MEMORY;
     for (int i = 0; i < n; i++)
@@ -272,8 +275,19 @@ static int choose_energy_scale(const struct glint_fitted_output *o,
     return head;
 }
 
+/* Returns whether the fit of a system has diverged: the coefficients of an
+ * output are too large for a model, and would cancel each other. */
+static bool has_fit_diverged(const struct glint_fitted_system *s)
+{
+    for (int k = 0; k < s->n_outputs; k++)
+        if (choose_output_exponent(s, k) > MOST_EXPONENT)
+            return true;
+    return false;
+}
+
+/* Quantises output K of S, or sets it to 0 if IS_DARK. */
 static enum glint_status quantise_output(const struct glint_fitted_system *s,
-                                         int k,
+                                         int k, bool is_dark,
                                          struct glint_quantised_output *out)
 {
     const struct glint_fitted_output *o = &s->output[k];
@@ -286,8 +300,11 @@ static enum glint_status quantise_output(const struct glint_fitted_system *s,
 
         out->exponent = out->exponent > other ? out->exponent : other;
     }
-    out->head = choose_energy_scale(o, out->exponent);
-    status = round_to_integers(o->coef, o->n_terms, out->exponent, &out->coef);
+    if (is_dark)
+        out->exponent = MOST_EXPONENT;
+    out->head = is_dark ? 0 : choose_energy_scale(o, out->exponent);
+    status = round_to_integers(o->coef, is_dark ? 0 : o->n_terms, o->n_terms,
+                               out->exponent, &out->coef);
     for (int i = 0; i < o->n_terms; i++)
         out->order[i] = (uint8_t)i;
     if (status == GLINT_OK) {
@@ -322,6 +339,7 @@ glint_quantise_system(const struct glint_fitted_system *system,
                       struct glint_quantised_system *out)
 {
     enum glint_status status;
+    const bool is_dark = has_fit_diverged(system);
     double most = 0;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
@@ -331,10 +349,10 @@ glint_quantise_system(const struct glint_fitted_system *system,
     for (int k = 0; k < out->n_box; k += GLINT_BOX_TERMS)
         most = fmax(most, sum_magnitudes(system->box + k, GLINT_BOX_TERMS));
     out->box_exponent = choose_coefficient_exponent(most, GLINT_BOX_TERMS);
-    status = round_to_integers(system->box, out->n_box, out->box_exponent,
-                               &out->box);
+    status = round_to_integers(system->box, out->n_box, out->n_box,
+                               out->box_exponent, &out->box);
     for (int k = 0; k < system->n_outputs && status == GLINT_OK; k++)
-        status = quantise_output(system, k, &out->output[k]);
+        status = quantise_output(system, k, is_dark, &out->output[k]);
     return status;
 }
 

@@ -43,9 +43,10 @@ struct glint_quantised_system {
     int n_box;
 };
 
-/* Quantises SYSTEM. Returns GLINT_E_LENS if a value is not finite or the proof
- * fails, or GLINT_E_MEMORY. The caller must call glint_quantised_free_system()
- * on OUT even after an error. */
+/* Quantises SYSTEM. If its fit has diverged, sets all outputs to 0, so that the
+ * ghost has no light in this zone. Returns GLINT_E_LENS if a value is not
+ * finite or the proof fails, or GLINT_E_MEMORY. The caller must call
+ * glint_quantised_free_system() on OUT even after an error. */
 enum glint_status
 glint_quantise_system(const struct glint_fitted_system *system,
                       struct glint_quantised_system *out);

@@ -465,6 +465,23 @@ TEST(tiny_coefficients_use_the_smallest_exponent)
     free_quantised_model(&m);
 }
 
+/* Checks that a system whose fit has diverged draws nothing: its coefficients
+ * are too large for a model. */
+TEST(diverged_fits_have_no_light)
+{
+    struct made m;
+
+    seed = 3;
+    make_random_system(&m);
+    m.fitted.system->output[1].coef[0] = 0x1p90;
+    assert_int_equal(glint_quantise_system(m.fitted.system, &m.quantised),
+                     GLINT_OK);
+    for (int k = 0; k < KINDS; k++)
+        for (int t = 0; t < m.fitted.system->output[k].n_terms; t++)
+            assert_int_equal(m.quantised.output[k].coef[t], 0);
+    free_quantised_model(&m);
+}
+
 /* ---------------------------------------------------- rejected polynomials */
 
 static void check_system_is_rejected(struct made *m)
