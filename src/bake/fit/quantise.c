@@ -339,13 +339,14 @@ glint_quantise_system(const struct glint_fitted_system *system,
                       struct glint_quantised_system *out)
 {
     enum glint_status status;
-    const bool is_dark = has_fit_diverged(system);
     double most = 0;
+    bool is_dark;
 
     *out = (struct glint_quantised_system){.box_exponent = 0};
     out->n_box = count_box_terms(system);
     if (!is_system_finite(system))
         return GLINT_E_LENS;
+    is_dark = has_fit_diverged(system);
     for (int k = 0; k < out->n_box; k += GLINT_BOX_TERMS)
         most = fmax(most, sum_magnitudes(system->box + k, GLINT_BOX_TERMS));
     out->box_exponent = choose_coefficient_exponent(most, GLINT_BOX_TERMS);
