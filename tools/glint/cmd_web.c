@@ -11,13 +11,16 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/time.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "model/lens_files.h"
 #include "model/settings.h"
 #include "options/command_line.h"
 #include "options/tool.h"
+#include "posix/error.h"
 #include "posix/input.h"
 
 static const char help[] =
@@ -27,9 +30,16 @@ static const char help[] =
     "opened,\n"
     "and sends it to browsers on this computer until it is interrupted. The "
     "address\n"
-    "contains a random word; nothing else can be read. Needs make web.\n";
+    "contains a random word; nothing else can be read. make web builds the "
+    "page.\n";
 
-enum { PATH_CHARS = 1024, WORD = 32, MAX_BYTES = 200000000, PATIENCE_S = 10 };
+enum {
+    PATH_CHARS = 1024,
+    WORD = 32,
+    MAX_BYTES = 200000000,
+    TIMEOUT_S = 10,
+    MAX_CONNECTION_S = 60
+};
 
 struct site {
     char folder[PATH_CHARS];
@@ -63,8 +73,11 @@ static bool choose_random_word(struct site *site)
     return ok;
 }
 
-static const char *get_content_type(const char *name)
+/* Returns the type of the file NAME. A photograph has none that may contain a
+ * script. */
+static const char *get_content_type(const char *name, bool is_photo)
 {
+    enum { FIRST_RASTER = 5 };
     static const char *const types[][2] = {
         {".html", "text/html"},     {".css", "text/css"},
         {".js", "text/javascript"}, {".wasm", "application/wasm"},
@@ -74,7 +87,8 @@ static const char *get_content_type(const char *name)
         {".bmp", "image/bmp"},      {".gif", "image/gif"}};
     const char *const end = strrchr(name, '.');
 
-    for (size_t i = 0; end && i < sizeof types / sizeof *types; i++)
+    for (size_t i = is_photo ? FIRST_RASTER : 0;
+         end && i < sizeof types / sizeof *types; i++)
         if (strcasecmp(end, types[i][0]) == 0)
             return types[i][1];
     return "application/octet-stream";
@@ -104,19 +118,19 @@ static bool find_requested_file(const struct site *site, const char *request,
                             *name ? name : "index.html") < bytes;
 }
 
-static void send_bytes(int to, const void *data, size_t bytes)
+static void send_bytes(int connection, const void *data, size_t bytes)
 {
     const char *at = data;
     ssize_t n = 1;
 
     for (; bytes > 0 && n > 0; at += n, bytes -= (size_t)n)
-        n = send(to, at, bytes, MSG_NOSIGNAL);
+        n = send(connection, at, bytes, MSG_NOSIGNAL);
 }
 
-/* Reads a request from the connection TO and sends the answer. */
-static void answer_request(const struct site *site, int to)
+/* Reads a request from CONNECTION and sends the answer. */
+static void answer_request(const struct site *site, int connection)
 {
-    const struct timeval patience = {PATIENCE_S, 0};
+    const struct timeval timeout = {TIMEOUT_S, 0};
     char request[8192] = "", path[PATH_CHARS + 64], head[512];
     struct glint_error error;
     uint8_t *data = NULL;
@@ -124,12 +138,15 @@ static void answer_request(const struct site *site, int to)
     ssize_t n = 1;
     bool found;
 
-    setsockopt(to, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    setsockopt(connection, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
+    setsockopt(connection, SOL_SOCKET, SO_SNDTIMEO, &timeout, sizeof timeout);
     while (n > 0 && used + 1 < sizeof request && !strstr(request, "\r\n\r\n")) {
-        n = recv(to, request + used, sizeof request - 1 - used, 0);
+        n = recv(connection, request + used, sizeof request - 1 - used, 0);
         used += n > 0 ? (size_t)n : 0;
         request[used] = '\0';
     }
+    if (!strstr(request, "\r\n\r\n"))
+        return;
     found = find_requested_file(site, request, path, sizeof path) &&
             glint_input_read_whole_file(&data, &bytes, path, MAX_BYTES,
                                         &error) == GLINT_OK;
@@ -138,11 +155,13 @@ static void answer_request(const struct site *site, int to)
                  "Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\n"
                  "X-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n",
                  found ? "200 OK" : "404 Not Found",
-                 found ? get_content_type(path) : "text/plain",
+                 found ? get_content_type(path, site->photo &&
+                                                    !strcmp(path, site->photo))
+                       : "text/plain",
                  found ? bytes : 0);
-    send_bytes(to, head, (size_t)n);
+    send_bytes(connection, head, (size_t)n);
     if (found)
-        send_bytes(to, data, bytes);
+        send_bytes(connection, data, bytes);
     free(data);
 }
 
@@ -175,36 +194,69 @@ static int print_address(const struct site *site, int port)
     return fflush(stdout);
 }
 
+/* Returns whether accept() may succeed later. */
+static bool is_temporary(int error)
+{
+    return error == EINTR || error == ECONNABORTED || error == ENFILE ||
+           error == EMFILE || error == ENOBUFS || error == ENOMEM;
+}
+
 static int run_web_server(struct tool *tool, struct site *site)
 {
+    const struct timespec pause = {0, 10000000};
     int port = 0;
     const int fd = open_local_socket(&port);
 
-    if (fd < 0 || !choose_random_word(site))
+    if (fd < 0)
         return tool_fail(tool, GLINT_E_IO, strerror(errno));
+    if (!choose_random_word(site))
+        return tool_fail(tool, GLINT_E_IO, "/dev/urandom cannot be read");
     signal(SIGCHLD, SIG_IGN);
     if (print_address(site, port) != 0)
         return EXIT_OUTPUT;
     for (;;) {
-        const int to = accept(fd, NULL, NULL);
+        const int connection = accept(fd, NULL, NULL);
 
-        if (to < 0 && errno != EINTR && errno != ECONNABORTED)
+        if (connection < 0 && !is_temporary(errno))
             return tool_fail(tool, GLINT_E_IO, strerror(errno));
+        if (connection < 0) {
+            nanosleep(&pause, NULL);
+            continue;
+        }
         /* Browsers open connections that they use later, or never. */
-        if (to >= 0 && fork() == 0) {
-            answer_request(site, to);
+        if (fork() == 0) {
+            close(fd);
+            alarm(MAX_CONNECTION_S);
+            answer_request(site, connection);
             _exit(0);
         }
-        if (to >= 0)
-            close(to);
+        close(connection);
     }
+}
+
+/* Returns GLINT_OK if PATH is a file that the server can send. */
+static enum glint_status check_photo(const char *path,
+                                     struct glint_error *error)
+{
+    struct glint_input photo;
+    struct stat st;
+    bool ok;
+
+    if (glint_input_open_file(&photo, path, error) != GLINT_OK)
+        return GLINT_E_IO;
+    ok = strcmp(path, "-") != 0 && fstat(photo.fd, &st) == 0 &&
+         S_ISREG(st.st_mode) && st.st_size <= MAX_BYTES;
+    glint_input_close(&photo);
+    return ok ? GLINT_OK
+              : glint_error_report(error, GLINT_E_IO, path,
+                                   "expected a file of at most %d MB",
+                                   MAX_BYTES / 1000000);
 }
 
 int cmd_web(int argc, char **argv)
 {
     static const struct option options[] = {TOOL_COMMON_OPTIONS};
     struct tool tool = {.name = "web", .help = help, .help_end = COMMON_HELP};
-    struct glint_input photo = {.fd = -1};
     struct site site = {.photo = NULL};
     struct glint_error error;
     int c, code = -1;
@@ -217,10 +269,8 @@ int cmd_web(int argc, char **argv)
     if (code >= 0)
         return code;
     site.photo = argv[optind];
-    if (site.photo &&
-        glint_input_open_file(&photo, site.photo, &error) != GLINT_OK)
+    if (site.photo && check_photo(site.photo, &error) != GLINT_OK)
         return tool_fail(&tool, GLINT_E_IO, error.text);
-    glint_input_close(&photo);
     if (!find_page_folder(&site))
         return tool_fail(&tool, GLINT_E_IO,
                          "there is no page: make web builds it in build/web of "

@@ -774,11 +774,20 @@ function start(read) {
     report("Open a photograph, or take the sample");
     document.body.dataset.loaded = Math.round(performance.now());
     render();
-    if (location.hash.length > 1)
-        openFrom("photo", decodeURIComponent(location.hash.slice(1)));
+    // The address of glint web contains a random word; the name of the photograph follows '#'.
+    if (/\/[0-9a-f]{32}\//.test(location.pathname) && location.hash.length > 1)
+        openFrom("photo", decodeName(location.hash.slice(1)));
 }
 
-// Opens a file of the server. URL "photo" is the photograph of glint web, whose name follows '#' in the address.
+function decodeName(text) {
+    try {
+        return decodeURIComponent(text);
+    } catch {
+        return text; // not UTF-8
+    }
+}
+
+// Opens a file of the server.
 async function openFrom(url, name) {
     const answer = await fetch(url).catch(() => null);
     if (!answer?.ok)
