@@ -524,24 +524,31 @@ static void snap_to_candidate(const struct drawing *d,
 }
 
 /* Continues AT in a frame with the detected lamps LAMP[N]: updates the place of
- * the followed lamp. If the lamp is lost, AT follows a lamp that appears at the
- * last place. GIVEN is scratch. */
+ * the followed lamp. If the lamp is lost, AT follows a lamp that appears later
+ * at the last place. GIVEN is scratch. */
 static void continue_followed_lamp(const struct drawing *d,
                                    struct drawing_followed *at,
                                    const struct glint_engine_lamp *lamp, int n,
                                    struct glint_engine_lamp *given)
 {
-    uint32_t next;
+    uint32_t next, newest = 0;
+    bool exists = false;
 
-    for (int i = 0; i < n; i++)
-        if (lamp[i].id == at->id) {
-            at->x = lamp[i].track.x_q8 / 256.0;
-            at->y = lamp[i].track.y_q8 / 256.0;
-            return;
-        }
+    for (int i = 0; i < n; i++) {
+        newest = lamp[i].id > newest ? lamp[i].id : newest;
+        if (lamp[i].id != at->id)
+            continue;
+        at->x = lamp[i].track.x_q8 / 256.0;
+        at->y = lamp[i].track.y_q8 / 256.0;
+        exists = true;
+    }
+    if (exists) {
+        at->newest = newest;
+        return;
+    }
     glint_view_to_angles(&d->run.view, get_lens_focal_mm(d), at->x, at->y,
                          &given->lamp);
-    next = find_lamp_under(d, lamp, n, given, at->id);
+    next = find_lamp_under(d, lamp, n, given, at->newest);
     at->id = next ? next : at->id;
 }
 

@@ -20,8 +20,9 @@
 
 /* Detected lamp that a lamp of --light-at follows */
 struct drawing_followed {
-    uint32_t id; /* 0: none, the lamp of --light-at stays at its place */
-    double x, y; /* last place, pixels */
+    uint32_t id;     /* 0: none, the lamp of --light-at stays at its place */
+    uint32_t newest; /* max id of all lamps while the lamp existed */
+    double x, y;     /* last place, pixels */
 };
 
 /* State while frames are drawn */
