@@ -100,10 +100,6 @@ struct glint_setup {
                                   towards y */
     struct glint_iris iris;
     const struct glint_dirt *dirt; /* dust and mask in the stop; NULL: none */
-    /* Parts of the direct light that grow with the second and the fourth power
-     * of the distance from the centre of the stop, as fractions of the light
-     * through eight straight blades. 0 except for models of fast lenses. */
-    double falloff[GLINT_MAX_WAVELENGTHS][2];
     double clear; /* mean transmission of dust and mask; 1 if DIRT is NULL */
     int n_wavelengths;
     double wavelength_nm[GLINT_MAX_WAVELENGTHS];
@@ -120,6 +116,10 @@ struct glint_setup {
      * the smallest set first. Each ghost uses one set. */
     int n_sets, set_size[GLINT_MAX_WAVE_SETS];
     struct glint_set_wave set_wave[GLINT_SET_WAVES];
+    /* Parts of the direct light that grow with the second and the fourth power
+     * of the distance from the centre of the stop, as fractions of the light
+     * through eight straight blades. 0 except for models of fast lenses. */
+    double falloff[GLINT_MAX_WAVELENGTHS][2];
 };
 
 /* Prepares LENS with a stop of N_BLADES (0 or 3 .. 64; corners on the circle of

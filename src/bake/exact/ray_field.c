@@ -470,7 +470,7 @@ static void measure_brightness(const struct ray_field_config *cfg,
     field->energy_unit = 1.5 * most;
     /* In this case all rays of the coarse grid miss the opening of the stop. */
     if (field->flux == 0) {
-        field->flux = field->pupil.energy *
+        field->flux = (cfg->draft ? most : field->pupil.energy) *
                       (field->pupil.x1_mm - field->pupil.x0_mm) *
                       glint_pupil_height(&field->pupil);
         measures->density = measures->cell_flux = HUGE_VAL;

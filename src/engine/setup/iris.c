@@ -82,13 +82,12 @@ double glint_iris_compute_area_fraction(const struct glint_setup *setup)
 static double compute_mean_power(int n, double round, int power)
 {
     enum { STEPS = 64 };
-    const double apothem = cos(GLINT_PI / n);
-    const double off =
-        sqrt(1 - round * round * (1 - apothem * apothem)) - apothem * round;
-    double sum = 0, area = 0;
+    double apothem, off, sum = 0, area = 0;
 
     if (n == 0)
         return 2.0 / (power + 2);
+    apothem = cos(GLINT_PI / n);
+    off = sqrt(1 - round * round * (1 - apothem * apothem)) - apothem * round;
     for (int i = 0; i < STEPS; i++) {
         const double a = (i + 0.5) * GLINT_PI / n / STEPS;
         const double s = off * sin(a);

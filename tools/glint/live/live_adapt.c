@@ -124,8 +124,9 @@ bool live_adapt_add_frame(struct live_adapt *a, double busy_ms,
     a->busy_ms =
         a->busy_ms < 0
             ? busy_ms
-            : a->busy_ms + SMOOTHING * (fmin(busy_ms, OUTLIER * a->busy_ms) -
-                                        a->busy_ms);
+            : a->busy_ms +
+                  SMOOTHING * (fmin(busy_ms, OUTLIER * fmax(a->busy_ms, 0.1)) -
+                               a->busy_ms);
     a->since_s += elapsed_s;
     a->futile_s -= elapsed_s;
     if (a->busy_ms > TIGHT * period_ms ||
