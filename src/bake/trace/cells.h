@@ -95,9 +95,9 @@ double glint_cells_compute_cell_area(const struct glint_cells *cells);
 enum { GLINT_FLUX_CELLS = 256, GLINT_FLUX_DRAFT_CELLS = 32 };
 
 /* Returns the flux of the direct image of a light on the axis at irradiance 1,
- * mm^2, from rays at the corners of CELLS x CELLS cells; -1 if there is no
+ * mm^2, from rays at the corners of N x N cells; -1 if there is no
  * memory. */
 double glint_direct_compute_flux(const struct glint_setup *setup,
-                                 double wavelength_nm, int cells);
+                                 double wavelength_nm, int n);
 
 #endif
