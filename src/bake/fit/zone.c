@@ -416,10 +416,9 @@ static void sight_rays_of_wave(const struct glint_zone *zone,
     struct glint_zone_batch t = {.n = 0};
 
     for (int k = ANGLES * (ROWS + 1) * COLUMNS - 1; k >= 0; k--) {
-        const int line = k / COLUMNS;
+        const int line = k / COLUMNS, row = line / ANGLES;
         const double x[GLINT_VARIABLES] = {
-            2.0 * (k % COLUMNS) / (COLUMNS - 1) - 1,
-            (double)(line / ANGLES) / ROWS,
+            2.0 * (k % COLUMNS) / (COLUMNS - 1) - 1, (double)row / ROWS,
             2.0 * (line % ANGLES) / (ANGLES - 1) - 1, w};
 
         glint_zone_batch_add_ray(&t, zone, x);
