@@ -112,11 +112,11 @@ static void interpolate_fan_column(struct glint_psf *p, int k)
     const double part = (double)rest / DRAFT_STEP;
 
     for (int row = 0; row < p->n_far; row++) {
-        double(*const at)[3] = p->far + row * COLUMNS + k;
+        const int low = row * COLUMNS + k - rest;
 
         for (int c = 0; c < 3; c++)
-            at[0][c] =
-                (1 - part) * at[-rest][c] + part * at[DRAFT_STEP - rest][c];
+            p->far[low + rest][c] = (1 - part) * p->far[low][c] +
+                                    part * p->far[low + DRAFT_STEP][c];
     }
 }
 
