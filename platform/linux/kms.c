@@ -174,7 +174,7 @@ static bool try_card(struct glint_kms *kms, int card, struct search *search)
 
 bool glint_kms_is_present(void)
 {
-    char path[24];
+    char path[32];
 
     for (int card = 0; card < MAX_CARDS; card++) {
         snprintf(path, sizeof path, "/dev/dri/card%d", card);

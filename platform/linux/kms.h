@@ -27,7 +27,7 @@
 
 struct glint_kms {
     struct glint_sink sink;
-    char connector[24]; /* name of the connector, "HDMI-A-1" */
+    char connector[32]; /* name of the connector, "HDMI-A-1" */
     int width, height;  /* size of the display, pixels */
     int refresh_hz;
     struct glint_pixel_layout layout;
@@ -35,7 +35,7 @@ struct glint_kms {
 
     /* Private members. */
     enum glint_panel_fit fit;
-    char path[24]; /* path of the device */
+    char path[32]; /* path of the device */
     int fd;        /* -1: closed */
     uint32_t connector_id;
     struct kms_crtc crtc; /* what glint shows */
