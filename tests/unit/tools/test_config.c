@@ -259,6 +259,7 @@ TEST(long_file_name_keeps_the_message)
     memset(name, 'n', sizeof name);
     strcpy(name + sizeof name - 7, "/x.ini");
     config_parse(&config, name, BYTES("foo=1"), &error);
+    config_free(&config);
     assert_non_null(
         strstr(error.text,
                "nnn/x.ini:1: foo is not an option of configuration files"));
