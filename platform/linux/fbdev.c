@@ -374,21 +374,17 @@ static enum glint_status open_panel_for_image(struct glint_fbdev *fb,
                                               const struct glint_image *image,
                                               struct glint_error *error)
 {
-    const struct glint_panel_config cfg = {
-        .width = fb->width,
-        .height = fb->height,
-        .layout = fb->layout,
-        .image_width = image->width,
-        .image_height = image->height,
-        .fit = fb->options.fit,
-    };
+    const struct glint_panel_config cfg = {.width = fb->width,
+                                           .height = fb->height,
+                                           .layout = fb->layout,
+                                           .fit = fb->options.fit};
+    bool is_new;
+    const enum glint_status status =
+        glint_panel_open_for_image(&fb->panel, &cfg, image, &is_new, error);
 
-    if (fb->panel.mem && fb->panel.cfg.image_width == image->width &&
-        fb->panel.cfg.image_height == image->height)
-        return GLINT_OK;
-    glint_panel_close(&fb->panel);
-    fb->cleared[0] = fb->cleared[1] = NULL;
-    return glint_panel_open(&fb->panel, &cfg, error);
+    if (is_new)
+        fb->cleared[0] = fb->cleared[1] = NULL;
+    return status;
 }
 
 static void draw_to_mapped_screen(struct glint_fbdev *fb,
@@ -470,8 +466,8 @@ static enum glint_status report_open_failure(const struct glint_fbdev *fb,
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,
             "there is no framebuffer, nor a display in /dev/dri; load its "
-            "driver "
-            "(dtoverlay=vc4-kms-v3d on a Raspberry Pi) or name another device");
+            "driver (dtoverlay=vc4-kms-v3d on a Raspberry Pi) or name another "
+            "device");
     if (number == EACCES || number == EPERM)
         return glint_error_report(
             error, GLINT_E_DEVICE, fb->name,

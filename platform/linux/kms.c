@@ -24,7 +24,7 @@ enum {
     CHECK_FRAMES = 30
 };
 
-/* What open_display() looks for, and what it found instead. */
+/* What find_display() looks for, and what it found instead. */
 struct search {
     const char *connector; /* name, or NULL: any that is connected */
     char others[240];      /* names of connectors without a display */
@@ -38,9 +38,7 @@ static enum glint_status report_failure(const struct glint_kms *kms,
     return glint_report_ioctl_error(error, kms->path, request);
 }
 
-/* ------------------------------------------------------------ finding a
- * display
- */
+/* ----------------------------------------------------------------- display */
 
 static void name_connector(const struct kms_connector *c, char *name,
                            size_t size)
@@ -356,21 +354,17 @@ static enum glint_status open_panel_for_image(struct glint_kms *kms,
                                               const struct glint_image *image,
                                               struct glint_error *error)
 {
-    const struct glint_panel_config cfg = {
-        .width = kms->width,
-        .height = kms->height,
-        .layout = kms->layout,
-        .image_width = image->width,
-        .image_height = image->height,
-        .fit = kms->fit,
-    };
+    const struct glint_panel_config cfg = {.width = kms->width,
+                                           .height = kms->height,
+                                           .layout = kms->layout,
+                                           .fit = kms->fit};
+    bool is_new;
+    const enum glint_status status =
+        glint_panel_open_for_image(&kms->panel, &cfg, image, &is_new, error);
 
-    if (kms->panel.mem && kms->panel.cfg.image_width == image->width &&
-        kms->panel.cfg.image_height == image->height)
-        return GLINT_OK;
-    glint_panel_close(&kms->panel);
-    kms->buffer[0].is_clear = kms->buffer[1].is_clear = false;
-    return glint_panel_open(&kms->panel, &cfg, error);
+    if (is_new)
+        kms->buffer[0].is_clear = kms->buffer[1].is_clear = false;
+    return status;
 }
 
 static void draw_to_buffer(struct glint_kms *kms, struct glint_kms_buffer *b,

@@ -664,6 +664,22 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
     return GLINT_OK;
 }
 
+enum glint_status glint_panel_open_for_image(
+    struct glint_panel *panel, const struct glint_panel_config *cfg,
+    const struct glint_image *image, bool *is_new, struct glint_error *error)
+{
+    struct glint_panel_config sized = *cfg;
+
+    *is_new = !panel->mem || panel->cfg.image_width != image->width ||
+              panel->cfg.image_height != image->height;
+    if (!*is_new)
+        return GLINT_OK;
+    sized.image_width = image->width;
+    sized.image_height = image->height;
+    glint_panel_close(panel);
+    return glint_panel_open(panel, &sized, error);
+}
+
 void glint_panel_close(struct glint_panel *panel)
 {
     free(panel->mem);

@@ -154,6 +154,13 @@ enum glint_status glint_panel_open(struct glint_panel *panel,
                                    const struct glint_panel_config *cfg,
                                    struct glint_error *error);
 
+/* Opens PANEL for CFG and pictures of IMAGE's size, unless it is open for this
+ * size. The picture size of CFG is ignored. Sets *IS_NEW to whether PANEL was
+ * opened, so that the borders around the picture must be cleared. */
+enum glint_status glint_panel_open_for_image(
+    struct glint_panel *panel, const struct glint_panel_config *cfg,
+    const struct glint_image *image, bool *is_new, struct glint_error *error);
+
 /* Fills the panel at MEM, whose rows are STRIDE bytes apart, with opaque
  * black. */
 void glint_panel_clear(struct glint_panel *panel, uint8_t *mem,

@@ -406,7 +406,6 @@ enum glint_status glint_engine_continue(struct glint_engine *engine,
         return GLINT_E_ARGUMENT;
     engine->find = from->find;
     engine->expose.strength = from->expose.strength;
-    engine->expose.last = from->expose.last;
     engine->expose.before = from->expose.before;
     engine->expose.part = from->expose.part;
     engine->expose.n_before = from->expose.n_before;

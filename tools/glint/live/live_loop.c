@@ -503,7 +503,8 @@ static int change_to_baked_model(struct live *l)
              d->files.lens.table.name);
     live_log_print_message(&l->log, text);
     if (code == EXIT_OK && d->run.engine) {
-        live_adapt_init(&l->adapt); /* The model draws in other times. */
+        live_adapt_init(
+            &l->adapt); /* A frame by the model takes another time. */
         l->asked = glint_engine_dials(d->run.engine);
         code = apply_quality_step(l);
     }
