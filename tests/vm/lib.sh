@@ -97,3 +97,16 @@ end() {
     exit $((failed > 0))
 }
 trap end EXIT
+
+# Sets host, lens and look; makes scene.yuyv, frames of a camera, and
+# overlay.y4m, what glint overlay makes of them by this lens and these options.
+make_scene_with_lamps() {
+    host=build/x86_64
+    lens=$(model heliar-tronnier)
+    look=(--exposure 4 --max-lights 4)
+    lamps=(880,200,9 250,500,5)
+    $host/vm/scene YUYV 1280x720 "$out/scene.yuyv" "${lamps[@]}"
+    $host/vm/scene -n 3 y4m 1280x720 "$out/scene.y4m" "${lamps[@]}"
+    $host/glint overlay "$out/scene.y4m" -o "$out/overlay.y4m" -q \
+        --lens "$lens" "${look[@]}"
+}

@@ -7,14 +7,7 @@
 # arch: x86_64 aarch64
 . "$(dirname "$0")/lib.sh"
 
-host=build/x86_64
-lens=$(model heliar-tronnier)
-look=(--exposure 4 --max-lights 4)
-lamps=(880,200,9 250,500,5)
-$host/vm/scene YUYV 1280x720 "$out/scene.yuyv" "${lamps[@]}"
-$host/vm/scene -n 3 y4m 1280x720 "$out/scene.y4m" "${lamps[@]}"
-$host/glint overlay "$out/scene.y4m" -o "$out/overlay.y4m" -q \
-    --lens "$lens" "${look[@]}"
+make_scene_with_lamps
 
 show() { # DISPLAY LAYOUT WxH
     local at=${1//[:@]/-}
