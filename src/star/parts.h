@@ -13,6 +13,9 @@ enum {
     /* Number of distance zones around a light. A zone is a range of distances;
      * it ends at four times the distance of the previous zone's end. */
     GLINT_STAR_ZONES = 8,
+    /* Number of rows of a band. Bands begin at multiples of it. */
+    GLINT_STAR_BAND = 8,
+    GLINT_STAR_NODES = GLINT_STAR_BAND + 1,
     /* Number of steps of the table of 1 / x for x = 1 .. 2. */
     GLINT_STAR_INVERSES = 128
 };
@@ -42,6 +45,9 @@ struct glint_star_lamp {
     /* Distances from the lamp, pixels, up to which lines (reach) and halo
      * (halo_reach) are visible. */
     int reach, halo_reach;
+    /* Entry i: where r^2 is at least 2^(4 + i / 2) pixels^2, the halo is
+     * invisible beyond this distance from the nearest line, pixels. */
+    int32_t halo_width_q8[GLINT_STAR_HALO_ROWS];
     /* Distance from the lamp, pixels, up to which the light diffracted by dirt
      * in the stop (the smear) is visible. */
     int smear_reach;
@@ -63,6 +69,26 @@ struct glint_star_stretch {
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
 };
 
+/* A point at which a halo is evaluated. side: the line nearest to it and the
+ * side of that line, as 2 index + (v < 0); v: distance from that line. */
+struct glint_star_node {
+    int side;
+    int64_t v_q8;
+    int64_t light_q20[3];
+};
+
+/* The rows of a tile that are drawn together: rows y .. y + GLINT_STAR_BAND -
+ * 1, but only up to y1 - 1, and pixels x0 .. x1 - 1. */
+struct glint_star_band {
+    int y, y1, x0, x1;
+    int lo, hi; /* range of columns lo .. hi - 1 that may have light; all other
+                   columns are 0 */
+    /* light per row, channel and column, 1 = display white */
+    int64_t (*light_q20)[3][GLINT_CODES_WIDTH];
+    /* scratch memory: [GLINT_STAR_NODES][GLINT_STAR_NODES] */
+    struct glint_star_node (*node)[GLINT_STAR_NODES];
+};
+
 /* State of a worker that draws a row of tiles. */
 struct glint_star_row {
     const struct glint_star *star;
@@ -71,14 +97,17 @@ struct glint_star_row {
                            and the current tile (here) */
     /* Indices of the lights that n_near and n_here count, [max_lights] each. */
     uint16_t *near, *here;
-    /* Buffer for the light of one pixel row, [3]; all 0 between rows. */
-    int64_t (*light_q20)[GLINT_CODES_WIDTH];
+    /* The current band, whose light_q20 has GLINT_STAR_BAND rows; all 0 between
+     * bands. */
+    struct glint_star_band band;
 };
 
 struct glint_star {
     struct glint_star_config cfg;
     const struct glint_star_tables *tables;
     int n_lamps, is_linear;
+    int64_t faintest_q20; /* light of a lamp that is not visible, 1 = display
+                             white */
     struct glint_star_lamp *lamp;  /* [max_lights] */
     struct glint_star_row *worker; /* [n_workers] */
     struct glint_blend_rows *rows; /* [n_workers] */
@@ -88,8 +117,12 @@ struct glint_star {
         inverse_q31[GLINT_STAR_INVERSES + 2];
 };
 
-glint_star_part_fn glint_star_add_lines_row, glint_star_add_halo_row,
-    glint_star_add_core_row;
+glint_star_part_fn glint_star_add_lines_row, glint_star_add_core_row;
+
+/* Adds the halo of LAMP to BAND. */
+void glint_star_add_halo_band(const struct glint_star *star,
+                              const struct glint_star_lamp *lamp,
+                              struct glint_star_band *band);
 
 /* Returns 0 if certainly no line of LAMP lights pixels of BOX, else 1. */
 int glint_star_can_lines_reach_box(const struct glint_star *star,

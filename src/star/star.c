@@ -32,14 +32,26 @@ static struct glint_star *allocate_star(struct glint_arena *a,
     s->rows = glint_arena_allocate(a, n_workers, sizeof *s->rows);
     for (size_t i = 0; i < n_workers; i++) {
         uint16_t *const near = glint_arena_allocate(a, 2 * n, sizeof *near);
-        int64_t(*const light_q20)[GLINT_CODES_WIDTH] =
-            glint_arena_allocate(a, 3, sizeof *light_q20);
+        int64_t(*const light_q20)[3][GLINT_CODES_WIDTH] =
+            glint_arena_allocate(a, GLINT_STAR_BAND, sizeof *light_q20);
+        struct glint_star_node(*const node)[GLINT_STAR_NODES] =
+            glint_arena_allocate(a, GLINT_STAR_NODES, sizeof *node);
 
         if (placed)
             s->worker[i] = (struct glint_star_row){
-                .near = near, .here = near + n, .light_q20 = light_q20};
+                .near = near,
+                .here = near + n,
+                .band = {.light_q20 = light_q20, .node = node}};
     }
     return placed;
+}
+
+static void clear_band(struct glint_star_band *band)
+{
+    for (int row = 0; row < GLINT_STAR_BAND; row++)
+        for (int c = 0; c < 3; c++)
+            for (int x = 0; x < GLINT_CODES_WIDTH; x++)
+                band->light_q20[row][c][x] = 0;
 }
 
 size_t glint_star_count_bytes(const struct glint_star_config *cfg)
@@ -72,9 +84,7 @@ enum glint_status glint_star_init(struct glint_star **star,
             (GLINT_STAR_INVERSES << 16) / (GLINT_STAR_INVERSES + i);
     for (int i = 0; i < cfg->n_workers; i++) {
         s->worker[i].star = s;
-        for (int k = 0; k < 3 * GLINT_CODES_WIDTH; k++)
-            s->worker[i]
-                .light_q20[k / GLINT_CODES_WIDTH][k % GLINT_CODES_WIDTH] = 0;
+        clear_band(&s->worker[i].band);
     }
     *star = s;
     return GLINT_OK;
@@ -168,6 +178,51 @@ static int compute_halo_reach(const struct glint_star_tables *t,
             return compute_exp2_ceil((4 << 15) + (row + 1) * 16384);
     }
     return 0;
+}
+
+/* Returns whether an entry of the halo tables of LAMP exceeds MIN_LOG2 in
+ * column COLUMN of ROW or of the row after it. */
+static int is_halo_column_visible(const struct glint_star_lamp *lamp, int row,
+                                  int column, int32_t min_log2_q16)
+{
+    const int next = q_smaller(row + 1, GLINT_STAR_HALO_ROWS - 1);
+    int most = 0;
+
+    for (int c = 0; c < 3; c++) {
+        most = q_larger(most, lamp->halo[row][column][c]);
+        most = q_larger(most, lamp->halo[next][column][c]);
+        most = q_larger(most, lamp->next_halo[row][column][c]);
+        most = q_larger(most, lamp->next_halo[next][column][c]);
+    }
+    return most * 32 > min_log2_q16;
+}
+
+/* Sets the widths of LAMP's halo in which it is brighter than 2^MIN_LOG2. POWER
+ * is the log2 of the lamp's power. */
+static void set_halo_widths(struct glint_star_lamp *lamp,
+                            const struct glint_star_tables *t,
+                            int32_t power_log2_q16, int32_t min_log2_q16)
+{
+    int64_t widest_q8 = 0;
+
+    for (int row = GLINT_STAR_HALO_ROWS - 1; row >= 0; row--) {
+        const int32_t least_q16 = min_log2_q16 - t->halo_log2_q16 -
+                                  power_log2_q16 + (4 << 16) + row * 32768;
+        int n = GLINT_STAR_HALO_COLUMNS;
+
+        while (n > 0 && !is_halo_column_visible(lamp, row, n - 1, least_q16))
+            n--;
+        if (n == GLINT_STAR_HALO_COLUMNS) {
+            widest_q8 = INT32_MAX;
+        } else if (n > 0) {
+            /* column n is at 1 + 4 v / reach = 2^(n / 4) */
+            const int64_t v_q8 =
+                (t->reach_q8 * (q_exp2_q16(n * 16384) - 65536) >> 18) + 1;
+
+            widest_q8 = v_q8 > widest_q8 ? v_q8 : widest_q8;
+        }
+        lamp->halo_width_q8[row] = (int32_t)widest_q8;
+    }
 }
 
 /* Returns the distance in pixels up to which the smear (diffraction by dirt) of
@@ -281,6 +336,7 @@ static int set_star_lamp(struct glint_star_lamp *lamp,
                                 compute_real_log2_q16(line) - min_log2_q16);
     lamp->halo_reach =
         compute_halo_reach(t, compute_real_log2_q16(power), min_log2_q16);
+    set_halo_widths(lamp, t, compute_real_log2_q16(power), min_log2_q16);
     lamp->smear_reach = compute_smear_reach(
         t->smear, compute_real_log2_q16(power), min_log2_q16);
     return lamp->smear_reach > 1 || lamp->is_bare || lamp->reach > 1 ||
@@ -294,6 +350,11 @@ void glint_star_set_lights(struct glint_star *star,
 {
     star->tables = tables;
     star->n_lamps = 0;
+    star->faintest_q20 =
+        q_exp2_q16(
+            q_clamp_sat((int64_t)compute_real_log2_q16(faintest) + 20 * 65536,
+                        -65536, 20 * 65536)) >>
+        16;
     for (int i = 0; i < n && star->n_lamps < star->cfg.max_lights; i++)
         star->n_lamps += set_star_lamp(&star->lamp[star->n_lamps], tables,
                                        &lights[i], faintest);

@@ -6,12 +6,22 @@
 #include "base/log2.h"
 #include "star/parts.h"
 
-/* State while the halo of one lamp is drawn in one row of pixels. */
-struct span {
+enum { SQUARE = GLINT_STAR_BAND, NODES = GLINT_STAR_NODES };
+
+/* A square of SQUARE x SQUARE pixels in which the halo of one lamp is drawn. It
+ * begins at multiples of SQUARE, so that pictures do not depend on tiles. */
+struct square {
     const struct glint_star *star;
     const struct glint_star_lamp *lamp;
-    int64_t dy_q8;
-    struct glint_star_stretch *row;
+    int x, y;     /* first pixel */
+    int n_x, n_y; /* number of pixels inside the tile */
+    int64_t (*light_q20)[3][GLINT_CODES_WIDTH]; /* row of the first pixel */
+    int line; /* the line nearest to all pixels, or -1: several */
+    int at;   /* column of the first pixel in these rows */
+    /* Nodes at the top left pixels of the parts of the square. Bit i of
+     * known[j] states whether node[j][i] is set. */
+    uint16_t known[NODES];
+    struct glint_star_node (*node)[NODES];
 };
 
 /* A fractional index into a table: the integer index AT, and the weight of
@@ -29,197 +39,334 @@ static struct place compute_table_index(int32_t x_q16, int last)
     return (struct place){held_q16 >> 16, held_q16 >> 1 & 32767};
 }
 
-static int32_t interpolate_int32(int32_t a, int32_t b, int part_q15)
-{
-    return a + ((b - a) * part_q15 >> 15);
-}
-
-/* A pixel at which the halo is evaluated: its column (x), its distance from the
- * lamp along x (dx) and from the nearest line (v), and its light. */
-struct node {
-    int x;
-    int64_t dx_q8, v_q8;
-    int64_t light_q20[3];
-};
-
-static struct node make_halo_node(const struct span *s,
-                                  const struct glint_star_line *line, int x)
-{
-    struct node n = {.x = x, .dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8};
-
-    n.v_q8 = (s->dy_q8 * line->cos_q30 - n.dx_q8 * line->sin_q30) >> 30;
-    return n;
-}
-
-/* Interpolates channel C of the table HALO bilinearly at ROW and COLUMN. */
-static int32_t interpolate_halo_table(const glint_star_halo_row *halo,
-                                      struct place row, struct place column,
-                                      int c)
-{
-    const uint16_t(*near)[3] = &halo[row.at][column.at];
-    const uint16_t(*far)[3] = &halo[row.at + 1][column.at];
-
-    return interpolate_int32(
-        interpolate_int32(near[0][c], near[1][c], column.part_q15),
-        interpolate_int32(far[0][c], far[1][c], column.part_q15), row.part_q15);
-}
-
-static void compute_node_light(const struct span *s, struct node *n)
+/* Returns the index of the line nearest to pixel X of a row that is DY below
+ * the lamp. The sector of a line is the set of pixels nearest to it. Lines are
+ * sorted by angle. In a row below the lamp, sectors therefore follow each other
+ * from right to left; above the lamp, from left to right. */
+static int find_nearest_line(const struct square *s, int x, int64_t dy_q8)
 {
     const struct glint_star_tables *t = s->star->tables;
-    const int64_t v_q8 = n->v_q8 < 0 ? -n->v_q8 : n->v_q8;
-    uint64_t r2_q16 = (uint64_t)(n->dx_q8 * n->dx_q8 + s->dy_q8 * s->dy_q8);
+    int line = t->first;
+
+    for (int k = 0; k < t->n_lines; k++) {
+        const int64_t border_q8 =
+            s->lamp->x_q8 + (dy_q8 * t->line[line].border_q16 >> 16);
+        const int64_t border = (border_q8 + 127) >> 8;
+
+        if (dy_q8 >= 0 ? x >= border : x < border)
+            break;
+        line = line + 1 < t->n_lines ? line + 1 : 0;
+    }
+    return line;
+}
+
+/* Sets AT to the logarithms of the halo of LAMP per channel, interpolated
+ * between rows, columns and, unless their weight is 0, the lamp's two tables.
+ */
+static void interpolate_halo_table(const struct glint_star_lamp *lamp,
+                                   struct place row, struct place column,
+                                   uint32_t at_q11[3])
+{
+    const uint32_t down = (uint32_t)row.part_q15;
+    const uint32_t right = (uint32_t)column.part_q15;
+    const uint32_t both = down * right >> 15;
+    const uint32_t all_q15[4] = {32768 + both - down - right, right - both,
+                                 down - both, both};
+    const uint32_t next_q15 = (uint32_t)lamp->halo_part_q15;
+    const glint_star_halo_row *table = lamp->halo;
+    uint32_t weight_q15[4], sum_q26[3] = {0, 0, 0};
+
+    for (int k = 0; k < 4; k++)
+        weight_q15[k] = all_q15[k] - (all_q15[k] * next_q15 >> 15);
+    for (int i = 0; i < (next_q15 > 0 ? 2 : 1); i++) {
+        const uint16_t(*const near)[3] = &table[row.at][column.at];
+        const uint16_t(*const far)[3] = &table[row.at + 1][column.at];
+
+        for (int c = 0; c < 3; c++)
+            sum_q26[c] += weight_q15[0] * near[0][c] +
+                          weight_q15[1] * near[1][c] +
+                          weight_q15[2] * far[0][c] + weight_q15[3] * far[1][c];
+        table = lamp->next_halo;
+        for (int k = 0; k < 4; k++)
+            weight_q15[k] = all_q15[k] - weight_q15[k];
+    }
+    for (int c = 0; c < 3; c++)
+        at_q11[c] = sum_q26[c] >> 15;
+}
+
+/* Sets N to the halo at pixel (X, Y). */
+static OUT_OF_LINE void compute_node(const struct square *s, int x, int y,
+                                     struct glint_star_node *n)
+{
+    const struct glint_star_tables *t = s->star->tables;
+    const int64_t dx_q8 = (int64_t)x * 256 + 128 - s->lamp->x_q8;
+    const int64_t dy_q8 = (int64_t)y * 256 + 128 - s->lamp->y_q8;
+    const int line = s->line >= 0 ? s->line : find_nearest_line(s, x, dy_q8);
+    const int64_t v_q8 =
+        (dy_q8 * t->line[line].cos_q30 - dx_q8 * t->line[line].sin_q30) >> 30;
+    uint64_t r2_q16 = (uint64_t)(dx_q8 * dx_q8 + dy_q8 * dy_q8);
     int32_t r2_log2_q16, column_q16, log2_of_q16;
     struct place row, column;
+    uint32_t at_q11[3];
 
+    n->side = 2 * line + (v_q8 < 0);
+    n->v_q8 = v_q8 < 0 ? -v_q8 : v_q8;
     r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
     r2_log2_q16 = q_log2_q16(r2_q16) - 16 * 65536;
     /* log2 of 1 + 4 v / reach */
     column_q16 =
-        q_log2_q16((uint64_t)(v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
+        q_log2_q16((uint64_t)(n->v_q8 * 4 + t->reach_q8)) - t->reach_log2_q16;
     row = compute_table_index((r2_log2_q16 - 4 * 65536) * 2,
                               GLINT_STAR_HALO_ROWS - 1);
     column = compute_table_index(column_q16 * 4, GLINT_STAR_HALO_COLUMNS - 1);
+    interpolate_halo_table(s->lamp, row, column, at_q11);
     for (int c = 0; c < 3; c++) {
-        int32_t at = interpolate_halo_table(s->lamp->halo, row, column, c);
-
-        if (s->lamp->halo_part_q15 > 0)
-            at = interpolate_int32(
-                at, interpolate_halo_table(s->lamp->next_halo, row, column, c),
-                s->lamp->halo_part_q15);
-        log2_of_q16 = 32 * at;
-        log2_of_q16 += t->halo_log2_q16 + s->lamp->halo_log2_q16[c] -
-                       r2_log2_q16 + 4 * 65536;
+        log2_of_q16 = 32 * (int32_t)at_q11[c] + t->halo_log2_q16 +
+                      s->lamp->halo_log2_q16[c] - r2_log2_q16 + 4 * 65536;
         n->light_q20[c] = q_exp2_q16(q_smaller(log2_of_q16, 34 * 65536));
     }
 }
 
-/* Adds light to the STEP pixels from A to the pixel before B, interpolated
- * linearly between the light at A and at B. */
-static void add_interpolated_run(const struct span *s, const struct node *a,
-                                 const struct node *b, int step)
+static inline const struct glint_star_node *get_node(struct square *s, int i,
+                                                     int j)
 {
-    const int shift = step == 8 ? 3 : step == 4 ? 2 : 0;
+    struct glint_star_node *const n = &s->node[j][i];
+
+    if (!(s->known[j] >> i & 1)) {
+        compute_node(s, s->x + i, s->y + j, n);
+        s->known[j] |= (uint16_t)(1 << i);
+    }
+    return n;
+}
+
+/* ---------------------------------------------------------- interpolation */
+
+/* Returns whether no line crosses the part of N x N pixels with the corners
+ * CORNER, and the lamp is at least 4 N pixels from its middle. The halo then
+ * falls monotonically with the distances from lamp and line, except at borders
+ * between sectors. */
+static int is_part_clear(const struct square *s,
+                         const struct glint_star_node *const corner[4], int i,
+                         int j, int n)
+{
+    const int64_t dx = (s->x + i + n / 2) - (s->lamp->x_q8 >> 8);
+    const int64_t dy = (s->y + j + n / 2) - (s->lamp->y_q8 >> 8);
+    const int64_t least_q8 = 512 * n - s->star->tables->reach_q8 / 4;
+    int is_same = 1, is_far = 1;
+
+    for (int k = 0; k < 4; k++) {
+        is_same &=
+            corner[k]->side == corner[0]->side && corner[k]->v_q8 >= least_q8;
+        /* A line that crosses the part is within its diagonal of each corner.
+         */
+        is_far &= corner[k]->v_q8 > 384 * n;
+    }
+    return (is_same || is_far) && dx * dx + dy * dy >= 16 * n * n;
+}
+
+/* Returns whether the halo may be interpolated between the corners: whether at
+ * MIDDLE this is wrong by at most 1/64, or by a quarter of the faintest visible
+ * light. */
+static int is_part_bilinear(const struct square *s,
+                            const struct glint_star_node *const corner[4],
+                            const struct glint_star_node *middle)
+{
+    const int64_t faintest_q20 = s->star->faintest_q20;
 
     for (int c = 0; c < 3; c++) {
-        int64_t *const to_q20 = &s->row->light_q20[c][a->x - s->row->x0];
-        const int64_t slope = b->light_q20[c] - a->light_q20[c];
+        const int64_t exact_q20 = middle->light_q20[c];
+        const int64_t most_q20 =
+            exact_q20 >> 5 > faintest_q20 ? exact_q20 >> 5 : faintest_q20;
+        int64_t wrong_q20 = -4 * exact_q20;
 
-        for (int i = 0; i < step; i++)
-            to_q20[i] += a->light_q20[c] + (i * slope >> shift);
-    }
-}
-
-static int64_t compute_min_magnitude_in_interval(int64_t a, int64_t b)
-{
-    const int64_t p = a < 0 ? -a : a, q = b < 0 ? -b : b;
-
-    return (a < 0) != (b < 0) ? 0 : p < q ? p : q;
-}
-
-/* Returns whether the halo between A and B, which are n pixels apart, may be
- * interpolated linearly. Let r be the distance from the lamp and v the distance
- * from the line. Light falls with r^-3 and v^-2. So linear interpolation is too
- * bright by fractions of at most 1.5 n^2 / r^2 and 0.75 n^2 / v^2. The test
- * limits these to 0.01 and 0.02. */
-static int is_halo_nearly_linear(const struct span *s, const struct node *a,
-                                 const struct node *b)
-{
-    const int64_t far_q8 = (int64_t)(b->x - a->x) << 8;
-    const int64_t dx_q8 = compute_min_magnitude_in_interval(a->dx_q8, b->dx_q8);
-
-    return compute_min_magnitude_in_interval(a->v_q8, b->v_q8) >= 6 * far_q8 &&
-           dx_q8 * dx_q8 + s->dy_q8 * s->dy_q8 >= 144 * far_q8 * far_q8;
-}
-
-/* Returns the number of pixels from FROM, up to X1 at most, over which the halo
- * is interpolated linearly: 8, 4 or 1. A run of 8 or 4 begins at a multiple of
- * its length, so that pictures do not depend on tile borders. */
-static int choose_interpolated_run_length(const struct span *s,
-                                          const struct glint_star_line *line,
-                                          const struct node *from, int x1)
-{
-    for (int n = 8; n >= 4; n >>= 1) {
-        struct node to;
-
-        if ((from->x & (n - 1)) != 0 || from->x + n > x1)
-            continue;
-        to = make_halo_node(s, line, from->x + n);
-        if (is_halo_nearly_linear(s, from, &to))
-            return n;
+        for (int k = 0; k < 4; k++)
+            wrong_q20 += corner[k]->light_q20[c];
+        if (wrong_q20 > most_q20 || wrong_q20 < -most_q20)
+            return 0;
     }
     return 1;
 }
 
-/* Adds the halo to pixels X0 .. X1 - 1, all of which are nearest to LINE. */
-static void add_halo_of_sector(const struct span *s,
-                               const struct glint_star_line *line, int x0,
-                               int x1)
+static int is_node_visible(const struct square *s,
+                           const struct glint_star_node *n)
 {
-    struct node at = make_halo_node(s, line, x0);
+    int is_visible = 0;
 
-    if (x0 < x1)
-        compute_node_light(s, &at);
-    for (int n; at.x < x1;) {
-        struct node next;
-
-        n = choose_interpolated_run_length(s, line, &at, x1);
-        next = make_halo_node(s, line, at.x + n);
-        if (next.x < x1 || n > 1)
-            compute_node_light(s, &next);
-        add_interpolated_run(s, &at, &next, n);
-        at = next;
-    }
+    for (int c = 0; c < 3; c++)
+        is_visible |= n->light_q20[c] > s->star->faintest_q20;
+    return is_visible;
 }
 
-/* Adds the halo to pixels X0 .. X1 - 1, sector by sector. A sector is the set
- * of pixels that are nearest to one line. Lines are sorted by angle. In a row
- * below the lamp, their sectors therefore follow each other from right to left;
- * above the lamp, from left to right. */
-static void add_halo_of_all_sectors(const struct span *s, int x0, int x1)
+/* Adds light, interpolated bilinearly between CORNER (top left, top right,
+ * bottom left, bottom right), to the part of N x N pixels at (I, J). */
+static void add_interpolated_part(const struct square *s,
+                                  const struct glint_star_node *const corner[4],
+                                  int i, int j, int n)
+{
+    const int shift = n == 8 ? 6 : n == 4 ? 4 : 2;
+    const int n_x = q_smaller(n, s->n_x - i), n_y = q_smaller(n, s->n_y - j);
+
+    for (int y = 0; y < n_y; y++)
+        for (int c = 0; c < 3; c++) {
+            int64_t *const to_q20 = &s->light_q20[j + y][c][s->at + i];
+            const int64_t left =
+                corner[0]->light_q20[c] * (n - y) + corner[2]->light_q20[c] * y;
+            const int64_t right =
+                corner[1]->light_q20[c] * (n - y) + corner[3]->light_q20[c] * y;
+            uint64_t sum = (uint64_t)(left * n);
+
+            for (int x = 0; x < n_x; x++) {
+                to_q20[x] += (int64_t)(sum >> shift);
+                sum += (uint64_t)(right - left);
+            }
+        }
+}
+
+static void add_node_to_pixel(struct square *s, int i, int j)
+{
+    const struct glint_star_node *n;
+
+    if (i >= s->n_x || j >= s->n_y)
+        return;
+    n = get_node(s, i, j);
+    for (int c = 0; c < 3; c++)
+        s->light_q20[j][c][s->at + i] += n->light_q20[c];
+}
+
+/* Draws the part of N x N pixels at (I, J) if it can be interpolated or is
+ * invisible. Returns 0 if it has to be divided. */
+static int draw_part(struct square *s, int i, int j, int n)
+{
+    const struct glint_star_node *const corner[4] = {
+        get_node(s, i, j), get_node(s, i + n, j), get_node(s, i, j + n),
+        get_node(s, i + n, j + n)};
+    const struct glint_star_node *middle;
+    int is_visible;
+
+    if (!is_part_clear(s, corner, i, j, n))
+        return 0;
+    middle = get_node(s, i + n / 2, j + n / 2);
+    is_visible = is_node_visible(s, middle);
+    for (int k = 0; k < 4; k++)
+        is_visible |= is_node_visible(s, corner[k]);
+    if (is_visible) {
+        if (!is_part_bilinear(s, corner, middle))
+            return 0;
+        add_interpolated_part(s, corner, i, j, n);
+    }
+    return 1;
+}
+
+static void draw_divided_part(struct square *s, int i, int j, int n)
+{
+    for (int y = j; y < j + n; y += n / 2)
+        for (int x = i; x < i + n; x += n / 2)
+            if (n == 2)
+                add_node_to_pixel(s, x, y);
+            else if (!draw_part(s, x, y, n / 2))
+                draw_divided_part(s, x, y, n / 2);
+}
+
+/* ------------------------------------------------------------------- bands */
+
+/* Moves S to the next square to the right, whose left nodes are the right nodes
+ * of S. */
+static void move_square_right(struct square *s)
+{
+    for (int j = 0; j < NODES; j++) {
+        s->node[j][0] = s->node[j][SQUARE];
+        s->known[j] = s->known[j] >> SQUARE & 1;
+    }
+    s->x += SQUARE;
+    s->at += SQUARE;
+}
+
+/* Returns by how much |X| exceeds LIMIT, at least 0. */
+static int64_t compute_excess(int64_t x, int64_t limit)
+{
+    const int64_t excess = (x < 0 ? -x : x) - limit;
+
+    return excess > 0 ? excess : 0;
+}
+
+/* Returns the line nearest to all nodes of the square, or -1 if they have
+ * several. */
+static int find_common_line(const struct square *s)
+{
+    const int64_t dy_q8 = (int64_t)s->y * 256 + 128 - s->lamp->y_q8;
+    const int64_t end_q8 = dy_q8 + SQUARE * 256;
+    const int line = find_nearest_line(s, s->x, dy_q8);
+
+    return (dy_q8 >= 0) == (end_q8 >= 0) &&
+                   find_nearest_line(s, s->x + SQUARE, dy_q8) == line &&
+                   find_nearest_line(s, s->x, end_q8) == line &&
+                   find_nearest_line(s, s->x + SQUARE, end_q8) == line
+               ? line
+               : -1;
+}
+
+/* Returns 1 only if the halo is invisible in the whole square. */
+static int is_square_invisible(const struct square *s)
 {
     const struct glint_star_tables *t = s->star->tables;
-    const int below = s->dy_q8 >= 0;
-    int line = t->first, at = below ? x1 : x0;
+    const int64_t half_q8 = SQUARE * 128;
+    const int64_t dx_q8 = (int64_t)s->x * 256 + half_q8 - s->lamp->x_q8;
+    const int64_t dy_q8 = (int64_t)s->y * 256 + half_q8 - s->lamp->y_q8;
+    const int64_t near_x_q8 = compute_excess(dx_q8, half_q8);
+    const int64_t near_y_q8 = compute_excess(dy_q8, half_q8);
+    uint64_t r2_q16 = (uint64_t)(near_x_q8 * near_x_q8 + near_y_q8 * near_y_q8);
+    int32_t width_q8;
 
+    r2_q16 = r2_q16 > s->lamp->inner_q16 ? r2_q16 : s->lamp->inner_q16;
+    width_q8 = s->lamp->halo_width_q8[compute_table_index(
+                                          (q_log2_q16(r2_q16) - 20 * 65536) * 2,
+                                          GLINT_STAR_HALO_ROWS - 1)
+                                          .at];
     for (int k = 0; k < t->n_lines; k++) {
-        const int64_t border_q8 =
-            s->lamp->x_q8 + (s->dy_q8 * t->line[line].border_q16 >> 16);
-        const int here = q_clamp_sat((border_q8 + 127) >> 8, x0, x1);
+        const int64_t v_q8 =
+            (dy_q8 * t->line[k].cos_q30 - dx_q8 * t->line[k].sin_q30) >> 30;
 
-        if (below && here < at) {
-            add_halo_of_sector(s, &t->line[line], here, at);
-            at = here;
-        } else if (!below && here > at) {
-            add_halo_of_sector(s, &t->line[line], at, here);
-            at = here;
-        }
-        line = line + 1 < t->n_lines ? line + 1 : 0;
+        /* up to half a diagonal closer at the corners */
+        if ((v_q8 < 0 ? -v_q8 : v_q8) - 3 * half_q8 / 2 <= width_q8)
+            return 0;
     }
-    if (below)
-        add_halo_of_sector(s, &t->line[line], x0, at);
-    else
-        add_halo_of_sector(s, &t->line[line], at, x1);
+    return 1;
 }
 
-void glint_star_add_halo_row(const struct glint_star *star,
-                             const struct glint_star_lamp *lamp,
-                             struct glint_star_stretch *row)
+void glint_star_add_halo_band(const struct glint_star *star,
+                              const struct glint_star_lamp *lamp,
+                              struct glint_star_band *band)
 {
-    const struct span s = {star, lamp, (int64_t)row->y * 256 + 128 - lamp->y_q8,
-                           row};
-    const int64_t dy = s.dy_q8 / 256, far = lamp->halo_reach;
-    const int64_t left2 = far * far - dy * dy;
-    int half, middle, x0, x1;
+    struct square s = {.star = star,
+                       .lamp = lamp,
+                       .y = band->y,
+                       .n_y = q_smaller(SQUARE, band->y1 - band->y),
+                       .light_q20 = band->light_q20,
+                       .node = band->node};
+    const int64_t far = lamp->halo_reach;
+    const int dy = lamp->y_q8 >> 8;
+    const int64_t near = q_clamp_sat(dy, band->y, band->y + SQUARE) - dy;
+    const int64_t left2 = far * far - near * near;
+    int half, x0, x1;
 
     if (left2 <= 0)
         return;
     half = (int)q_root((uint64_t)left2) + 1;
-    middle = lamp->x_q8 >> 8;
-    x0 = q_larger(row->x0, middle - half);
-    x1 = q_smaller(row->x1, middle + half + 1);
+    x0 = q_larger(band->x0, ((lamp->x_q8 >> 8) - half) & -SQUARE);
+    x1 = q_smaller(band->x1, (lamp->x_q8 >> 8) + half + 1);
     if (x0 >= x1)
         return;
-    glint_star_mark_lit_columns(row, x0, x1);
-    add_halo_of_all_sectors(&s, x0, x1);
+    band->lo = q_smaller(band->lo, x0);
+    band->hi =
+        q_larger(band->hi, q_smaller(band->x1, (x1 + SQUARE - 1) & -SQUARE));
+    s.x = x0;
+    s.at = x0 - band->x0;
+    for (; s.x < x1; move_square_right(&s)) {
+        s.n_x = q_smaller(SQUARE, band->x1 - s.x);
+        if (is_square_invisible(&s))
+            continue;
+        s.line = find_common_line(&s);
+        if (!draw_part(&s, 0, 0, SQUARE))
+            draw_divided_part(&s, 0, 0, SQUARE);
+    }
 }

@@ -70,7 +70,6 @@ static void add_lamps_to_row(const struct glint_star_row *r,
         const struct glint_star_lamp *lamp = &s->lamp[r->here[i]];
 
         glint_star_add_lines_row(s, lamp, row);
-        glint_star_add_halo_row(s, lamp, row);
         glint_star_add_core_row(s, lamp, row);
         if (s->tables->smear)
             s->tables->smear->part(s, lamp, row);
@@ -109,20 +108,37 @@ static int move_accumulated_light_to_q20(const struct glint_star_stretch *row,
     return row->lo < row->hi;
 }
 
+/* Begins the band at row Y of the tile: adds the halos of all lamps. */
+static void begin_band(struct glint_star_row *r, int y)
+{
+    struct glint_star_band *const b = &r->band;
+
+    b->y = y;
+    b->y1 = r->tile.y1;
+    b->x0 = b->hi = r->tile.x0;
+    b->x1 = b->lo = r->tile.x1;
+    for (int i = 0; i < r->n_here; i++)
+        glint_star_add_halo_band(r->star, &r->star->lamp[r->here[i]], b);
+}
+
 static enum glint_given write_pixel_rows(void *state,
                                          const struct glint_pass_rows *rows)
 {
-    const struct glint_star_row *r = state;
+    struct glint_star_row *r = state;
+    const struct glint_star_band *const band = &r->band;
     int any = 0;
 
     for (int k = 0; k < rows->n; k++) {
+        const int in_band = (rows->y + k) % GLINT_STAR_BAND;
         struct glint_star_stretch row = {.y = rows->y + k,
                                          .x0 = r->tile.x0,
                                          .x1 = r->tile.x1,
-                                         .lo = r->tile.x1,
-                                         .hi = r->tile.x0,
-                                         .light_q20 = r->light_q20};
+                                         .light_q20 = band->light_q20[in_band]};
 
+        if (in_band == 0)
+            begin_band(r, rows->y + k);
+        row.lo = band->lo;
+        row.hi = band->hi;
         add_lamps_to_row(r, &row);
         for (int c = 0; c < 3; c++)
             any |=

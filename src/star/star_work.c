@@ -4,6 +4,7 @@
  * lines, halos, smears and cores light.
  */
 #include "base/divide.h"
+#include "base/log2.h"
 #include "base/q.h"
 #include "star/parts.h"
 
@@ -47,6 +48,44 @@ static int64_t count_pixels_lit_by_lines(const struct glint_star *star,
     return sum * star->tables->n_lines;
 }
 
+/* Returns the fraction of a circle of R pixels around LAMP that is covered by
+ * stripes along all lines, WIDTH to either side of each. */
+static int32_t compute_stripe_fraction_q16(const struct glint_star *star,
+                                           int32_t width_q8, int r)
+{
+    /* Each line passes the circle twice; 2 pi is about 402 / 64. */
+    const int64_t stripes_q8 = 4 * (int64_t)star->tables->n_lines * width_q8;
+
+    return q_clamp_sat(q_divide(stripes_q8 << 14, 402 * (int64_t)r), 0, 65536);
+}
+
+/* Estimates the number of pixels that the halo of LAMP lights, ring by ring; a
+ * ring is a row of the halo tables. */
+static int64_t count_pixels_lit_by_halo(const struct glint_star *star,
+                                        const struct glint_star_lamp *lamp)
+{
+    int64_t sum = 0, inside = 0;
+    int r = 0;
+
+    for (int row = 0; row < GLINT_STAR_HALO_ROWS && r < lamp->halo_reach;
+         row++) {
+        const int far = (int)(q_exp2_q16((2 << 16) + (row + 1) * 16384) >> 16);
+        const int next = q_smaller(row + 1, GLINT_STAR_HALO_ROWS - 1);
+        const int64_t fraction_q16 =
+            (compute_stripe_fraction_q16(star, lamp->halo_width_q8[row], far) +
+             compute_stripe_fraction_q16(star, lamp->halo_width_q8[next],
+                                         far)) /
+            2;
+        const int64_t area = count_square_pixels(star, lamp, far);
+
+        /* a circle covers pi / 4, about 201 / 256, of its bounding square */
+        sum += ((area - inside) * 201 >> 8) * fraction_q16 >> 16;
+        inside = area;
+        r = far;
+    }
+    return sum;
+}
+
 int64_t glint_star_estimate_pixels(const struct glint_star *star)
 {
     int64_t sum = 0;
@@ -55,8 +94,7 @@ int64_t glint_star_estimate_pixels(const struct glint_star *star)
         const struct glint_star_lamp *lamp = &star->lamp[i];
 
         sum += count_pixels_lit_by_lines(star, lamp);
-        /* a circle covers pi / 4, about 201 / 256, of its bounding square */
-        sum += count_square_pixels(star, lamp, lamp->halo_reach) * 201 >> 8;
+        sum += count_pixels_lit_by_halo(star, lamp);
         sum += count_square_pixels(star, lamp, lamp->smear_reach);
         if (lamp->is_bare)
             sum += count_square_pixels(star, lamp,

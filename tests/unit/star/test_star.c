@@ -345,8 +345,8 @@ static double measure_max_relative_difference(const struct glint_star_tables *t,
     return most;
 }
 
-/* Checks that pixels far from the light, which are interpolated within a row,
- * are within 3 % of the tables. */
+/* Checks that pixels far from the light, which are interpolated, are within 3 %
+ * of the tables. */
 TEST(distant_pixels_match_the_tables)
 {
     static const double place[][2] = {
