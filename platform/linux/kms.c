@@ -16,7 +16,6 @@
 
 enum {
     MAX_CARDS = 8,
-    MAX_IDS = 32,    /* of CRTCs, connectors and encoders */
     MAX_MODES = 256, /* of a connector */
     /* Time to wait for a vertical blank; displays that are switched off have
      * none. */
@@ -90,6 +89,32 @@ static bool find_crtc(struct glint_kms *kms, const struct kms_connector *c,
     return false;
 }
 
+/* Sets the connectors that show the picture of kms->home: those that it drives
+ * already (several of cloned displays), or else connector ID. */
+static void find_connectors(struct glint_kms *kms, uint32_t id,
+                            const struct kms_resources *res,
+                            const uint32_t *connectors)
+{
+    kms->connectors[0] = id;
+    kms->crtc.n_connectors = 1;
+    for (uint32_t i = 0; kms->home.is_mode_valid && i < res->n_connectors;
+         i++) {
+        struct kms_mode mode;
+        struct kms_connector c = {.connector = connectors[i],
+                                  .modes = (uintptr_t)&mode,
+                                  .n_modes = 1};
+        struct kms_encoder e;
+
+        if (connectors[i] == id || kms->crtc.n_connectors == KMS_MAX_IDS ||
+            glint_ioctl(kms->fd, KMS_CONNECTOR, &c) < 0)
+            continue;
+        e = (struct kms_encoder){.encoder = c.encoder};
+        if (c.encoder && glint_ioctl(kms->fd, KMS_ENCODER, &e) == 0 &&
+            e.crtc == kms->home.crtc)
+            kms->connectors[kms->crtc.n_connectors++] = connectors[i];
+    }
+}
+
 /* Adds the connector to those that SEARCH lists, with the reason WHY. Returns
  * false. */
 static bool reject_connector(const struct glint_kms *kms, struct search *search,
@@ -107,7 +132,7 @@ static bool try_connector(struct glint_kms *kms, uint32_t id,
                           const struct kms_resources *res,
                           const uint32_t *crtcs, struct search *search)
 {
-    uint32_t encoders[MAX_IDS];
+    uint32_t encoders[KMS_MAX_IDS];
     struct kms_connector c = {.connector = id};
     const struct kms_mode *mode;
 
@@ -121,21 +146,19 @@ static bool try_connector(struct glint_kms *kms, uint32_t id,
                                .modes = (uintptr_t)search->modes,
                                .n_modes = MAX_MODES,
                                .encoders = (uintptr_t)encoders,
-                               .n_encoders = MAX_IDS};
+                               .n_encoders = KMS_MAX_IDS};
     if (glint_ioctl(kms->fd, KMS_CONNECTOR, &c) < 0 ||
         c.connection != KMS_CONNECTED)
         return reject_connector(kms, search, "");
-    if (c.n_encoders > MAX_IDS || !find_crtc(kms, &c, res, crtcs, encoders))
+    if (c.n_encoders > KMS_MAX_IDS || !find_crtc(kms, &c, res, crtcs, encoders))
         return reject_connector(kms, search,
                                 " (connected, no free controller)");
     mode = kms->home.is_mode_valid ? &kms->home.mode
                                    : find_preferred_mode(&c, search);
     if (!mode)
         return reject_connector(kms, search, " (connected, no video mode)");
-    kms->connector_id = id;
     kms->crtc = (struct kms_crtc){.crtc = kms->home.crtc,
-                                  .connectors = (uintptr_t)&kms->connector_id,
-                                  .n_connectors = 1,
+                                  .connectors = (uintptr_t)kms->connectors,
                                   .is_mode_valid = 1,
                                   .mode = *mode};
     return true;
@@ -144,12 +167,12 @@ static bool try_connector(struct glint_kms *kms, uint32_t id,
 /* Opens card number CARD if a display for SEARCH is connected to it. */
 static bool try_card(struct glint_kms *kms, int card, struct search *search)
 {
-    uint32_t crtcs[MAX_IDS], connectors[MAX_IDS];
+    uint32_t crtcs[KMS_MAX_IDS], connectors[KMS_MAX_IDS];
     struct kms_capability dumb = {.capability = KMS_CAP_DUMB_BUFFER};
     struct kms_resources res = {.crtcs = (uintptr_t)crtcs,
                                 .connectors = (uintptr_t)connectors,
-                                .n_crtcs = MAX_IDS,
-                                .n_connectors = MAX_IDS};
+                                .n_crtcs = KMS_MAX_IDS,
+                                .n_connectors = KMS_MAX_IDS};
 
     snprintf(kms->path, sizeof kms->path, "/dev/dri/card%d", card);
     kms->fd = open(kms->path, O_RDWR | O_CLOEXEC);
@@ -157,13 +180,15 @@ static bool try_card(struct glint_kms *kms, int card, struct search *search)
         return false;
     if (glint_ioctl(kms->fd, KMS_CAPABILITY, &dumb) == 0 && dumb.value &&
         glint_ioctl(kms->fd, KMS_RESOURCES, &res) == 0) {
-        if (res.n_crtcs > MAX_IDS)
-            res.n_crtcs = MAX_IDS;
-        if (res.n_connectors > MAX_IDS)
-            res.n_connectors = MAX_IDS;
+        if (res.n_crtcs > KMS_MAX_IDS)
+            res.n_crtcs = KMS_MAX_IDS;
+        if (res.n_connectors > KMS_MAX_IDS)
+            res.n_connectors = KMS_MAX_IDS;
         for (uint32_t i = 0; i < res.n_connectors; i++)
-            if (try_connector(kms, connectors[i], &res, crtcs, search))
+            if (try_connector(kms, connectors[i], &res, crtcs, search)) {
+                find_connectors(kms, connectors[i], &res, connectors);
                 return true;
+            }
     }
     close(kms->fd);
     kms->fd = -1;
@@ -338,7 +363,7 @@ static bool show_hidden_buffer(struct glint_kms *kms)
 static bool is_unplugged(struct glint_kms *kms)
 {
     struct kms_mode mode;
-    struct kms_connector c = {.connector = kms->connector_id,
+    struct kms_connector c = {.connector = kms->connectors[0],
                               .modes = (uintptr_t)&mode,
                               .n_modes = 1};
 
@@ -413,8 +438,8 @@ static void close_display(struct glint_sink *sink)
         return;
     finish_flip(kms);
     if (kms->is_shown && kms->home.is_mode_valid) {
-        kms->home.connectors = (uintptr_t)&kms->connector_id;
-        kms->home.n_connectors = 1;
+        kms->home.connectors = kms->crtc.connectors;
+        kms->home.n_connectors = kms->crtc.n_connectors;
         glint_ioctl(kms->fd, KMS_SET_CRTC, &kms->home);
     }
     for (int i = 0; i < 2; i++)
@@ -422,6 +447,19 @@ static void close_display(struct glint_sink *sink)
     glint_panel_close(&kms->panel);
     close(kms->fd);
     kms->fd = -1;
+}
+
+/* Makes glint the one program that draws on the device. Opening it does so if
+ * no other program is. Before version 5.8 the kernel then allows SET_MASTER to
+ * root only, so that the error of AUTH_MAGIC decides: for the value 0, the
+ * master gets EINVAL and others get EACCES. */
+static bool become_master(const struct glint_kms *kms)
+{
+    uint32_t none = 0;
+
+    return ioctl(kms->fd, KMS_SET_MASTER, 0) == 0 ||
+           (errno == EACCES &&
+            glint_ioctl(kms->fd, KMS_AUTH_MAGIC, &none) < 0 && errno == EINVAL);
 }
 
 enum glint_status glint_kms_open(struct glint_kms *kms, const char *connector,
@@ -437,7 +475,7 @@ enum glint_status glint_kms_open(struct glint_kms *kms, const char *connector,
         .n_until_check = CHECK_FRAMES,
     };
     status = find_display(kms, connector, error);
-    if (!status && ioctl(kms->fd, KMS_SET_MASTER, 0) < 0)
+    if (!status && !become_master(kms))
         status = glint_error_report(
             error, GLINT_E_DEVICE, kms->path,
             "another program draws on the display; leave the desktop for a "

@@ -25,6 +25,9 @@
 #include "linux/kms_abi.h"
 #include "panel/panel.h"
 
+/* max number of CRTCs, connectors and encoders that glint reads of each */
+enum { KMS_MAX_IDS = 32 };
+
 struct glint_kms {
     struct glint_sink sink;
     char connector[32]; /* name of the connector, "HDMI-A-1" */
@@ -37,7 +40,8 @@ struct glint_kms {
     enum glint_panel_fit fit;
     char path[32]; /* path of the device */
     int fd;        /* -1: closed */
-    uint32_t connector_id;
+    /* the connectors that show the picture, the one named CONNECTOR first */
+    uint32_t connectors[KMS_MAX_IDS];
     struct kms_crtc crtc; /* what glint shows */
     struct kms_crtc home; /* what was shown before */
     struct glint_kms_buffer {

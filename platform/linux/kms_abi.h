@@ -77,6 +77,7 @@ struct kms_dumb_map {
 };
 
 #define KMS_CAPABILITY   _IOWR('d', 0x0c, struct kms_capability)
+#define KMS_AUTH_MAGIC   _IOW('d', 0x11, uint32_t)
 #define KMS_SET_MASTER   _IO('d', 0x1e)
 #define KMS_RESOURCES    _IOWR('d', 0xa0, struct kms_resources)
 #define KMS_GET_CRTC     _IOWR('d', 0xa1, struct kms_crtc)

@@ -30,6 +30,8 @@ endif
 # Calls that tests answer themselves, or let fail.
 $(OUT)/tests/unit/test_fbdev: LDFLAGS += -Wl,--wrap=open64,--wrap=ioctl \
         -Wl,--wrap=mmap64,--wrap=munmap,--wrap=malloc
+FAKE_DISPLAY := open64 close ioctl mmap64 munmap poll read
+$(OUT)/tests/unit/test_kms: LDFLAGS += $(FAKE_DISPLAY:%=-Wl,--wrap=%)
 $(OUT)/tests/unit/test_output: LDFLAGS += -Wl,--wrap=close
 $(OUT)/tests/unit/test_output_together: LDFLAGS += -Wl,--wrap=realpath
 $(OUT)/tests/unit/test_pool: LDFLAGS += -Wl,--wrap=pthread_create
