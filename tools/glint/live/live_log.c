@@ -277,7 +277,7 @@ void live_log_print_message(const struct live_log *log, const char *text)
 int live_log_print_error(const struct live_log *log, enum glint_status status,
                          const struct glint_error *error, const char *instead)
 {
-    char text[sizeof error->text + 80];
+    char text[sizeof error->text + 112];
 
     if (status != GLINT_E_DEVICE || !instead)
         return tool_fail(log->tool, status, error->text);

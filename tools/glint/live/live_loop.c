@@ -106,10 +106,27 @@ static enum glint_status open_camera(struct live *l, struct glint_error *error)
     return GLINT_OK;
 }
 
+/* Returns, in TEXT, options that replace a missing framebuffer, and also the
+ * camera if there is none; NULL for other outputs. */
+static const char *advise_without_output(const struct live *l, char *text,
+                                         size_t size)
+{
+    const char *const device = l->o->input.camera.device;
+
+    if (l->output.kind != LIVE_OUTPUT_FB)
+        return NULL;
+    if (strncmp(device, "/dev/", 5) != 0 || access(device, F_OK) == 0)
+        return "use -o window, or pipe -o y4m:- into a player";
+    snprintf(text, size, "-d test -o window, as there is no %.40s either",
+             device);
+    return text;
+}
+
 static int open_live_output(struct live *l, const struct glint_image *image)
 {
     struct glint_error error = {""};
     enum glint_status status;
+    char text[96];
 
     if (l->output.sink)
         return EXIT_OK;
@@ -123,11 +140,8 @@ static int open_live_output(struct live *l, const struct glint_image *image)
         l->retry_us = glint_get_time_us() + 1000 * RETRY_MS;
         return EXIT_OK;
     }
-    return live_log_print_error(
-        &l->log, status, &error,
-        l->output.kind == LIVE_OUTPUT_FB
-            ? "use -o window, or pipe -o y4m:- into a player"
-            : NULL);
+    return live_log_print_error(&l->log, status, &error,
+                                advise_without_output(l, text, sizeof text));
 }
 
 /* Applies the current quality step to flare and scene. Returns an exit code. */
