@@ -1,7 +1,7 @@
 # glint - physically based camera effects for small machines.
 #
 #   make          build/glint; needs a C compiler only, and takes in libjpeg,
-#                 jansson and expat where it finds them
+#                 libpng, jansson and expat where it finds them
 #   make TARGET=aarch64|armv7-neon|armv7|armv6-soft|x86_64
 #                 build/TARGET/glint, static;  DYNAMIC=1: build/TARGET-dynamic
 #   make glint-live   build/.../glint-live: the live command alone, for
@@ -71,6 +71,8 @@ sets_armv7-neon := neon
 sets_wasm32 := sse41
 absent := $(foreach s,$(filter-out $(sets_$(ARCH)),sse41 avx2 x86 neon),$(wildcard src/kernels/*_$(s).c src/kernels/*/*_$(s).c))
 absent += platform/jpeg/$(if $(filter yes,$(WITH_JPEG)),absent,mjpeg).c
+absent += platform/formats/still_jpeg$(if $(filter yes,$(WITH_JPEG)),_absent).c platform/formats/still_png$(if $(filter yes,$(WITH_PNG)),_absent).c
+absent += platform/formats/stills_absent.c
 absent += src/bake/motion/$(if $(filter yes,$(WITH_JANSSON)),absent,recording).c
 absent += $(if $(filter yes,$(WITH_JANSSON)),tools/synth/item_absent.c tools/import/json_absent.c,tools/synth/item_json.c tools/import/json.c)
 absent += tools/import/$(if $(filter yes,$(WITH_EXPAT)),openlensflare_absent,openlensflare).c
@@ -88,7 +90,7 @@ platform_o  := $(filter-out $(engine_o),$(call objects,platform,$(PLATFORM)))
 tools_o     := $(call objects,tools,$(TOOLS))
 measure_o   := $(call objects,tools,measure/glint-measure)
 main_o      := $(patsubst %,$(OUT)/tools/glint/%.o,glint glint_live model/models_only scenes/scenes_only)
-LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) \
+LDLIBS := $(if $(filter yes,$(WITH_JPEG)),$(JPEG_LIBS)) $(if $(filter yes,$(WITH_PNG)),$(PNG_LIBS)) \
         $(if $(filter yes,$(WITH_JANSSON)),$(JANSSON_LIBS)) $(if $(filter yes,$(WITH_EXPAT)),$(EXPAT_LIBS)) -lm -lpthread -ldl
 include tools/make/flags.mk
 
@@ -98,7 +100,8 @@ $(OUT)/%.o: %.c
 	$(if $(NOTE),@echo ' $(NOTE)')
 	$(TIDY)
 	$(Q)$(CC) $(CPPFLAGS) -MMD -MP $(CFLAGS) $(ANALYZER) -c $< -o $@
-$(OUT)/platform/jpeg/absent.o: NOTE := MJPEG left out: no libjpeg62-turbo-dev
+$(OUT)/platform/jpeg/absent.o: NOTE := MJPEG and JPEG left out: no libjpeg62-turbo-dev
+$(OUT)/platform/formats/still_png_absent.o: NOTE := PNG left out: no libpng-dev
 $(OUT)/tools/synth/item_absent.o: NOTE := synth --item left out: no libjansson-dev
 $(OUT)/tools/import/json_absent.o: NOTE := lens files of realflare and lentil left out: no libjansson-dev
 $(OUT)/src/bake/motion/absent.o: NOTE := recordings left out: no libjansson-dev
@@ -170,8 +173,9 @@ embed_embed_cxx    = $(if $(findstring clang,$(CC)),clang++,$(CXX)) -std=c++17 -
 
 # The live command alone, for baked models, stripped.
 glint-live: $(OUT)/glint-live
-$(OUT)/glint-live: LDFLAGS += $(if $(filter yes,$(STRIP)),-s) -Wl,--gc-sections
-$(OUT)/glint-live: $(OUT)/tools/glint/glint_live.o $(OUT)/tools/glint/model/models_only.o $(OUT)/tools/glint/scenes/scenes_only.o $(libs)
+$(OUT)/glint-live: LDFLAGS += $(if $(filter yes,$(STRIP)),-s) -Wl,--gc-sections,--as-needed
+$(OUT)/glint-live: $(OUT)/tools/glint/glint_live.o $(OUT)/tools/glint/model/models_only.o $(OUT)/tools/glint/scenes/scenes_only.o \
+        $(OUT)/platform/formats/stills_absent.o $(libs)
 	$(link)
 
 # The image plug-in, the only C++: PNG, JPEG, EXR ... through OpenImageIO.

@@ -46,8 +46,8 @@ struct glint_oiio_facts {
     int cicp[2]; /* codes of primaries and transfer [ITU-T H.273]; 0, 0: none */
     int quality; /* quality of a JPEG, 1 .. 100, estimated from its quantisation
                     tables; 0: unknown */
-    const char *metadata; /* metadata that the file has: "Exif", "XMP", "Exif
-                             and XMP" or "" */
+    const char *metadata; /* metadata that the file has, for messages: "Exif",
+                             "Exif and XMP" ..., or "" */
     /* Text that lists content that glint cannot preserve, or "". */
     char note[160];
 };

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "formats/stills.h"
 #include "glint/options.h"
 #include "posix/ending.h"
 #include "posix/error.h"
@@ -159,6 +160,20 @@ static enum glint_status report_type_needs_plugin(const char *path,
                               cause.text);
 }
 
+/* Sets OIIO to the functions that read or write files of TYPE, a name or a path
+ * with its extension: those of the image plug-in or, if it is missing, those of
+ * the libraries that are built in. */
+static enum glint_status find_functions(const struct glint_oiio **oiio,
+                                        const char *type, const char *path,
+                                        struct glint_error *error)
+{
+    const enum glint_status status = glint_oiio_load(oiio, error);
+
+    if (status)
+        *oiio = glint_stills_find(type);
+    return *oiio ? GLINT_OK : report_type_needs_plugin(path, type, error);
+}
+
 static enum glint_status load_picture_by_plugin(struct loaded *loaded,
                                                 const char *path,
                                                 const char *type,
@@ -166,10 +181,10 @@ static enum glint_status load_picture_by_plugin(struct loaded *loaded,
 {
     const struct glint_oiio *oiio;
     struct glint_oiio_pixels pixels;
-    enum glint_status status = glint_oiio_load(&oiio, error);
+    enum glint_status status = find_functions(&oiio, type, path, error);
 
     if (status)
-        return report_type_needs_plugin(path, type, error);
+        return status;
     status = oiio->read(&pixels, path, error);
     if (status)
         return status;
@@ -437,9 +452,9 @@ enum glint_status glint_picture_check(const char *path,
                                   "%s holds 8-bit codes, and this picture has "
                                   "linear light in floats",
                                   type->extension);
-    if (!type->is_native && glint_oiio_load(&oiio, error))
-        return report_type_needs_plugin(path, type->extension, error);
-    return GLINT_OK;
+    return type->is_native
+               ? GLINT_OK
+               : find_functions(&oiio, type->extension, path, error);
 }
 
 static enum glint_status
@@ -448,7 +463,8 @@ write_picture_by_plugin(struct glint_output *out,
                         ptrdiff_t stride_bytes, struct glint_error *error)
 {
     const struct glint_oiio *oiio;
-    enum glint_status status = glint_oiio_load(&oiio, error);
+    enum glint_status status =
+        find_functions(&oiio, out->name, out->name, error);
     void *data;
     size_t bytes;
 
@@ -744,10 +760,10 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
 {
     struct glint_oiio_facts facts;
     const struct glint_oiio *oiio;
-    enum glint_status status = glint_oiio_load(&oiio, error);
+    enum glint_status status = find_functions(&oiio, type, k->path, error);
 
     if (status)
-        return report_type_needs_plugin(k->path, type, error);
+        return status;
     status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
     if (status)
         return status;
@@ -821,8 +837,8 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
             ".tif");
     if (type->is_native)
         return GLINT_OK;
-    if (glint_oiio_load(&oiio, error))
-        return report_type_needs_plugin(path, type->extension, error);
+    if (find_functions(&oiio, type->extension, path, error))
+        return GLINT_E_UNSUPPORTED;
     if (!oiio->can_write(path))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
                                   "the installed OpenImageIO does not write "
@@ -1008,7 +1024,8 @@ write_kept(struct glint_kept *k, struct glint_output *out,
     struct glint_oiio_options how = {.quality = options->quality,
                                      .drop_colours = !keeps_colours};
     const struct glint_oiio *oiio;
-    enum glint_status status = glint_oiio_load(&oiio, error);
+    enum glint_status status =
+        find_functions(&oiio, out->name, out->name, error);
     void *data;
     size_t bytes;
 

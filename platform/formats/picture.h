@@ -8,9 +8,10 @@
  *     glint_picture_free(&image);
  *
  * glint reads and writes PPM, PGM and PFM itself, and all other types through
- * its image plug-in (formats/oiio.h). Loading detects the type by the content
- * of the file, saving by the extension. "-" is a pipe: loading reads PPM, PGM
- * or PFM; saving writes PPM, or PFM for floats.
+ * its image plug-in (formats/oiio.h). Without the plug-in, PNG and JPEG are
+ * read and written by their libraries (formats/stills.h). Loading detects the
+ * type by the content of the file, saving by the extension. "-" is a pipe:
+ * loading reads PPM, PGM or PFM; saving writes PPM, or PFM for floats.
  *
  * A picture has 8-bit codes or floats. Loading converts between them by the
  * sRGB curve if needed; saving never does:

@@ -23,7 +23,7 @@ static const char help[] =
     "glint overlay IN... -o OUT [options]\n"
     "\n"
     "Adds the flare of a lens to IN, in linear light:\n"
-    "  a picture         .ppm; with the image plug-in .png .jpg and more\n"
+    "  a picture         .ppm .png .jpg; with the image plug-in more\n"
     "  a sequence        frames/%04d.ppm -> out/%04d.ppm: all numbers that "
     "exist,\n"
     "                    unless a file has this very name; gaps are reported\n"

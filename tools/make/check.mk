@@ -66,7 +66,7 @@ $(hostile_models): $(OUT)/%: $(OUT)/tests/fuzz/%.o $(OUT)/libglint-tests.a $(ref
 	$(link)
 
 CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-config \
-        libjpeg62-turbo-dev libjansson-dev libexpat1-dev
+        libjpeg62-turbo-dev libpng-dev libjansson-dev libexpat1-dev
 check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check
@@ -129,7 +129,7 @@ VALGRIND := $(filter arena kernels model transfer curve resolve lamp_finder flar
         picture bright match lamps mjpeg config prescription trace,$(UNIT))
 check-valgrind:
 	@tools/make/deps "memory checks" gcc libc6-dev valgrind libcmocka-dev \
-	        libjpeg62-turbo-dev libjansson-dev libexpat1-dev
+	        libjpeg62-turbo-dev libpng-dev libjansson-dev libexpat1-dev
 	@$(MAKE) --no-print-directory WERROR=-Werror run-valgrind
 run-valgrind: $(VALGRIND:%=$(OUT)/valgrind/unit/test_%) \
         $(FUZZERS:%=$(OUT)/valgrind/fuzz/replay_%)

@@ -29,7 +29,7 @@ install: install-library install-programs $(if $(filter yes,$(PLUGIN)),build/gli
 	install -d $(libdir)/glint
 	install -m 644 tests/data/bridge.$(if $(filter yes,$(PLUGIN)),jpg,ppm) $(to)/share/glint
 	$(if $(filter yes,$(PLUGIN)),install $(strip_too) -m 755 build/glint-oiio.so $(libdir)/glint, \
-	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM and y4m')
+	        @echo 'without the image plug-in (g++, pkg-config, libopenimageio-dev): PPM, PFM, y4m, and PNG and JPEG by their libraries')
 	$(if $(filter yes,$(MESHES)),install $(strip_too) -m 755 build/glint-assimp.so $(libdir)/glint, \
 	        @echo 'without the mesh plug-in (pkg-config, libassimp-dev): OBJ')
 	$(if $(filter yes,$(WINDOW)),install $(strip_too) -m 755 build/glint-sdl.so $(libdir)/glint)

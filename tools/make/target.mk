@@ -59,6 +59,8 @@ SECTIONS := -ffunction-sections -fdata-sections
 LDFLAGS += -Wl,--gc-sections
 JPEG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JPEG_LIBS     := $(SYSROOT:%=-L%/lib) -ljpeg
+PNG_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
+PNG_LIBS     := $(SYSROOT:%=-L%/lib) -lpng -lz -lm
 JANSSON_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
 JANSSON_LIBS     := $(SYSROOT:%=-L%/lib) -ljansson
 EXPAT_CPPFLAGS := $(SYSROOT:%=-isystem %/include)
@@ -79,6 +81,10 @@ has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { 
 JPEG_LIBS ?= -ljpeg
 ifndef WITH_JPEG
 WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS),$(JPEG_LIBS))
+endif
+PNG_LIBS ?= -lpng
+ifndef WITH_PNG
+WITH_PNG := $(call has,png.h,$(PNG_CPPFLAGS),$(PNG_LIBS))
 endif
 JANSSON_LIBS ?= -ljansson
 ifndef WITH_JANSSON

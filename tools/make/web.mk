@@ -22,7 +22,7 @@ npm:
 # The module alone. Objects of another machine, as those of boards.
 wasm:
 	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi -msimd128' OUT=build/wasm32 LDFLAGS=-static \
-	        WITH_JPEG=no WITH_JANSSON=no WITH_EXPAT=no $(wasm) $(wasm_tests)
+	        WITH_JPEG=no WITH_PNG=no WITH_JANSSON=no WITH_EXPAT=no $(wasm) $(wasm_tests)
 # Pictures of the module are those of the program.
 check-web: build/glint
 	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs node-typescript

@@ -149,8 +149,7 @@ TEST(rejects_invalid_files)
     /* This check is impossible if the plug-in is already loaded. */
     if (!stated) {
         setenv("GLINT_OIIO", "/nowhere/glint-oiio.so", 1);
-        check_file_is_rejected(GLINT_E_UNSUPPORTED, BYTES("\x89PNG"),
-                               "plug-in");
+        check_file_is_rejected(GLINT_E_UNSUPPORTED, BYTES("GIF89a"), "plug-in");
         unsetenv("GLINT_OIIO");
     }
 }

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+#include "formats/still_codec.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "glint/image.h"
+#include "posix/error.h"
+
+void glint_still_append(struct still_bytes *to, const void *bytes, size_t n)
+{
+    uint8_t *more;
+
+    if (to->n + n > to->room && !to->is_short) {
+        to->room = 2 * (to->n + n);
+        more = realloc(to->mem, to->room);
+        to->is_short = !more;
+        if (more)
+            to->mem = more;
+    }
+    if (to->is_short)
+        return;
+    memcpy(to->mem + to->n, bytes, n);
+    to->n += n;
+}
+
+void glint_still_note_rest(struct still_file *file, size_t bytes)
+{
+    if (bytes > 0 && !*file->note)
+        snprintf(file->note, sizeof file->note,
+                 "%zu bytes behind its picture are dropped", bytes);
+}
+
+enum glint_status glint_still_allocate(struct still_file *file,
+                                       struct glint_error *error)
+{
+    struct still_pixels *const p = &file->pixels;
+
+    if (p->width < 1 || p->width > GLINT_MAX_SIDE || p->height < 1 ||
+        p->height > GLINT_MAX_SIDE)
+        return glint_error_report(error, GLINT_E_UNSUPPORTED, file->path,
+                                  "larger than %d pixels a side",
+                                  GLINT_MAX_SIDE);
+    p->mem = calloc((size_t)p->width * (size_t)p->height,
+                    (size_t)p->channels * (size_t)p->sample_bytes);
+    return p->mem ? GLINT_OK
+                  : glint_error_report(error, GLINT_E_MEMORY, file->path,
+                                       "not enough memory for the picture");
+}

@@ -1,0 +1,315 @@
+/* SPDX-License-Identifier: MIT */
+#include "formats/still_codec.h"
+
+#include <setjmp.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include "posix/error.h"
+
+enum { APP0 = 0xe0, COMMENT = 0xfe, SOS = 0xda };
+
+static const char exif_head[6] = "Exif\0";
+
+/* A call of libjpeg: an error leaves it by a jump to ESCAPE. */
+struct call {
+    struct jpeg_decompress_struct in;
+    struct jpeg_compress_struct out;
+    struct jpeg_error_mgr errors;
+    jmp_buf escape;
+    enum glint_status status;
+    struct glint_error *error;
+    const char *path;
+    char *note; /* of the file that is read, or NULL */
+    unsigned char *made;
+    unsigned long made_bytes;
+};
+
+static void leave_libjpeg(struct call *c, enum glint_status status,
+                          const char *cause)
+{
+    c->status = glint_error_report(c->error, status, c->path, "%s", cause);
+    longjmp(c->escape, 1);
+}
+
+static void on_error(j_common_ptr jpeg)
+{
+    struct call *const c = jpeg->client_data;
+    char text[JMSG_LENGTH_MAX];
+
+    jpeg->err->format_message(jpeg, text);
+    leave_libjpeg(c,
+                  jpeg->err->msg_code == JERR_OUT_OF_MEMORY ? GLINT_E_MEMORY
+                  : !jpeg->is_decompressor                  ? GLINT_E_OUTPUT
+                                                            : GLINT_E_FORMAT,
+                  text);
+}
+
+/* Messages with LEVEL >= 0 are not warnings. */
+static void on_message(j_common_ptr jpeg, int level)
+{
+    struct call *const c = jpeg->client_data;
+    char text[JMSG_LENGTH_MAX];
+
+    if (level >= 0 || !c->note || *c->note)
+        return;
+    if (jpeg->err->msg_code == JWRN_JPEG_EOF)
+        leave_libjpeg(c, GLINT_E_FORMAT,
+                      "is cut off: its end marker is missing");
+    jpeg->err->format_message(jpeg, text);
+    snprintf(c->note, STILL_NOTE_BYTES, "%.100s", text);
+}
+
+static void on_output(j_common_ptr jpeg)
+{
+    (void)jpeg;
+}
+
+static void init_call(struct call *c, const char *path,
+                      struct glint_error *error)
+{
+    memset(c, 0, sizeof *c);
+    c->path = path;
+    c->error = error;
+    c->in.err = c->out.err = jpeg_std_error(&c->errors);
+    c->in.client_data = c->out.client_data = c;
+    c->errors.error_exit = on_error;
+    c->errors.emit_message = on_message;
+    c->errors.output_message = on_output;
+}
+
+/* ----------------------------------------------------------------- reading */
+
+static void start_reading(struct call *c, const struct still_file *file)
+{
+    jpeg_create_decompress(&c->in);
+    jpeg_mem_src(&c->in, file->data, file->bytes);
+    jpeg_save_markers(&c->in, JPEG_APP0 + 2, 0xffff); /* ICC profile */
+    jpeg_read_header(&c->in, TRUE);
+}
+
+static void read_rows(struct call *c, struct still_file *file)
+{
+    struct still_pixels *const p = &file->pixels;
+    unsigned n_icc = 0;
+
+    start_reading(c, file);
+    if (c->in.num_components != 1 && c->in.num_components != 3)
+        leave_libjpeg(c, GLINT_E_UNSUPPORTED,
+                      "CMYK needs glint's image plug-in (OpenImageIO)");
+    c->in.out_color_space = c->in.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    *p = (struct still_pixels){.width = (int)c->in.image_width,
+                               .height = (int)c->in.image_height,
+                               .channels = c->in.num_components,
+                               .sample_bytes = 1};
+    c->status = glint_still_allocate(file, c->error);
+    if (c->status)
+        longjmp(c->escape, 1);
+    if (jpeg_read_icc_profile(&c->in, &file->icc, &n_icc))
+        file->icc_bytes = n_icc;
+    jpeg_start_decompress(&c->in);
+    while (c->in.output_scanline < c->in.output_height) {
+        JSAMPROW row = p->mem + (size_t)c->in.output_scanline *
+                                    (size_t)p->width * (size_t)p->channels;
+
+        jpeg_read_scanlines(&c->in, &row, 1);
+    }
+    jpeg_finish_decompress(&c->in);
+}
+
+static enum glint_status decode(struct still_file *file,
+                                struct glint_error *error)
+{
+    struct call c;
+
+    init_call(&c, file->path, error);
+    c.note = file->note;
+    if (setjmp(c.escape)) {
+        jpeg_destroy_decompress(&c.in);
+        return c.status;
+    }
+    read_rows(&c, file);
+    glint_still_note_rest(file, c.in.src->bytes_in_buffer);
+    jpeg_destroy_decompress(&c.in);
+    return GLINT_OK;
+}
+
+/* ----------------------------------------------------------------- writing */
+
+/* Sets quality and subsampling, those of the file LIKE if it is not NULL. */
+static void set_coding(struct call *c, const struct still_source *from)
+{
+    if (from->quality || !from->like)
+        jpeg_set_quality(&c->out, from->quality ? from->quality : 95, TRUE);
+    if (!from->like)
+        return;
+    c->out.write_JFIF_header = FALSE; /* that of LIKE will be added */
+    start_reading(c, from->like);
+    for (int i = 0; i < c->out.num_components; i++) {
+        c->out.comp_info[i].h_samp_factor = c->in.comp_info[i].h_samp_factor;
+        c->out.comp_info[i].v_samp_factor = c->in.comp_info[i].v_samp_factor;
+        if (!from->quality)
+            c->out.comp_info[i].quant_tbl_no = c->in.comp_info[i].quant_tbl_no;
+    }
+    for (int i = 0; i < NUM_QUANT_TBLS && !from->quality; i++)
+        if (c->in.quant_tbl_ptrs[i]) {
+            if (!c->out.quant_tbl_ptrs[i])
+                c->out.quant_tbl_ptrs[i] =
+                    jpeg_alloc_quant_table((j_common_ptr)&c->out);
+            *c->out.quant_tbl_ptrs[i] = *c->in.quant_tbl_ptrs[i];
+            c->out.quant_tbl_ptrs[i]->sent_table = FALSE;
+        }
+    if (c->in.progressive_mode)
+        jpeg_simple_progression(&c->out);
+}
+
+static void write_exif(struct call *c, const struct still_source *from)
+{
+    jpeg_write_m_header(&c->out, JPEG_APP0 + 1,
+                        (unsigned)(sizeof exif_head + from->exif_bytes));
+    for (size_t i = 0; i < sizeof exif_head; i++)
+        jpeg_write_m_byte(&c->out, exif_head[i]);
+    for (size_t i = 0; i < from->exif_bytes; i++)
+        jpeg_write_m_byte(&c->out, from->exif[i]);
+}
+
+static void write_file(struct call *c, const struct still_source *from)
+{
+    const struct still_pixels *const p = from->pixels;
+
+    jpeg_create_compress(&c->out);
+    jpeg_mem_dest(&c->out, &c->made, &c->made_bytes);
+    c->out.image_width = (JDIMENSION)p->width;
+    c->out.image_height = (JDIMENSION)p->height;
+    c->out.input_components = p->channels;
+    c->out.in_color_space = p->channels == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_set_defaults(&c->out);
+    set_coding(c, from);
+    jpeg_start_compress(&c->out, TRUE);
+    if (from->exif)
+        write_exif(c, from);
+    if (from->icc)
+        jpeg_write_icc_profile(&c->out, from->icc, (unsigned)from->icc_bytes);
+    while (c->out.next_scanline < c->out.image_height) {
+        JSAMPROW row = p->mem + (size_t)c->out.next_scanline *
+                                    (size_t)p->width * (size_t)p->channels;
+
+        jpeg_write_scanlines(&c->out, &row, 1);
+    }
+    jpeg_finish_compress(&c->out);
+}
+
+static enum glint_status encode(struct still_bytes *to, const char *path,
+                                const struct still_source *from,
+                                struct glint_error *error)
+{
+    struct call c;
+
+    init_call(&c, path, error);
+    if (setjmp(c.escape) == 0) {
+        write_file(&c, from);
+        glint_still_append(to, c.made, c.made_bytes);
+    }
+    jpeg_destroy_decompress(&c.in);
+    jpeg_destroy_compress(&c.out);
+    free(c.made);
+    return c.status;
+}
+
+/* ---------------------------------------------------------------- segments */
+
+static bool next_piece(struct still_piece *piece, const uint8_t *data,
+                       size_t bytes, size_t *at)
+{
+    size_t i = *at ? *at : 2, n;
+
+    /* Bytes 0xff in front of a marker, which itself begins with 0xff, are
+     * padding. */
+    while (i + 4 <= bytes && data[i] == 0xff && data[i + 1] == 0xff)
+        i++;
+    if (i + 4 > bytes || data[i] != 0xff)
+        return false;
+    n = data[i + 1] == SOS ? bytes - i - 2
+                           : (size_t)data[i + 2] << 8 | data[i + 3];
+    if (n < 2 || n + 2 > bytes - i)
+        return false;
+    *piece = (struct still_piece){.marker = data[i + 1],
+                                  .whole = data + i,
+                                  .whole_bytes = n + 2,
+                                  .data = data + i + 4,
+                                  .data_bytes = n - 2};
+    *at = i + n + 2;
+    return true;
+}
+
+static bool begins_with(const struct still_piece *piece, const char *text,
+                        size_t n)
+{
+    return piece->data_bytes >= n && memcmp(piece->data, text, n) == 0;
+}
+
+static bool contains(const struct still_piece *piece, const char *text)
+{
+    const size_t n = strlen(text);
+
+    for (size_t i = 0; i + n <= piece->data_bytes; i++)
+        if (memcmp(piece->data + i, text, n) == 0)
+            return true;
+    return false;
+}
+
+/* Returns the content of a segment APP1, of which XMP may describe pictures and
+ * videos behind the first picture. */
+static enum still_content classify_app1(const struct still_piece *piece)
+{
+    if (begins_with(piece, exif_head, sizeof exif_head))
+        return STILL_EXIF;
+    return contains(piece, "hdrgm:") || contains(piece, "Container:Item") ||
+                   contains(piece, "Camera:MotionPhoto") ||
+                   contains(piece, "Camera:MicroVideo")
+               ? STILL_EXTRA
+               : STILL_OTHER;
+}
+
+static enum still_content classify(const struct still_piece *piece)
+{
+    switch (piece->marker) {
+    case APP0: /* JFIF states Y'CbCr; it may state a resolution, in inches or
+                  cm, or have a preview */
+        return begins_with(piece, "JFIF", 5) && piece->data_bytes == 14 &&
+                       piece->data[7] == 0
+                   ? STILL_COLOURS
+                   : STILL_OTHER;
+    case APP0 + 1:
+        return classify_app1(piece);
+    case APP0 + 2:
+        return begins_with(piece, "ICC_PROFILE", 12) ? STILL_COLOURS
+               : begins_with(piece, "MPF", 4) ||
+                       begins_with(piece, "urn:iso:std:iso:ts:21496:-1", 28)
+                   ? STILL_EXTRA
+                   : STILL_OTHER;
+    case APP0 + 14: /* Adobe's: how the pixels are coded */
+        return STILL_CODING;
+    }
+    return (piece->marker > APP0 && piece->marker <= APP0 + 15) ||
+                   piece->marker == COMMENT
+               ? STILL_OTHER
+               : STILL_CODING;
+}
+
+const struct still_codec glint_still_jpeg = {
+    .type = "JPEG",
+    .extensions = {".jpg", ".jpeg"},
+    .decode = decode,
+    .encode = encode,
+    .next_piece = next_piece,
+    .classify = classify,
+    .head_bytes = 2,
+    .exif_head_bytes = sizeof exif_head,
+    .exif_max_bytes = 65533 - sizeof exif_head,
+};
