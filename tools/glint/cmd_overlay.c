@@ -424,17 +424,16 @@ static void disable_bake_and_metering(struct settings *s)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
-/* Returns how to draw with a lens that has no model. A single picture is drawn
- * by exact rays unless an option needs a model. A video and several pictures
- * need a model, which is baked when a lamp is detected, unless an option needs
- * it before. */
+/* Returns how to draw with a lens that has no model. A picture is drawn by
+ * exact rays unless an option needs a model. A video or sequence needs a model,
+ * which is baked when a lamp is detected, unless an option needs it before. */
 static enum settings_unbaked
 choose_rendering_without_model(const struct overlay *o)
 {
     const struct settings *const s = &o->drawing.line.settings;
     const struct glint_options *const of = &s->options;
 
-    if (!o->is_one_of_many && !o->is_video && !overlay_is_sequence(o) &&
+    if (!o->is_video && !overlay_is_sequence(o) &&
         settings_choose_method_without_model(s) == SETTINGS_TRACE)
         return SETTINGS_TRACE;
     return of->keys || of->control || of->scene || of->budget > 0 ||
@@ -480,10 +479,9 @@ static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
 /* ------------------------------------------------------------------ folders */
 
 /* Parses a command line and adds the flare to its input.
- * add_flare_to_inputs_of_folder() calls it for each of N inputs. OUTPUT: see
+ * add_flare_to_inputs_of_folder() calls it for each input. OUTPUT: see
  * parse_options_and_inputs(). */
-static int run_overlay_command_line(int argc, char **argv, const char *output,
-                                    int n);
+static int run_overlay_command_line(int argc, char **argv, const char *output);
 
 /* Adds flares to the N inputs ARGV[FIRST] on and writes each to FOLDER under
  * its own name. A failed input does not stop the others, unless the command
@@ -508,7 +506,7 @@ static int add_flare_to_inputs_of_folder(const struct tool *tool, char **argv,
         line[first] = argv[first + i];
         optind = 0;
         if (folder_make_output_path(path, folder, argv[first + i]))
-            one = run_overlay_command_line(first + 1, line, path, n);
+            one = run_overlay_command_line(first + 1, line, path);
         else
             tool_error(tool, "%s: the name is too long", argv[first + i]);
         done += one == EXIT_OK;
@@ -527,8 +525,7 @@ static int add_flare_to_inputs_of_folder(const struct tool *tool, char **argv,
     return code;
 }
 
-static int run_overlay_command_line(int argc, char **argv, const char *output,
-                                    int n)
+static int run_overlay_command_line(int argc, char **argv, const char *output)
 {
     struct tool tool = {
         .name = "overlay", .help = help, .help_end = COMMON_HELP};
@@ -541,7 +538,6 @@ static int run_overlay_command_line(int argc, char **argv, const char *output,
     drawing_line_set_defaults(&o->drawing.line);
     o->start_number = o->transfer = -1;
     o->last = o->warm_up = INT_MAX;
-    o->is_one_of_many = n > 1;
     code = parse_options_and_inputs(&tool, argc, argv, o, output, &folder);
     if (code < 0 && folder)
         code = add_flare_to_inputs_of_folder(&tool, argv, optind, argc - optind,
@@ -561,5 +557,5 @@ static int run_overlay_command_line(int argc, char **argv, const char *output,
 
 int cmd_overlay(int argc, char **argv)
 {
-    return run_overlay_command_line(argc, argv, NULL, 1);
+    return run_overlay_command_line(argc, argv, NULL);
 }

@@ -61,8 +61,6 @@ struct overlay {
     bool lists_shots;
     /* whether tracking and exposure restarted in the last frame */
     bool is_cut;
-    /* whether the input is one of several, which use the same model */
-    bool is_one_of_many;
     /* whether the file was copied because nothing was drawn */
     bool is_copied;
     struct layers layers;
