@@ -208,7 +208,8 @@ struct glint_light_at {
     double xy[2];
     bool is_percent[2];
     bool has_ev; /* whether the text sets the power */
-    double ev;   /* power, stops above a white pixel */
+    double ev;   /* power, stops above a white pixel; -INFINITY: "off", which
+                    removes the lamp found there */
 };
 bool glint_option_light_at(const char *text, struct glint_light_at *at);
 

@@ -133,6 +133,10 @@ bool glint_option_light_at(const char *text, struct glint_light_at *at)
             return false;
     }
     at->has_ev = *text == ',';
+    if (strcmp(text, ",off") == 0) {
+        at->ev = -INFINITY;
+        return true;
+    }
     return at->has_ev ? glint_option_numbers(text + 1, &at->ev, 1) == 1 &&
                             at->ev >= -40 && at->ev <= 90
                       : *text == '\0';

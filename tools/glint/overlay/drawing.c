@@ -496,6 +496,29 @@ static bool is_lamp_replaced(const struct drawing *d,
     return false;
 }
 
+/* Returns whether lamp K of --light-at is X,Y,off. */
+static bool is_off(const struct drawing *d, int k)
+{
+    return k < d->line.n_at && isinf(d->line.at[k].ev);
+}
+
+/* Returns whether X,Y,off of --light-at removes the detected lamp ID. */
+static bool is_lamp_removed(const struct drawing *d, uint32_t id)
+{
+    for (int k = 0; k < d->line.n_at; k++)
+        if (is_off(d, k) && d->run.at[k].id == id)
+            return true;
+    return false;
+}
+
+int drawing_find_removal(const struct drawing *drawing, bool is_found)
+{
+    for (int k = 0; k < drawing->line.n_at; k++)
+        if (is_off(drawing, k) && (drawing->run.at[k].id != 0) == is_found)
+            return k;
+    return -1;
+}
+
 /* If a candidate is at the position of GIVEN, a lamp of --light-at, gives GIVEN
  * the candidate's centre, colour and extent. */
 static void snap_to_candidate(const struct drawing *d,
@@ -594,8 +617,9 @@ static void set_powers_at_pixels(struct drawing *d)
 }
 
 /* Inserts the lamps detected in IMAGE before the N user-defined lamps of RUN.
- * Omits user-defined lamps that follow a detected lamp, and detected lamps at
- * the position of another user-defined lamp. Returns the total number. */
+ * Omits user-defined lamps that follow a detected lamp or are off, and detected
+ * lamps that are removed or at the position of another user-defined lamp.
+ * Returns the total number. */
 static int add_found_lamps(struct drawing *d, const struct glint_image *image,
                            int32_t elapsed_us, int n)
 {
@@ -610,11 +634,12 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
     follow_detected_lamps(d, elapsed_us > 0, lamp, n_found, given, n);
     run->n_found = 0;
     for (int i = 0; i < n_found; i++)
-        if (!is_lamp_replaced(d, &lamp[i], given, n))
+        if (!is_lamp_replaced(d, &lamp[i], given, n) &&
+            !is_lamp_removed(d, lamp[i].id))
             lamp[run->n_found++] = lamp[i];
     n_all = run->n_found;
     for (int i = 0; i < n; i++) {
-        if (given[i].id != 0)
+        if (given[i].id != 0 || is_off(d, i))
             continue;
         if (i < d->line.n_at)
             snap_to_candidate(d, &given[i]);

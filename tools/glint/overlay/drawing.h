@@ -144,6 +144,10 @@ bool drawing_searches_picture(const struct drawing *drawing);
 bool drawing_get_candidate(const struct drawing *drawing, int i,
                            struct glint_spot *spot);
 
+/* Returns the index of an X,Y,off of --light-at at which a lamp was found in
+ * the last picture, or none if not IS_FOUND; -1: there is no such option. */
+int drawing_find_removal(const struct drawing *drawing, bool is_found);
+
 /* Draws on IMAGE the marks of lamps and candidates and the time line of a
  * recorded motion, as far as the options request them. */
 void drawing_draw_marks(const struct drawing *drawing,

@@ -303,6 +303,22 @@ static void set_file_names(const struct drawing_line *line,
     f->scene.is_live = line->is_live;
 }
 
+/* Rejects --light-at X,Y,off if no lamps are searched for, of which it could
+ * remove one. */
+static int check_removed_lamps(const struct tool *tool,
+                               const struct drawing_line *line)
+{
+    const bool is_listed = line->settings.options.lights || line->is_unsearched;
+
+    for (int i = 0; i < line->n_at && (is_listed || line->n_hand > 0); i++)
+        if (isinf(line->at[i].ev))
+            return tool_usage(tool,
+                              "--light-at X,Y,off removes a lamp found in the "
+                              "picture, and %s searches for none",
+                              is_listed ? "--lights" : "--light");
+    return EXIT_OK;
+}
+
 int drawing_files_open(const struct tool *tool, struct drawing_line *line,
                        struct drawing_files *files)
 {
@@ -312,7 +328,9 @@ int drawing_files_open(const struct tool *tool, struct drawing_line *line,
     int code;
 
     set_file_names(line, files);
-    code = open_key_file(tool, line, files);
+    code = check_removed_lamps(tool, line);
+    if (code == EXIT_OK)
+        code = open_key_file(tool, line, files);
     if (code == EXIT_OK)
         code = check_table_zoom_keys(tool, line, files);
     if (code == EXIT_OK)

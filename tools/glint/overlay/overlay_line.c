@@ -296,7 +296,9 @@ void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
         drawing->run.n_frames <= 1 && drawing_get_candidate(drawing, 0, &next);
 
     fprintf(to, "no light was %s, so %s was drawn%s; ",
-            is_searched ? "found" : "given",
+            !is_searched                               ? "given"
+            : drawing_find_removal(drawing, true) >= 0 ? "left"
+                                                       : "found",
             describe_picture_without_lamps(drawing),
             is_copied ? " and the file was copied" : "");
     if (is_next)
@@ -311,7 +313,37 @@ void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
     fputc('\n', to);
 }
 
-/* Prints how many lamps --show lights marked, and the candidates. */
+/* Prints the --light-at options that remove the lamps found, one each. */
+static void print_removals(const struct drawing *drawing, FILE *to)
+{
+    const struct drawing_run *const run = &drawing->run;
+
+    fprintf(to, "; to remove %s:", run->n_found == 1 ? "it" : "one");
+    for (int i = 0; i < run->n_found; i++)
+        fprintf(to, " --light-at %.0f,%.0f,off",
+                run->lamp[i].track.x_q8 / 256.0,
+                run->lamp[i].track.y_q8 / 256.0);
+}
+
+/* Prints a warning if X,Y,off of --light-at removed no lamp of a picture. */
+static void print_idle_removal(const struct overlay *o, FILE *to)
+{
+    const struct drawing *const drawing = &o->drawing;
+    const int k =
+        drawing->run.n_frames == 1 ? drawing_find_removal(drawing, false) : -1;
+
+    if (k >= 0)
+        fprintf(to,
+                "%s: no lamp was found at %g%s,%g%s, so --light-at removed "
+                "none there; --show lights lists the lamps\n",
+                o->output, drawing->line.at[k].xy[0],
+                drawing->line.at[k].is_percent[0] ? "%" : "",
+                drawing->line.at[k].xy[1],
+                drawing->line.at[k].is_percent[1] ? "%" : "");
+}
+
+/* Prints how many lamps --show lights marked, the options that remove them, and
+ * the candidates. */
 static void print_marked_lamps(const struct overlay *o, FILE *to)
 {
     const struct drawing *const drawing = &o->drawing;
@@ -319,6 +351,8 @@ static void print_marked_lamps(const struct overlay *o, FILE *to)
 
     print_lights(drawing, o->figures.most_lights, to);
     fputs(o->figures.most_lights == 1 ? ", marked" : ", all marked", to);
+    if (drawing->run.n_frames <= 1 && drawing->run.n_found > 0)
+        print_removals(drawing, to);
     if (drawing->run.n_frames <= 1 &&
         drawing_get_candidate(drawing, 0, &next)) {
         fputs("; ", to);
@@ -334,6 +368,7 @@ void overlay_print_summary(const struct overlay *o,
     const double seconds = tool_clock_s() - o->figures.started;
     const int n = overlay_count_frames(o);
 
+    print_idle_removal(o, to);
     fprintf(to, "%s: ", o->output);
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
