@@ -770,6 +770,8 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
     k->oiio = oiio;
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
     k->metadata = facts.metadata;
+    k->f_number = facts.f_number;
+    k->focal_mm = facts.focal_mm;
     if (*facts.note)
         append_to_notes(k->note, facts.note);
     set_colours_of_file(k, &facts);

@@ -48,6 +48,8 @@ struct glint_kept {
     /* Text that lists content of the file that glint does not know or cannot
      * preserve, or "". */
     char note[GLINT_KEPT_NOTES];
+    /* camera settings, as in glint_oiio_facts */
+    double f_number, focal_mm;
 
     /* Private. */
     const char *path;

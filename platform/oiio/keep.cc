@@ -586,6 +586,26 @@ void describe_png_in_facts(struct glint_oiio_facts &facts, const bytes &whole)
         facts.primaries[(i / 2 + 3) % 4][i % 2] = read_big32(primaries, 4 * i);
 }
 
+/* A lens of a shorter focal length, mm, is that of a sensor much smaller than
+ * 35 mm film. */
+constexpr double least_lens_mm = 15;
+
+void describe_camera_in_facts(struct glint_oiio_facts &facts,
+                              const ImageSpec &spec)
+{
+    const auto get = [&](const char *name) {
+        return static_cast<double>(spec.get_float_attribute(name, 0));
+    };
+    const double lens_mm = get("Exif:FocalLength");
+    const double film_mm = get("Exif:FocalLengthIn35mmFilm");
+
+    if (!(film_mm > 0) && !(lens_mm >= least_lens_mm))
+        return;
+    facts.focal_mm = film_mm > 0 ? film_mm : lens_mm;
+    facts.f_number =
+        get("FNumber") * (lens_mm > 0 && film_mm > 0 ? film_mm / lens_mm : 1);
+}
+
 void append_note(char (&notes)[160], const char *text)
 {
     const size_t used = std::strlen(notes);
@@ -620,6 +640,7 @@ void describe_file_in_facts(struct glint_oiio_facts &facts,
     }
     std::snprintf(facts.colour_space, sizeof facts.colour_space, "%s",
                   spec.get_string_attribute("oiio:ColorSpace").c_str());
+    describe_camera_in_facts(facts, spec);
     if (file.type == "png")
         describe_png_in_facts(facts, file.whole);
     if (file.type == "jpeg") {

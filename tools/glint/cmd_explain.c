@@ -371,6 +371,19 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
     return file_conflicts_check_outputs(tool, &files);
 }
 
+/* Sets the lens to the camera of the input, as overlay does. An input that is
+ * not a picture is reported later. */
+static void follow_input_photo(struct explain_command *c)
+{
+    struct glint_error error;
+    struct glint_kept kept;
+
+    if (!c->input || glint_kept_open(&kept, c->input, &error) != GLINT_OK)
+        return;
+    drawing_line_follow_photo(&c->drawing.line, kept.f_number, kept.focal_mm);
+    glint_kept_close(&kept);
+}
+
 static int explain_frame(struct tool *tool, struct explain_command *c)
 {
     const bool linear = is_linear(c);
@@ -383,6 +396,7 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
     code = check_outputs_differ_from_inputs(tool, c);
     c->drawing.line.settings.unbaked =
         settings_choose_method_without_model(&c->drawing.line.settings);
+    follow_input_photo(c);
     if (code == EXIT_OK)
         code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)

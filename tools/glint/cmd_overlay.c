@@ -337,8 +337,7 @@ static void print_overlay_result(const struct tool *tool, struct overlay *o)
 }
 
 /* Rejects an input that is missing, unreadable or empty, before a lens is
- * baked. Names a picture in the settings, so that opening the lens checks its
- * type. Returns an exit code. */
+ * baked. Returns an exit code. */
 static int check_input_file(struct tool *tool, struct overlay *o)
 {
     struct glint_error error = {""};
@@ -365,8 +364,6 @@ static int check_input_file(struct tool *tool, struct overlay *o)
     else if (S_ISREG(file.st_mode) && file.st_size == 0)
         status =
             glint_error_report(&error, GLINT_E_FORMAT, o->input, "is empty");
-    else if (S_ISREG(file.st_mode) && !o->is_video)
-        o->drawing.line.settings.picture = o->input;
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, error.text);
 }
 
@@ -442,6 +439,23 @@ choose_rendering_without_model(const struct overlay *o)
                : SETTINGS_SEARCH;
 }
 
+/* Opens the lens and draws the input. Returns an exit code. */
+static int draw_single_input(struct tool *tool, struct overlay *o)
+{
+    const bool is_sequence = overlay_is_sequence(o);
+    int code;
+
+    o->figures.started = tool_clock_s();
+    if (!o->is_video && !is_sequence)
+        return overlay_draw_single_picture(tool, o);
+    code = drawing_open(tool, &o->drawing);
+    o->figures.started = tool_clock_s();
+    if (code != EXIT_OK)
+        return code;
+    return o->is_video ? overlay_draw_video(tool, o)
+                       : overlay_draw_sequence(tool, o);
+}
+
 static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
 {
     int code = check_output_file(tool, o);
@@ -459,16 +473,7 @@ static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
         code = overlay_check_outputs(tool, o, o->input, o->output);
     o->drawing.line.settings.unbaked = choose_rendering_without_model(o);
     if (code == EXIT_OK)
-        code = drawing_open(tool, &o->drawing);
-    if (code != EXIT_OK)
-        return code;
-    o->figures.started = tool_clock_s();
-    if (o->is_video)
-        code = overlay_draw_video(tool, o);
-    else if (overlay_is_sequence(o))
-        code = overlay_draw_sequence(tool, o);
-    else
-        code = overlay_draw_picture_file(tool, o, o->input, o->output);
+        code = draw_single_input(tool, o);
     if (code == EXIT_OK)
         code = drawing_finish_lamp_file(tool, &o->drawing);
     if (code == EXIT_OK && !o->lists_shots)

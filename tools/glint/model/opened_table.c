@@ -4,7 +4,6 @@
  */
 #include <math.h>
 
-#include "formats/picture.h"
 #include "model/model_cache.h"
 #include "model/table_file.h"
 #include "model/opened_table.h"
@@ -59,19 +58,6 @@ set_lens_projection(struct opened_lens *lens,
     return GLINT_OK;
 }
 
-/* Checks that the input PICTURE is an image, before a lens is baked. */
-static int check_input_picture(const struct tool *tool, const char *picture)
-{
-    struct glint_error error = {""};
-    struct glint_kept kept;
-    const enum glint_status status = glint_kept_open(&kept, picture, &error);
-
-    if (status != GLINT_OK)
-        return tool_fail(tool, status, error.text);
-    glint_kept_close(&kept);
-    return EXIT_OK;
-}
-
 /* Sets the table of LENS to the f-number of SETTINGS. This is needed for exact
  * rays, which are traced through the stop of the table. */
 static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
@@ -84,6 +70,17 @@ static int set_table_f_number(const struct tool *tool, struct opened_lens *lens,
                                &lens->table, f_number, &error) == GLINT_OK)
         return EXIT_OK;
     return settings_report_bad_stop(tool, settings, error.text);
+}
+
+/* Sets the table of LENS to the f-number of the input picture's camera, or to
+ * the widest stop if that is wider than the lens allows. */
+static enum glint_status set_photo_f_number(struct opened_lens *lens,
+                                            double f_number,
+                                            struct glint_error *error)
+{
+    return glint_prescription_set_f_number(
+        &lens->table, fmax(f_number, glint_prescription_widest(&lens->table)),
+        error);
 }
 
 /* Limit of ghosts * surfaces for exact rays of a lens file outside glint's
@@ -125,21 +122,14 @@ static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
 
     if (deg > options.max_deg)
         options.max_deg = 89;
-    lens->is_unbaked = (settings->picture || settings->unbaked) &&
+    lens->is_unbaked = settings->unbaked != SETTINGS_BAKE &&
                        !model_is_cached(&lens->table, &options);
-    if (lens->is_unbaked && settings->picture)
-        code = check_input_picture(tool, settings->picture);
-    if (lens->is_unbaked && settings->unbaked == SETTINGS_TRACE &&
-        code == EXIT_OK)
+    if (!lens->is_unbaked)
+        return model_open_cached(tool, &lens->table, name, options,
+                                 &settings->coating, &lens->model);
+    if (settings->unbaked == SETTINGS_TRACE)
         code = check_path_count(tool, &lens->table, name);
-    if (lens->is_unbaked && settings->unbaked != SETTINGS_BAKE)
-        return code == EXIT_OK ? set_table_f_number(tool, lens, settings)
-                               : code;
-    lens->is_unbaked = false;
-    return code == EXIT_OK
-               ? model_open_cached(tool, &lens->table, name, options,
-                                   &settings->coating, &lens->model)
-               : code;
+    return code == EXIT_OK ? set_table_f_number(tool, lens, settings) : code;
 }
 
 int opened_table_open(const struct tool *tool, struct opened_lens *lens,
@@ -162,6 +152,10 @@ int opened_table_open(const struct tool *tool, struct opened_lens *lens,
         code = set_table_f_number(tool, lens, settings);
     if (code != EXIT_OK)
         return code;
+    if (settings->photo_f_number > 0 && !(o->f_number > 0))
+        status = set_photo_f_number(lens, settings->photo_f_number, &error);
+    if (status != GLINT_OK)
+        return tool_fail(tool, status, error.text);
     if (o->projection == GLINT_PROJECTION_LENS)
         status = set_lens_projection(lens, &settings->camera, &deg, &error);
     if (status != GLINT_OK)

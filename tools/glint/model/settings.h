@@ -44,8 +44,9 @@ struct settings {
 
     /* max angle of a lamp, degrees, for which the model is baked */
     double max_deg;
-    /* input image, which is checked before a lens is baked; NULL: unknown */
-    const char *picture;
+    /* f-number of the camera of the input picture, to which the stop of a lens
+     * without a model is set unless --f-number is given; 0: unknown */
+    double photo_f_number;
     /* what to do with a table without a model, an enum settings_unbaked */
     int unbaked;
     /* "FILE:LINE" of the f-number; NULL: from the command line */

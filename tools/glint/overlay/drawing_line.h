@@ -36,6 +36,9 @@ struct drawing_line {
     /* whether poses and control lines are read from a FIFO, without waiting for
      * data */
     bool is_live;
+    /* focal length of the photograph's camera, mm, by which the default lens
+     * was chosen; 0: none */
+    double photo_focal_mm;
     /* getopt code of the option that set the brightness, --strength or
      * --exposure; 0: none */
     int dial;
@@ -73,6 +76,12 @@ int drawing_line_apply_command_style(const struct tool *tool,
                                      struct drawing_line *line, int argc,
                                      char **argv, const char *shorts,
                                      const struct option *options);
+
+/* Sets stop and zoom position of a lens drawn by exact rays to the F_NUMBER and
+ * focal length of a photograph's camera, 0: unknown, as far as no option sets
+ * them. The position is that of the default lens. */
+void drawing_line_follow_photo(struct drawing_line *line, double f_number,
+                               double focal_mm);
 
 /* Marks the end of the options of a configuration file. The command line may
  * then set --strength or --exposure again. */

@@ -97,9 +97,13 @@ void overlay_print_progress(const struct tool *tool, struct overlay *o);
 int overlay_check_outputs(const struct tool *tool, const struct overlay *o,
                           const char *from, const char *to);
 
-/* Draws one picture from file FROM to file TO. */
+/* Draws one picture of a sequence from file FROM to file TO. */
 int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
                               const char *from, const char *to);
+
+/* Opens the input, a picture, and then the lens, which may depend on the camera
+ * of the picture, and draws it to the output. */
+int overlay_draw_single_picture(struct tool *tool, struct overlay *o);
 
 /* Returns whether the input is a numbered sequence. It is if its name contains
  * a '%' and no file has exactly this name. */

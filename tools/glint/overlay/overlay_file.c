@@ -510,29 +510,55 @@ static int save_picture(const struct tool *tool, struct overlay_file *file,
 
 /* ------------------------------------------------------------ picture file */
 
-int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
-                              const char *from, const char *to)
+/* Draws on FILE, and writes and closes it. Returns an exit code. */
+static int draw_opened_file(struct tool *tool, struct overlay *o,
+                            struct overlay_file *file)
 {
-    struct overlay_file file;
-    int code = open_picture_file(tool, &file, &o->drawing, from, to);
+    int code = EXIT_OK;
 
-    if (code != EXIT_OK)
-        return code;
     if (o->drawing.run.is_sized &&
-        (file.image.width != o->drawing.run.view.width ||
-         file.image.height != o->drawing.run.view.height)) {
+        (file->image.width != o->drawing.run.view.width ||
+         file->image.height != o->drawing.run.view.height)) {
         fprintf(stderr,
                 "glint overlay: %s: is %dx%d, but the pictures before it are "
                 "%dx%d\n",
-                from, file.image.width, file.image.height,
+                file->from, file->image.width, file->image.height,
                 o->drawing.run.view.width, o->drawing.run.view.height);
         code = EXIT_INPUT;
     }
     if (code == EXIT_OK)
-        code = overlay_draw_frame_by_callback(tool, o, &file.image,
-                                              draw_flare_on_file, &file);
+        code = overlay_draw_frame_by_callback(tool, o, &file->image,
+                                              draw_flare_on_file, file);
     if (code == EXIT_OK)
-        code = save_picture(tool, &file, o);
+        code = save_picture(tool, file, o);
+    close_picture_file(file);
+    return code;
+}
+
+int overlay_draw_picture_file(struct tool *tool, struct overlay *o,
+                              const char *from, const char *to)
+{
+    struct overlay_file file;
+    const int code = open_picture_file(tool, &file, &o->drawing, from, to);
+
+    return code == EXIT_OK ? draw_opened_file(tool, o, &file) : code;
+}
+
+int overlay_draw_single_picture(struct tool *tool, struct overlay *o)
+{
+    struct overlay_file file;
+    double opening;
+    int code = open_picture_file(tool, &file, &o->drawing, o->input, o->output);
+
+    if (code != EXIT_OK)
+        return code;
+    drawing_line_follow_photo(&o->drawing.line, file.kept.f_number,
+                              file.kept.focal_mm);
+    opening = tool_clock_s();
+    code = drawing_open(tool, &o->drawing);
+    o->figures.started += tool_clock_s() - opening;
+    if (code == EXIT_OK)
+        return draw_opened_file(tool, o, &file);
     close_picture_file(&file);
     return code;
 }

@@ -162,6 +162,26 @@ static void print_brightness_options(const struct overlay_figures *f, FILE *to)
         print_value_range(&f->gain, ", gain", false, to);
 }
 
+/* Prints lens and stop, and which of them the picture's Exif determined. */
+static void print_lens(const struct drawing *drawing, FILE *to)
+{
+    const struct drawing_line *const line = &drawing->line;
+    const double f_number = get_lens_f_number(&drawing->files.lens);
+    const double photo =
+        line->settings.options.f_number > 0 ? 0 : line->settings.photo_f_number;
+
+    fprintf(to, ", %s", drawing->files.lens.table.name);
+    if (line->photo_focal_mm > 0)
+        fprintf(to, " (Exif: %.3g mm)", line->photo_focal_mm);
+    fprintf(to, " f/%.3g", f_number);
+    if (photo > 0 && fabs(photo / f_number - 1) < 0.01)
+        fputs(" (Exif)", to);
+    else if (photo > 0)
+        fprintf(to, " (Exif: f/%.3g)", photo);
+    fprintf(to, ", %s, ",
+            drawing->files.lens.model.data ? "baked model" : "exact rays");
+}
+
 static bool are_all_lamps_off_screen(const struct drawing *drawing)
 {
     const struct glint_view *const view = &drawing->run.view;
@@ -399,9 +419,7 @@ void overlay_print_summary(const struct overlay *o,
         return;
     }
     print_lights(drawing, o->figures.most_lights, to);
-    fprintf(to, ", %s f/%.3g, %s, ", drawing->files.lens.table.name,
-            get_lens_f_number(&drawing->files.lens),
-            drawing->files.lens.model.data ? "baked model" : "exact rays");
+    print_lens(drawing, to);
     print_brightness_options(&o->figures, to);
     if (light->is_known)
         fprintf(to, ": %s at %.*g %% of white, mean %.2g %%",
