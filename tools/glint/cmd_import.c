@@ -126,7 +126,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         o->format = import_find_format(argv[optind]);
     if (!o->format)
         return tool_usage(tool,
-                          "%s: the format is ambiguous; choose --format %s",
+                          "%s: the suffix is not that of one lens format; "
+                          "choose --format %s",
                           argv[optind], values_describe("import", "format"));
     file_conflicts_add_input(&files, NULL, argv[optind]);
     file_conflicts_add_output(&files, "-o", o->output);

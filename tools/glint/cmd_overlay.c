@@ -458,14 +458,14 @@ static int draw_single_input(struct tool *tool, struct overlay *o)
 
 static int add_flare_to_single_input(struct tool *tool, struct overlay *o)
 {
-    int code = check_output_file(tool, o);
+    int code = check_input_file(tool, o);
 
+    if (code == EXIT_OK)
+        code = check_output_file(tool, o);
     if (o->lists_shots || o->drawing.line.show_lights)
         disable_bake_and_metering(&o->drawing.line.settings);
     if (code == EXIT_OK && o->is_video)
         code = overlay_check_ffmpeg(tool, o);
-    if (code == EXIT_OK)
-        code = check_input_file(tool, o);
     if (code == EXIT_OK)
         code = layers_check_file_names(tool, &o->layers,
                                        o->is_video || overlay_is_sequence(o));

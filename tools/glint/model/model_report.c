@@ -317,8 +317,11 @@ static void print_ghosts_without_zones(const struct glint_lens *lens)
 
         if (g->n_systems)
             continue;
-        printf("%s %lu:%lu-%lu", any ? "" : "never seen:", (unsigned long)k,
-               (unsigned long)g->i, (unsigned long)g->j);
+        printf("%s %lu:%lu-%lu",
+               any ? ""
+                   : "ghosts that never reach the film, by number and "
+                     "surfaces:",
+               (unsigned long)k, (unsigned long)g->i, (unsigned long)g->j);
         any = true;
     }
     if (any)

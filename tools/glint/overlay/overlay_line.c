@@ -130,10 +130,15 @@ static void print_lights(const struct drawing *drawing, int most, FILE *to)
     glint_view_to_pixel(&drawing->run.view,
                         drawing->files.lens.setup.optics.focal_mm, &lamp->lamp,
                         &x, &y);
-    fprintf(to, " (%s%.0f stops over a white pixel, at %.0f,%.0f)",
+    fprintf(to, " (%s%.0f stops over a white pixel, ",
             most == 1 ? "" : "the brightest ",
-            convert_lamp_power_to_stops(lamp), round_without_minus_zero(x),
-            round_without_minus_zero(y));
+            convert_lamp_power_to_stops(lamp));
+    if (fabs(x) > 2 * drawing->run.view.width ||
+        fabs(y) > 2 * drawing->run.view.height)
+        fputs("far outside the picture)", to);
+    else
+        fprintf(to, "at %.0f,%.0f)", round_without_minus_zero(x),
+                round_without_minus_zero(y));
 }
 
 /* Prints NAME and the range of its values OF. If HAS_SIGN, positive values have

@@ -188,6 +188,15 @@ static enum glint_status open_raw_input(struct video *v)
                                      (size_t)o->raw.stride, &v->error);
 }
 
+/* Appends to ERROR, of a pipe without Y4M header, how to read such frames. */
+static void add_raw_format_hint(struct glint_error *error)
+{
+    const size_t used = strlen(error->text);
+
+    snprintf(error->text + used, sizeof error->text - used,
+             "; frames without headers need --format and --size");
+}
+
 static int open_video_input(struct video *v)
 {
     struct glint_y4m_header *h = &v->in.header;
@@ -201,6 +210,8 @@ static int open_video_input(struct video *v)
             o->raw.width ? open_raw_input(v)
                          : glint_y4m_reader_open(&v->in, o->input, &v->error);
 
+        if (status == GLINT_E_FORMAT && strcmp(o->input, "-") == 0)
+            add_raw_format_hint(&v->error);
         if (status != GLINT_OK)
             code = report_video_failure(v, status);
         snprintf(v->about.pixels, sizeof v->about.pixels, "%s",
