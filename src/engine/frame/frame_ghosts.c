@@ -52,7 +52,7 @@ enum glint_status glint_frame_allocate_dim_table(struct glint_frame *f)
     if (!f->dim.table.log2_q8)
         f->dim.table.log2_q8 =
             calloc((size_t)GLINT_DIM_NODES * GLINT_DIM_VALUES *
-                       ((size_t)f->setup->n_ghosts + 1),
+                       ((size_t)glint_frame_count_pupil_regions(f) + 1),
                    sizeof *f->dim.table.log2_q8);
     return f->dim.table.log2_q8 ? GLINT_OK : GLINT_E_MEMORY;
 }

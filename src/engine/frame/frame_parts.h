@@ -50,6 +50,11 @@ double glint_frame_compute_pixels_per_tangent(const struct glint_frame *frame);
  * wavelengths. */
 bool glint_frame_has_wave_sets(const struct glint_frame *frame);
 
+/* Returns the number of ghosts of the frame's model, which counts each pupil
+ * region as a ghost; without a model, that of the setup. They differ if the
+ * setup was made from the table of the model. */
+int glint_frame_count_pupil_regions(const struct glint_frame *frame);
+
 /* Ensures capacity for N lights. Returns GLINT_E_MEMORY on failure. */
 enum glint_status glint_frame_allocate_lights(struct glint_frame *frame, int n);
 

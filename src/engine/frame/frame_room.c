@@ -56,7 +56,7 @@ static int count_bundles_of_first_wave_set(const struct glint_frame *f,
     const struct glint_setup *s = f->setup;
 
     return clamp_bundle_count(
-        (double)n_lights * s->n_ghosts *
+        (double)n_lights * glint_frame_count_pupil_regions(f) *
         (glint_frame_has_wave_sets(f) ? s->set_size[0] : s->n_wavelengths));
 }
 
@@ -360,8 +360,8 @@ bool glint_frame_limit_probing(struct glint_frame *f)
           together */
     const int waves = glint_frame_has_wave_sets(f) ? f->setup->set_size[0]
                                                    : f->setup->n_wavelengths;
-    const double light =
-        estimate_probe_minsn((double)RAYS * f->setup->n_ghosts * waves);
+    const double light = estimate_probe_minsn(
+        (double)RAYS * glint_frame_count_pupil_regions(f) * waves);
     const int n = f->lights.n;
 
     if (f->limits.most_minsn <= 0)
@@ -418,7 +418,8 @@ static double coarsen_grids_to_minsn(struct glint_frame *f,
 static double limit_ghost_wavelengths(struct glint_frame *f, double minsn)
 {
     enum { WAVES = 3 };
-    const double jobs = (double)f->lights.n * f->setup->n_ghosts;
+    const double jobs =
+        (double)f->lights.n * glint_frame_count_pupil_regions(f);
     struct glint_planned planned;
     int n = 0;
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Converts units of a frame: angles to pixels, and codes to light. Computes the
- * powers of two by which light may be scaled. */
+ * powers of two by which light may be scaled, and counts pupil regions. */
 #include <math.h>
 
 #include "engine/frame/frame_parts.h"
@@ -20,6 +20,11 @@ double glint_frame_get_light_near_black(const struct glint_frame *f,
                ? 0
                : codes / 255 /
                      (image->transfer == GLINT_TONE_SRGB ? 12.92 : 4.5);
+}
+
+int glint_frame_count_pupil_regions(const struct glint_frame *f)
+{
+    return f->lens ? (int)f->lens->header->n_ghosts : f->setup->n_ghosts;
 }
 
 struct glint_frame_scale glint_frame_compute_scale(int brightest_log2,

@@ -12,6 +12,7 @@
 #include "bake/measure_model.h"
 #include "bake/fit/zone_rays.h"
 #include "bake/fit/quantise.h"
+#include "engine/frame/frame_parts.h"
 #include "glint/pool.h"
 #include "glint/transfer.h"
 #include "support/lens_check.h"
@@ -327,6 +328,24 @@ static int count_pupil_parts_with_ray(const struct glint_transfer *part, int n,
     return found;
 }
 
+/* Checks that a frame whose setup has the ghosts of the table, FAST, plans the
+ * ray bundles of all pupil regions of model B before it chooses its scale. */
+static void check_planned_pupil_regions(const struct baked *b,
+                                        const struct glint_setup *fast)
+{
+    const struct glint_view view = {
+        .width = 60, .height = 40, .sensor_width_mm = 36};
+    const struct glint_lamp lamp = {.power = 1, .rgb = {1, 1, 1}};
+    struct glint_frame_scale scale;
+    struct glint_frame frame;
+
+    glint_frame_init(&frame, fast, view, NULL);
+    frame.lens = &b->lens;
+    assert_ok(glint_frame_predict_scale(&frame, &lamp, 1, &scale));
+    assert_true(frame.cfg.max_bundles >= (int)b->lens.header->n_ghosts);
+    glint_frame_finish(&frame);
+}
+
 /* A triplet's ghost (surfaces 0 and 3) has rays that fold in the stop plane, so
  * the ghost's pupil is divided into parts. Checks that each unblocked ray lies
  * in exactly one part, except on borders between parts, and that no part is
@@ -351,6 +370,7 @@ TEST(each_ray_lies_in_one_pupil_part)
     assert_ok(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error));
     assert_int_equal(fast.ghost[GHOST].j, 3);
     assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
+    check_planned_pupil_regions(&b, &fast);
     for (int a = 0; a < ANGLES; a++) {
         const double sine = sin(0.499 * a / (ANGLES - 1) * 0.0174532925199433);
         const double direction[3] = {sine, 0, sqrt(1 - sine * sine)};
