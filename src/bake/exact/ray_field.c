@@ -87,13 +87,21 @@ static int choose_cell_count(const struct ray_field_config *cfg,
         fmin(GLINT_MAX_CELLS, fmax(fmax(GLINT_LEAST_CELLS, least), n))));
 }
 
-/* Lists the barrels that block rays. The first is the barrel that forms most of
- * the outline. It has a channel of its own, because the max over several
- * barrels may have kinks. */
+static bool is_barrel_listed(const struct ray_field *field, int event)
+{
+    for (int k = 0; k < field->n_cuts; k++)
+        if (field->cut_event[k] == event)
+            return true;
+    return false;
+}
+
+/* Adds the barrels that block rays to those of FIELD. The first is the barrel
+ * that forms most of the outline. It has a channel of its own, because the max
+ * over several barrels may have kinks. */
 static void list_blocking_barrels(struct ray_field *field,
                                   struct glint_sampling *sampling)
 {
-    for (field->n_cuts = 0; field->n_cuts < RAY_FIELD_CUTS; field->n_cuts++) {
+    while (field->n_cuts < RAY_FIELD_CUTS) {
         int most = 0;
 
         for (int k = 1; k < sampling->n_cuts; k++)
@@ -102,7 +110,26 @@ static void list_blocking_barrels(struct ray_field *field,
         if (sampling->n_cuts == 0 || sampling->cut_weight[most] == 0)
             break;
         sampling->cut_weight[most] = 0;
-        field->cut_event[field->n_cuts] = sampling->cut_event[most];
+        if (!is_barrel_listed(field, sampling->cut_event[most]))
+            field->cut_event[field->n_cuts++] = sampling->cut_event[most];
+    }
+}
+
+/* Adds the barrels that block rays at the ends of the band only. Near an angle
+ * at which a barrel begins to vignette, it blocks blue rays but not green
+ * ones. */
+static void list_barrels_of_band_ends(const struct ray_field_config *cfg,
+                                      struct ray_field *field,
+                                      const double direction[3])
+{
+    struct glint_sampling sampling;
+    struct glint_path path;
+
+    for (int k = 0; k < 3; k += 2) {
+        init_field_path(cfg, field, cfg->wave_nm[k], &path);
+        glint_sampling_trace_grid(&sampling, &path, &field->pupil, direction,
+                                  cfg->setup->optics.stop_radius_mm, SAMPLING);
+        list_blocking_barrels(field, &sampling);
     }
 }
 
@@ -553,7 +580,12 @@ void glint_ray_field_measure(const struct ray_field_config *cfg,
                                       SAMPLING);
             merge_sampling(&sampling, &more);
         }
+    field->n_cuts = 0;
     list_blocking_barrels(field, &sampling);
+    if (!cfg->draft) {
+        glint_ray_compute_direction(cfg, patch->middle, d);
+        list_barrels_of_band_ends(cfg, field, d);
+    }
     field->folds = sampling.folds;
     field->measures = (struct ray_measures){.bend_mm = sampling.bend_mm,
                                             .outline_mm = sampling.outline_mm,

@@ -298,6 +298,36 @@ TEST(integer_renderer_matches_exact_renderer)
     }
 }
 
+/* At these angles a barrel begins to vignette a ghost in blue light, but not
+ * yet in green light. */
+TEST(barrels_that_block_only_blue_light_vignette)
+{
+    static const struct {
+        const char *name;
+        double theta, phi;
+    } of[] = {{"normal/biotar-merte-50", 1.72, 33},
+              {"normal/planar-contarex-55", 20.37, -52}};
+    static const double nm[3] = {619, 541, 460};
+    const struct glint_view view = {
+        .width = 240, .height = 160, .sensor_width_mm = 36};
+
+    for (int i = 0; i < 2; i++) {
+        const struct glint_lamp lamp = make_white_lamp(of[i].theta, of[i].phi);
+        struct glint_engine_report report;
+        struct glint_error error;
+        double db;
+
+        load_lens(&lens, of[i].name);
+        assert_ok(glint_prescription_set_f_number(&lens, 11, &error));
+        assert_ok(glint_setup_init(&setup, &lens, 0, 0, nm, 3, &error));
+        render_exact_flare(rgb, view, &lamp, 1, 128);
+        draw_flare_by_integers(view, &lamp, 1, other, &report);
+        db = compute_psnr(rgb, other, view);
+        print_message("%s: %.1f dB\n", of[i].name, db);
+        assert_true(db >= 48);
+    }
+}
+
 /* Checks that a frame whose rays and edges exceed the memory limit is drawn in
  * several passes, with bit-identical result. The test uses one thread, as each
  * thread has a memory limit of its own. */
