@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/finder.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/canvas.h"
 #include "support/rng.h"
 #include "support/test.h"

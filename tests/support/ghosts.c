@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/ghosts.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/rng.h"
 #include "support/test.h"
 

@@ -5,10 +5,6 @@
 #ifndef GLINT_TESTS_LENS_CHECK_H
 #define GLINT_TESTS_LENS_CHECK_H
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "glint/bake.h"
 #include "support/test.h"
 

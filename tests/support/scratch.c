@@ -1,11 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/scratch.h"
 
-#include <stdint.h>
-
 #include <dirent.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include "support/test.h"

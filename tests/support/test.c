@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/test.h"
 
-#include <string.h>
-
 static struct CMUnitTest tests[64];
 static size_t n_tests;
 void (*test_opens)(void), (*test_closes)(void);

@@ -12,10 +12,16 @@
 #ifndef GLINT_TESTS_SUPPORT_TEST_H
 #define GLINT_TESTS_SUPPORT_TEST_H
 
+/* Tests use these without including them again. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 

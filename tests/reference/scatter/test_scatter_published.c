@@ -3,11 +3,6 @@
  * Tests published models of subsurface scattering on small translucent media:
  * claims C1 and C3 to C13 of tests/figures/scenes/translucent.md.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "reference/scatter/rebuild.h"
 #include "bake/translucent/linear.h"
 #include "support/lens_check.h"

@@ -3,12 +3,6 @@
  * Tests the reference renderer of scenes against values computed by hand. A1 to
  * A15 number the requirements, which the tests state.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "reference/scenes/twin.h"
 #include "reference/scenes/vec.h"
 #include "support/rng.h"

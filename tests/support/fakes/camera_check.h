@@ -7,10 +7,7 @@
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
 #define GLINT_SUPPORT_CAMERA_CHECK_H
 
-#include <stdint.h>
-
 #include <errno.h>
-#include <string.h>
 
 #include "linux/v4l2.h"
 #include "support/fakes/fake_camera.h"

@@ -1,11 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/fakes/fake_fb.h"
 
-#include <stdarg.h>
-
 #include <errno.h>
 #include <fcntl.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/models/drawn_scene.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "reference/scenes/twin.h"
 #include "support/test.h"
 

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/models/scene_builder.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/blob.h"
 #include "support/test.h"
 

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/models/stone_builder.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 /* Sets H to a kernel of sum 1 that falls as exp(-d) / d^2, where d is the

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/stars/bare_flare.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 
 void *bare_flare_allocate_filled(size_t bytes)

@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/stars/canvas.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/star/star_tables.h"
 #include "support/test.h"
 

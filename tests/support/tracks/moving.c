@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/tracks/moving.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/bake.h"
 #include "glint/scene/motion_bake.h"
 #include "support/rng.h"

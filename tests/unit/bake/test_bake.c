@@ -4,11 +4,6 @@
  * workers, the order of jobs or repetition. They contain every visible ghost,
  * and the errors stated in them are true.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bake/measure_model.h"
 #include "bake/fit/zone_rays.h"
 #include "bake/fit/quantise.h"

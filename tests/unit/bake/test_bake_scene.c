@@ -3,12 +3,6 @@
  * Tests baked scenes: the run time accepts them, and they contain the values
  * of the scene text, rounded to steps of the scene's unit.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/bake.h"
 #include "glint/scene/model.h"
 #include "support/models/scene_builder.h"

@@ -4,10 +4,6 @@
  * names, that reflectances match formulas, that model keys depend on coatings,
  * and that invalid texts are rejected.
  */
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "glint/bake.h"
 #include "support/test.h"
 

@@ -3,12 +3,6 @@
  * Checks that the parser of scene texts reads valid texts, and reports the
  * position and cause of each mistake.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/description.h"
 #include "glint/view.h"
 #include "bake/scene/mesh.h"

@@ -3,9 +3,6 @@
  * Checks that progress reports of a bake predict the remaining time, by ghosts
  * of known work and a simulated clock.
  */
-#include <math.h>
-#include <stdlib.h>
-
 #include "bake/effort.h"
 #include "support/lens_check.h"
 #include "support/rng.h"

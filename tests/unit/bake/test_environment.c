@@ -5,12 +5,6 @@
  * equal sums over all texels, known lights are found, and invalid files are
  * rejected.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bake/environment/sphere.h"
 #include "base/blob.h"
 #include "glint/view.h"

@@ -4,9 +4,6 @@
  * at each f-number it is proportional to the number of traced rays that pass
  * the stop.
  */
-#include <math.h>
-#include <stdint.h>
-
 #include "bake/model_header.h"
 #include "support/lens_check.h"
 #include "glint/bake.h"

@@ -3,11 +3,6 @@
  * Checks that glasses of the catalogue have their published indices and are
  * found by their names in lens tables.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "support/lens_check.h"
 
 /* Refractive indices at the d, C and F lines as printed by the manufacturers, 5

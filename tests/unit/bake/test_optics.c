@@ -5,9 +5,6 @@
  * lenses/.
  */
 #include <complex.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 #include "support/lens_check.h"
 #include "glint/bake.h"

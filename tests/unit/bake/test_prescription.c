@@ -4,11 +4,6 @@
  * position and cause of each mistake.
  */
 #include <dirent.h>
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bake/table/text.h"
 #include "support/lens_check.h"

@@ -3,9 +3,6 @@
  * Checks that the pupil box contains every unblocked ray that a dense scan of
  * the front element finds.
  */
-#include <math.h>
-#include <stdio.h>
-
 #include "bake/trace/spot.h"
 #include "support/lens_check.h"
 

@@ -3,9 +3,6 @@
  * Checks that sparse regression finds the terms of functions for which a greedy
  * choice of terms fails.
  */
-#include <math.h>
-#include <stdlib.h>
-
 #include "bake/regress/regress.h"
 #include "support/lens_check.h"
 

@@ -4,10 +4,6 @@
  * reject invalid options, and that the linear solvers of the fits are right.
  */
 #include <dlfcn.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bake/translucent/linear.h"
 #include "bake/translucent/slab.h"

@@ -5,10 +5,6 @@
  * more light than they receive. C1 and C2 in names are claims of
  * tests/figures/scenes/translucent.md.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bake/translucent/slab.h"
 #include "support/lens_check.h"
 

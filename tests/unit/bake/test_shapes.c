@@ -4,11 +4,6 @@
  * Parsed values must be right, and rays must equal rays of a second method and
  * analytic results.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "bake/table/form.h"
 #include "bake/trace/beam.h"
 #include "glint/bake.h"

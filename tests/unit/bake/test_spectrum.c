@@ -4,9 +4,6 @@
  * white, and the colours of smooth spectra are close to those of 31
  * wavelengths.
  */
-#include <math.h>
-#include <stdint.h>
-
 #include "engine/setup/spectrum.h"
 #include "glint/bake.h"
 #include "support/test.h"

@@ -6,8 +6,6 @@
  * independent of the characteristic matrices that the library uses.
  */
 #include <complex.h>
-#include <math.h>
-#include <stdint.h>
 
 #include "glint/bake.h"
 #include "support/lens_check.h"

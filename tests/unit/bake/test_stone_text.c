@@ -3,11 +3,6 @@
  * Checks that the parser of translucent media reads values, sets defaults, and
  * reports errors with their positions.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "bake/translucent/slab.h"
 #include "glint/scene/stone_bake.h"
 #include "support/test.h"

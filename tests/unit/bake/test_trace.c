@@ -4,11 +4,6 @@
  * results, and with rays mirrored in a centred lens.
  */
 #include <dirent.h>
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "support/lens_check.h"
 #include "glint/bake.h"

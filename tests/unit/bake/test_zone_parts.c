@@ -4,8 +4,6 @@
  * Checks that the two halves of a divided zone cover it, and checks which zones
  * the bake divides.
  */
-#include <math.h>
-
 #include "bake/fit/next.h"
 #include "bake/fit/zone_rays.h"
 #include "engine/setup/degrees.h"

@@ -4,11 +4,6 @@
  * one table per position. Values between positions are interpolated. A focused
  * lens must have its paraxial focus on the sensor.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "support/lens_check.h"
 #include "glint/bake.h"
 

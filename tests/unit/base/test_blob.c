@@ -6,8 +6,6 @@
 #include "base/blob.h"
 #include "support/test.h"
 
-#include <string.h>
-
 enum { HEADER = 100, BYTES = 124 };
 
 static const struct glint_blob_kind kind = {UINT32_C(0x424f4c42), 3, HEADER};

@@ -4,8 +4,6 @@
  * power, centroid and RMS extent equal the lamp's, they change continuously as
  * the lamp grows, and their number is limited.
  */
-#include <math.h>
-
 #include "glint/area.h"
 #include "support/test.h"
 

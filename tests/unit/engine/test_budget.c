@@ -3,11 +3,6 @@
  * Checks that --budget keeps the frame time on simulated machines:
  * tool_clock_s() is replaced by a formula for the time of a frame.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <string.h>
-
 #include "support/rng.h"
 #include "engine/frame/cost.h"
 #include "glint/quality.h"

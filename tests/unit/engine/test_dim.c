@@ -4,10 +4,6 @@
  * total light is preserved, none appears abruptly, and the image depends
  * neither on earlier frames nor on the number of workers.
  */
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "support/shuffle.h"
 #include "support/stage.h"
 #include "support/test.h"

@@ -3,12 +3,6 @@
  * Checks the engine's public API: invalid arguments are rejected, reports match
  * the frame, and images are equal in the engine's and in the caller's memory.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/engine.h"
 #include "glint/exact.h"
 #include "glint/options.h"

@@ -5,12 +5,6 @@
  * reason for not drawing a ghost must occur where it is expected. The image
  * must shade the tiles that ghosts touch.
  */
-#include <math.h>
-#include <stdint.h>
-
-#include <stdlib.h>
-#include <string.h>
-
 #include "explain/explain.h"
 #include "engine/explain_frame.h"
 #include "support/opened.h"

@@ -4,11 +4,7 @@
  * If the memory is sufficient, the image equals that of a frame that allocates
  * on demand. Otherwise parts of the image are dropped and counted.
  */
-#include <stdint.h>
-
 #include <errno.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "engine/frame/frame.h"
 #include "support/settings_frame.h"

@@ -3,11 +3,6 @@
  * Checks the starbursts of a frame: the estimated power and extent of each
  * lamp, the number of stars drawn, and their use of memory and time.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <string.h>
-
 #include "engine/frame/frame.h"
 #include "support/settings_frame.h"
 #include "options/tool.h"

@@ -8,10 +8,6 @@
  */
 #include "engine/setup/iris.h"
 
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "engine/setup/setup.h"
 #include "flare/edges/outline.h"
 #include "glint/view.h"

@@ -3,11 +3,6 @@
  * Checks that lamps in an image or a list become lights at infinity with the
  * right direction and power.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/detector.h"
 #include "lamp_files/lamp_list.h"
 #include "support/canvas.h"

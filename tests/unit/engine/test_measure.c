@@ -3,9 +3,6 @@
  * Checks that the image metrics (PSNR and others) give known results for
  * constructed images.
  */
-#include <math.h>
-#include <stdlib.h>
-
 #include "glint/measure.h"
 #include "support/test.h"
 

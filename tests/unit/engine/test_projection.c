@@ -3,9 +3,6 @@
  * Compares the polynomials that describe the projection of a lens with traced
  * chief rays, and checks their inverses.
  */
-#include <math.h>
-#include <string.h>
-
 #include "engine/setup/degrees.h"
 #include "glint/bake.h"
 #include "support/lens_check.h"

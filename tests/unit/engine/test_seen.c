@@ -3,10 +3,6 @@
  * Checks the predicted visibility of a flare on the image below it, and the
  * exposure chosen from it.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/strength.h"
 #include "support/canvas.h"
 #include "support/test.h"

@@ -4,11 +4,6 @@
  * expected brightness, changes gradually from frame to frame, and uses the
  * lens's response.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <string.h>
-
 #include "engine/setup/spectrum.h"
 #include "engine/strength.h"
 #include "support/settings_frame.h"

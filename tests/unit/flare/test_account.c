@@ -5,10 +5,6 @@
  * must equal those of the drawn frame. The images of single ghosts, lights and
  * wavelengths must add up to the complete image.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/real.h"
 #include "flare/by_edges.h"
 #include "glint/flare.h"

@@ -4,10 +4,6 @@
  * from those that the engine computes in double precision by at most the
  * bounds stated in flare.h.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/frame/light.h"
 #include "glint/flare.h"
 #include "glint/setup.h"

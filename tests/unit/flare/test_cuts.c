@@ -7,8 +7,6 @@
 #include "flare/edges/cuts.h"
 #include "support/test.h"
 
-#include <stdlib.h>
-
 enum { ONE_Q16 = 1 << 16 };
 
 static const struct glint_stop square = {.n_blades = 4,

@@ -4,10 +4,6 @@
  * to the right of the edge, computed by hand. The area is rounded to 1/256
  * pixel for images of pixel codes, to 1/65536 for linear images.
  */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/rng.h"
 #include "kernels/kernels.h"
 #include "flare/edges/edge.h"

@@ -4,11 +4,6 @@
  * order of jobs do not change the image, and images have the expected hashes
  * (tests/golden).
  */
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/kernels.h"
 #include "glint/pool.h"
 #include "linux/sets.h"

@@ -3,12 +3,6 @@
  * Draws hand-made grids with the integer rasteriser and checks where light
  * falls and how much, also for clipped and folded ghosts.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/ghosts.h"
 #include "support/test.h"
 

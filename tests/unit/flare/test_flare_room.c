@@ -4,11 +4,6 @@
  * dropped and counted, invalid settings are rejected, and counts saturate at
  * INT_MAX.
  */
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "flare/state.h"
 #include "support/ghosts.h"
 #include "support/test.h"

@@ -4,11 +4,6 @@
  * order, light is preserved, bright lights do not move, and the result has at
  * most the requested number.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/real.h"
 #include "glint/flare.h"
 #include "support/shuffle.h"

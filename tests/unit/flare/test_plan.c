@@ -3,11 +3,6 @@
  * Tests plans: exactly the visible ghosts are planned, and rays computed row
  * by row give the same image as rays stored in a grid.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/real.h"
 #include "flare/plan.h"
 #include "glint/flare.h"

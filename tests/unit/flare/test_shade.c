@@ -6,10 +6,6 @@
  * clean stop, a black mask no light. Soft edges must follow their profile.
  * Workers and tiles must not change the image.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/setup/dirt.h"
 #include "support/ghosts.h"
 #include "support/test.h"

@@ -3,10 +3,6 @@
  * Tests tints of ghosts: the light of a ghost is proportional to its gain and
  * tint, muted ghosts are not planned, and tints of 1 change no bit.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/real.h"
 #include "glint/flare.h"
 #include "support/model_builder.h"

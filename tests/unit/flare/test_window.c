@@ -4,10 +4,6 @@
  * ray that passes a stop narrower than the model's. It must contain all of
  * them, be only a little larger, and move continuously while the stop closes.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
-
 #include "flare/window.h"
 #include "support/model_builder.h"
 #include "support/test.h"

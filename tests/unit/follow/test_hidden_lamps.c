@@ -5,9 +5,6 @@
  */
 #include "glint/lamp_tracker.h"
 
-#include <math.h>
-#include <string.h>
-
 #include "support/night.h"
 #include "support/test.h"
 

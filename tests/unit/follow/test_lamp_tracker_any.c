@@ -5,9 +5,6 @@
  */
 #include "glint/lamp_tracker.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/night.h"
 #include "support/rng.h"
 #include "support/test.h"

@@ -7,10 +7,6 @@
 #include "support/rng.h"
 #include "follow/match.h"
 
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/arena.h"
 #include "support/test.h"
 

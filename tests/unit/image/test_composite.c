@@ -4,11 +4,6 @@
  * in linear light as defined, in every format and size, and changes nothing
  * else.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/composite.h"
 #include "glint/kernels.h"
 #include "support/canvas.h"

@@ -5,9 +5,6 @@
  */
 #include "image/curve.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "kernels/kernels.h"
 #include "image/mix.h"
 #include "support/test.h"

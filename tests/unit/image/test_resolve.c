@@ -9,10 +9,6 @@
 #include "support/rng.h"
 #include "image/quads.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/kernels.h"
 #include "linux/sets.h"
 #include "support/test.h"

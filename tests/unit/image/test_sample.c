@@ -3,9 +3,6 @@
  * Checks that the codes of an image of any format are sampled correctly at a
  * few positions.
  */
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/canvas.h"
 #include "support/test.h"
 

@@ -2,11 +2,6 @@
  *
  * Checks that each kind of damage to a model file is rejected.
  */
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/model.h"
 #include "support/model_builder.h"
 #include "support/rng.h"

@@ -3,10 +3,6 @@
  * Compares a model's polynomials, evaluated for rays and grid vertices, with
  * integers computed by hand.
  */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/flare.h"
 #include "glint/transfer.h"
 #include "support/model_builder.h"

@@ -6,11 +6,6 @@
  * gradually towards the position that lacks it. Energies must be interpolated
  * as the roots that the file stores.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdlib.h>
-
 #include "lens/blend.h"
 #include "lens/terms.h"
 #include "support/model_builder.h"

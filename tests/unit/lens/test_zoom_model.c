@@ -4,12 +4,6 @@
  * the model of that position. Between positions its rays must land where exact
  * rays do. Files that are not zooms must be rejected.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/blob.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"

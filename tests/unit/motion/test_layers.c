@@ -4,10 +4,6 @@
  * (trajectories). They are compared with their definition in double precision,
  * pixel by pixel. Nearer objects must occlude them.
  */
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "scene/motion/play.h"
 #include "support/rng.h"
 #include "support/test.h"

@@ -3,11 +3,6 @@
  * Tests how a body is localised by the foods (landmarks) that it observes, for
  * the four body motions of tests/support/tracks.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "reference/motion/four.h"
 #include "support/rng.h"
 #include "support/test.h"

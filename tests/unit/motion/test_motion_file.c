@@ -4,12 +4,6 @@
  * Reading from memory and reading by blocks must give the same frames, and
  * damage must be detected.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/blob.h"
 #include "glint/scene/motion_bake.h"
 #include "support/rng.h"

@@ -3,12 +3,6 @@
  * Checks that recordings in JSON are read with both sets of key names and with
  * tolerated deviations, and that errors have their line numbers.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/motion_bake.h"
 #include "support/test.h"
 #include "support/tracks/tracks.h"

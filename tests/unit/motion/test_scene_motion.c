@@ -2,12 +2,6 @@
  *
  * Tests recorded motion in scenes.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "control/steer.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/motion_bake.h"

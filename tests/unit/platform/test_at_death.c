@@ -3,12 +3,8 @@
  * Tests glint_at_death_register(): registered functions run however a process
  * ends: by signal, fault, abort() or exit().
  */
-#include <stdint.h>
-
 #include <fcntl.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

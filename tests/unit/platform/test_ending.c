@@ -2,8 +2,6 @@
  *
  * Checks that the type of a file is determined from the extension of its name.
  */
-#include <stdint.h>
-
 #include "posix/ending.h"
 #include "support/test.h"
 #include "video/y4m.h"

@@ -4,14 +4,9 @@
  * ioctl() of the test): which pixels are drawn, and that the failure of any
  * call is handled.
  */
-#include <stdint.h>
-
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>

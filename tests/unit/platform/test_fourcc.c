@@ -3,8 +3,6 @@
  * Checks that V4L2 FOURCCs and colour spaces convert to glint's formats and
  * back.
  */
-#include <stdint.h>
-
 #include "linux/fourcc.h"
 #include "support/test.h"
 

@@ -3,11 +3,6 @@
  * Tests editing image files in place: everything but the added light is
  * preserved. Uses PNM and PFM, which need no plug-in.
  */
-#include <stdint.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "formats/picture.h"

@@ -5,12 +5,7 @@
  * decoder. The decoder must accept the deviations of real cameras and reject
  * damaged frames.
  */
-#include <stdint.h>
-
 #include <malloc.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include <jpeglib.h>

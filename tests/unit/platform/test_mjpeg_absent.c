@@ -3,8 +3,6 @@
  * Checks that an MJPEG camera is rejected with a message in a build without
  * libjpeg.
  */
-#include <stdint.h>
-
 #include "jpeg/mjpeg.h"
 #include "support/test.h"
 

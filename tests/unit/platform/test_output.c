@@ -5,14 +5,10 @@
  */
 /* NOLINTNEXTLINE(bugprone-reserved-identifier): flock */
 #define _DEFAULT_SOURCE
-#include <stdint.h>
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -3,11 +3,6 @@
  * Checks that a file is replaced even if another process replaces it at the
  * same moment, as when several shards of a render finish together.
  */
-#include <stdint.h>
-
-#include <stdio.h>
-#include <string.h>
-
 #include "posix/output.h"
 #include "support/scratch.h"
 #include "support/test.h"

@@ -3,13 +3,6 @@
  * Checks colours, position and size of images drawn on panels of every pixel
  * layout.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/rng.h"
 #include "panel/panel.h"
 #include "support/test.h"

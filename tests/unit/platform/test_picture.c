@@ -4,11 +4,6 @@
  * extension when saving. Tests of the image plug-in are skipped unless
  * $GLINT_OIIO names it.
  */
-#include <stdint.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "formats/picture.h"

@@ -3,12 +3,6 @@
  * Checks that hand-written PPM, PGM and PFM files are read correctly, and that
  * hostile headers and files cut at any byte are rejected.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "formats/pnm.h"

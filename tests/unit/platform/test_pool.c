@@ -3,14 +3,11 @@
  * Tests the thread pool: every job runs exactly once, with any number of
  * threads.
  */
-#include <stdint.h>
-
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -3,12 +3,6 @@
  * Checks that the samples of image files are read as linear light, that adding
  * light changes them correctly, and that everything else is preserved.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "formats/samples.h"
 #include "support/test.h"
 

@@ -3,15 +3,8 @@
  * Checks the bytes that sinks write for frames: raw planes, Y4M, V4L2 output
  * devices.
  */
-#include <stdarg.h>
-#include <stdint.h>
-
 #include <errno.h>
 #include <fcntl.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -3,12 +3,6 @@
  * Checks which characters of untrusted text are printed to a terminal, and how
  * strings are escaped in JSON.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "posix/error.h"
 #include "options/json_writer.h"
 #include "support/test.h"

@@ -3,13 +3,7 @@
  * Checks that YUV4MPEG2 frames of odd sizes survive writing and reading, and
  * that invalid headers and files cut at any byte are rejected.
  */
-#include <stdint.h>
-
 #include <errno.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "support/scratch.h"

@@ -5,7 +5,6 @@
  * each quotient only the first numerators with this quotient and the last ones
  * before it need a check.
  */
-
 #include "support/test.h"
 #include "video/y4m_divide.h"
 

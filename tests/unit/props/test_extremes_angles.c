@@ -5,11 +5,6 @@
  * at which a ghost appears or vanishes; at the largest angles, at all azimuths,
  * and at pixel borders.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
 #include "support/test.h"

@@ -4,11 +4,6 @@
  * for ghosts that are in focus, are points, or are a hundred times larger than
  * the frame.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
 #include "support/test.h"

@@ -3,11 +3,6 @@
  * Checks images of extreme frames: one pixel, one row, 8192 x 8192, odd sizes,
  * padded rows and negative strides.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
 #include "support/test.h"

@@ -5,12 +5,6 @@
  * lengths of 1 mm to 10 m, a lens scaled by 1/1000 and 1000, radii of 1e-2 and
  * 1e7 mm, 2 to 64 surfaces, no ghosts and two thousand ghosts.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/extreme.h"
 #include "support/stage.h"
 #include "support/test.h"

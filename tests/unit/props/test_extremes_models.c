@@ -4,10 +4,6 @@
  * drawn or rejected, within the limits of work and memory of a frame. Work is
  * counted, not timed.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-
 #include "support/extreme.h"
 #include "support/models/hostile.h"
 #include "support/stage.h"

@@ -5,12 +5,6 @@
  * While the stop closes to an eleventh of its diameter, as from f/2 to f/22,
  * the image must change continuously.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/canvas.h"
 #include "support/extreme.h"
 #include "support/stage.h"

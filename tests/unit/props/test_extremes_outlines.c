@@ -4,12 +4,6 @@
  * compares the position of each ghost's outline, drawn with the grid that is
  * chosen for that error, with the position in the finest grid.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/quality.h"
 #include "support/extreme.h"
 #include "support/stage.h"

@@ -3,11 +3,6 @@
  * Tests extreme powers: from 1e-6 of white to a thousand suns, a power of
  * zero, and invalid numbers in files.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "lamp_files/lamp_list.h"

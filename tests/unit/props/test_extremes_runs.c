@@ -4,11 +4,6 @@
  * each period, bit by bit, without more memory. 600 frames, or 100 000 with
  * GLINT_LONG.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "support/extreme.h"

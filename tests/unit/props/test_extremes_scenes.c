@@ -6,12 +6,6 @@
  * with the reference renderer at one sample per pixel, except on silhouettes
  * and shadow edges.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/bake.h"
 #include "scenes/scene_frame.h"
 #include "reference/scenes/twin.h"

@@ -4,11 +4,6 @@
  * corners and up to 1000 pixels off-screen, stops of 3 to 64 blades and
  * circular stops.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/star/core_table.h"
 #include "engine/star/star_tables.h"
 #include "support/extreme.h"

@@ -4,11 +4,7 @@
  * sum to the max value of an image and above it, and the range checks of
  * CONFIG=qcheck.
  */
-#include <math.h>
 #include <signal.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -3,10 +3,6 @@
  * Tests the statistics of a scene: the state of each object (drawn, hidden,
  * ...), the object that covers it, and counts with known values.
  */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/account.h"
 #include "support/models/scene_builder.h"
 #include "support/test.h"

@@ -4,11 +4,6 @@
  * 360-degree environment. Values are compared with double precision in every
  * pixel format. Scenes that do not show the environment must not compute it.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "scene/around.h"
 #include "scene/state.h"
 #include "support/models/scene_builder.h"

@@ -4,11 +4,6 @@
  * workers or the order of jobs, closed meshes must have no gaps, and the lights
  * passed to the flare must be right.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/flare.h"
 #include "glint/scene/account.h"
 #include "scene/state.h"

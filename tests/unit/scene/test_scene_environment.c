@@ -4,12 +4,6 @@
  * the reference renderer in double precision. The lines for them in scene texts
  * and the brightness of highlights are checked, too.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/blob.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"

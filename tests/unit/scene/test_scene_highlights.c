@@ -5,12 +5,6 @@
  * must be equal for all tiles and workers. Also tests which bright objects are
  * not highlights, which highlights are merged, and extreme values.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/pool.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/highlights.h"

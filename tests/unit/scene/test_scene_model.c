@@ -2,9 +2,6 @@
  *
  * Checks that each kind of damage to a baked scene file is rejected.
  */
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/blob.h"
 #include "support/rng.h"
 #include "support/models/scene_builder.h"

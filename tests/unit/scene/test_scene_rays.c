@@ -4,11 +4,6 @@
  * examples of the tutorial computed by hand, and with exact arithmetic. Two
  * simpler methods, the area test and plain Q16.16, are shown to fail.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "scene/ray.h"
 #include "support/models/scene_builder.h"
 #include "support/rng.h"

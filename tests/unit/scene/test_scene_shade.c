@@ -3,11 +3,6 @@
  * Tests the shading of surfaces: examples A6 to A13 of the tutorial are
  * compared with results computed by hand or in double precision.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "scene/state.h"
 #include "support/canvas.h"
 #include "support/models/scene_builder.h"

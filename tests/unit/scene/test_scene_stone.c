@@ -5,12 +5,6 @@
  * tiles. Also tests incremental updates of light maps, extreme values, and
  * errors.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/scene/account.h"
 #include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"

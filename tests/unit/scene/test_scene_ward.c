@@ -3,12 +3,6 @@
  * Tests Ward's reflection lobe over an environment map: samples and levels, a
  * lobe in uniform light (white furnace), and the lookups in double precision.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/view.h"
 #include "support/models/texel.h"
 #include "support/models/ward_ball.h"

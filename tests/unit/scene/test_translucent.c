@@ -4,12 +4,6 @@
  * light scattered by the fit in double precision, and checks that invalid
  * files are rejected.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/blob.h"
 #include "glint/kernels.h"
 #include "linux/sets.h"

@@ -5,8 +5,6 @@
  * halved along the variable whose high powers weigh most, and that pupil parts
  * get the smallest free number.
  */
-#include <math.h>
-
 #include "bake/skew/pieces.h"
 #include "support/rng.h"
 #include "support/test.h"

@@ -5,12 +5,6 @@
  * wavelengths that were not fitted, rays must land where exact rays do. Rays
  * computed by rows must equal single rays.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bake/skew/skew_fit.h"
 #include "glint/bake.h"
 #include "glint/transfer.h"

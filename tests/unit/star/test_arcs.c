@@ -8,9 +8,6 @@
  */
 #include "engine/star/psf.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 #include "engine/star/star_tables.h"
 #include "glint/view.h"
 #include "support/stars/canvas.h"

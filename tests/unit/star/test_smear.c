@@ -5,11 +5,6 @@
  * any tiles and workers. A white mask must equal no mask; a black mask must
  * give no light.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/setup/dirt.h"
 #include "engine/setup/spectrum.h"
 #include "engine/star/smear_table.h"

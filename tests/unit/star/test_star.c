@@ -4,12 +4,6 @@
  * precision, and checks that the star changes continuously as it moves and
  * rotates.
  */
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/setup/spectrum.h"
 #include "engine/star/core_table.h"
 #include "engine/star/psf.h"

@@ -5,11 +5,6 @@
  * Tables are random and made with integers, so that they do not depend on
  * libm.
  */
-#include <stdbool.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "base/real.h"
 #include "support/rng.h"
 #include "support/stars/any.h"

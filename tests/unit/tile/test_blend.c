@@ -4,9 +4,6 @@
  * them with their definition in linear light, in every format, at full and
  * half resolution, with two passes in either order.
  */
-#include <math.h>
-#include <string.h>
-
 #include "glint/kernels.h"
 #include "support/canvas.h"
 #include "support/test.h"

@@ -4,9 +4,6 @@
  * triangle that covers pixels, and is also the light source of the flare that
  * is drawn over it. Its coverage is computed from 4 x 4 points per pixel.
  */
-#include <stdlib.h>
-#include <string.h>
-
 #include "base/real.h"
 #include "flare/draw_over.h"
 #include "glint/kernels.h"

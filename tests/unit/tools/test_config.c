@@ -4,11 +4,6 @@
  * every error is reported with its line number. A file with an error sets no
  * option.
  */
-#include <stdint.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "options/config.h"

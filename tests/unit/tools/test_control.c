@@ -7,9 +7,6 @@
 #define _GNU_SOURCE /* for mkstemp() and posix_openpt() */
 #include <fcntl.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>

@@ -3,10 +3,6 @@
  * Checks files that solo, mute or tint single ghosts: they set the stated
  * values, and invalid files are rejected.
  */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "model/ghost_file.h"
 #include "support/test.h"
 

@@ -3,10 +3,6 @@
  * Checks the values between and outside key frames, and that invalid files are
  * rejected.
  */
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
-
 #include "desk/keys.h"
 #include "support/test.h"
 

@@ -4,14 +4,9 @@
  * Tests that it leaks no resource, allocates nothing per frame, and handles
  * signals and unplugged cameras.
  */
-#include <stdint.h>
-
 #include <errno.h>
 #include <poll.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "support/fakes/fake_camera.h"

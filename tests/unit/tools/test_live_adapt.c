@@ -3,10 +3,6 @@
  * Tests how glint live adapts the quality to the frame rate, on simulated
  * machines with a given frame time per quality step.
  */
-#include <stdint.h>
-
-#include <string.h>
-
 #include "glint/quality.h"
 #include "live/live_adapt.h"
 #include "support/test.h"

@@ -3,11 +3,7 @@
  * Tests the statistics of a live run: percentiles against sorted latencies,
  * sums against hand-computed values, exact output lines, counts above 32 bits.
  */
-#include <stdint.h>
-
 #include <limits.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "support/rng.h"
 #include "live/live_log.h"

@@ -3,10 +3,6 @@
  * Checks that an occlusion mask dims lamps, and that lamps fade out
  * off-screen.
  */
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
-
 #include "desk/occlusion.h"
 #include "glint/area.h"
 #include "support/test.h"

@@ -2,10 +2,6 @@
  *
  * Tests the display of progress on standard error with a fake clock.
  */
-#include <stdint.h>
-
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "options/tool.h"

@@ -4,11 +4,6 @@
  * a budget of time per frame. Frame times come from tables, and the clock is
  * fake.
  */
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "live/live_adapt.h"
 #include "overlay/over_scene.h"
 #include "support/test.h"

@@ -3,10 +3,6 @@
  * Checks the marks that show detected lights: their position and colour in
  * images of every format, and that nothing is written outside the image.
  */
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "overlay/show_lights.h"
 #include "support/canvas.h"
 #include "support/test.h"

@@ -3,12 +3,6 @@
  * Tests the functions of glint sweep that do not measure images: Pareto
  * fronts, PNG files, parameters and quality levels.
  */
-#include <stdint.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/rng.h"
 #include "measure/plots/plot.h"
 #include "measure/sweep.h"

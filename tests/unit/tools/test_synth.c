@@ -4,11 +4,6 @@
  * restore all its numbers, and numbers must be in their ranges and independent
  * of one another.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "support/test.h"
 #include "synth/draw.h"
 

@@ -3,9 +3,6 @@
  * Tests the options with which the positions of a zoom lens are baked, by
  * comparing the keys of the models.
  */
-#include <stdint.h>
-#include <stdlib.h>
-
 #include "support/lens_check.h"
 #include "zooms/zoom_bake.h"
 

@@ -5,11 +5,6 @@
  * Images must be bit-identical for any tiles and workers, and a clean front
  * must add no light.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "engine/frame/front.h"
 #include "engine/setup/entrance.h"
 #include "support/hash.h"

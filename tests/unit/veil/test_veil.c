@@ -5,12 +5,6 @@
  * workers, tiles and order of jobs, and change continuously while a lamp
  * moves.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "glint/flare.h"
 #include "glint/kernels.h"
 #include "support/hash.h"

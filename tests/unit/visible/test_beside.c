@@ -5,10 +5,6 @@
  * visible at either position. Its model must contain the barrel apertures that
  * clip at either position.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-
 #include "bake/fit/zone_rays.h"
 #include "bake/visible/visible.h"
 #include "engine/setup/degrees.h"

@@ -4,10 +4,6 @@
  * apply, and how they treat barrel apertures that the light of a fisheye
  * grazes.
  */
-#include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-
 #include "bake/fit/zone_fit.h"
 #include "bake/visible/visible.h"
 #include "engine/setup/degrees.h"
