@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_check.h - steps shared by the tests of the V4L2 source. Each test
- * ends with must_close_camera(), which checks that no file, buffer mapping or
- * heap block remains.
+ * camera_check.h - steps shared by the tests of the V4L2 source. After
+ * each test, and before the camera is opened again, must_close_camera() checks
+ * that no file, buffer mapping or heap block remains.
  */
 #ifndef GLINT_SUPPORT_CAMERA_CHECK_H
 #define GLINT_SUPPORT_CAMERA_CHECK_H
@@ -16,30 +16,10 @@
 static struct glint_v4l2 v4l2;
 static struct glint_error said;
 static struct glint_source_frame frame;
+static bool camera_is_open;
 
 static const struct glint_v4l2_config any_camera = {
     .device = FAKE_PATH, .input = -1, .range = -1, .matrix = -1};
-
-static inline enum glint_status
-try_open_camera(const struct glint_v4l2_config *wish, enum glint_v4l2_io io)
-{
-    enum glint_status status;
-
-    said.text[0] = '\0';
-    status = glint_v4l2_open(&v4l2, wish ? wish : &any_camera, io, 4, &said);
-    if (status == GLINT_OK) {
-        status = v4l2.source.start(&v4l2.source, &said);
-        if (status != GLINT_OK)
-            v4l2.source.close(&v4l2.source);
-    }
-    return status;
-}
-
-static inline void must_open_camera(const struct glint_v4l2_config *wish)
-{
-    if (try_open_camera(wish, GLINT_V4L2_AUTO))
-        fail_msg("%s", said.text);
-}
 
 /* Checks that the camera is closed, that no buffer is mapped or allocated, and
  * that the code under test violated no rule of the driver. */
@@ -53,11 +33,56 @@ static inline void must_be_closed_camera(void)
     assert_int_equal(fake_camera_count_leaks(), 0);
 }
 
+/* Closes the camera if it is open, twice, which must have no effect. */
 static inline void must_close_camera(void)
 {
+    if (!camera_is_open)
+        return;
+    camera_is_open = false;
     v4l2.source.close(&v4l2.source);
     v4l2.source.close(&v4l2.source);
     must_be_closed_camera();
+}
+
+static inline void must_reset_camera(void)
+{
+    must_close_camera();
+    fake_camera_reset();
+}
+
+TEST_BEFORE
+{
+    camera_is_open = false;
+    fake_camera_reset();
+}
+
+TEST_AFTER
+{
+    must_close_camera();
+}
+
+/* Closes the camera first if it is open. */
+static inline enum glint_status
+try_open_camera(const struct glint_v4l2_config *wish, enum glint_v4l2_io io)
+{
+    enum glint_status status;
+
+    must_close_camera();
+    said.text[0] = '\0';
+    status = glint_v4l2_open(&v4l2, wish ? wish : &any_camera, io, 4, &said);
+    if (status == GLINT_OK) {
+        status = v4l2.source.start(&v4l2.source, &said);
+        if (status != GLINT_OK)
+            v4l2.source.close(&v4l2.source);
+    }
+    camera_is_open = status == GLINT_OK;
+    return status;
+}
+
+static inline void must_open_camera(const struct glint_v4l2_config *wish)
+{
+    if (try_open_camera(wish, GLINT_V4L2_AUTO))
+        fail_msg("%s", said.text);
 }
 
 /* Checks that opening fails with STATUS and that the message contains TEXT. */

@@ -21,9 +21,17 @@
 
 /* ------------------------------------------------------- fake framebuffer */
 
+static struct glint_fbdev fb = {.fd = -1};
+
+static void close_framebuffer_sink(void)
+{
+    if (fb.fd >= 0)
+        fb.sink.close(&fb.sink);
+}
+
 /* Sets the fake framebuffer to 8 x 6 pixels of XRGB8888, 40 bytes per row,
  * without off-screen rows. */
-static void reset_fake_to_one_page(void)
+static void set_fake_to_one_page(void)
 {
     uint8_t old[256];
     int fd;
@@ -55,14 +63,26 @@ static void reset_fake_to_one_page(void)
     fake_fb_calls = fake_fb_fail_at = fake_fb_maps = 0;
 }
 
+static void reset_fake_to_one_page(void)
+{
+    close_framebuffer_sink();
+    set_fake_to_one_page();
+}
+
 /* Sets the fake framebuffer to two pages of screen memory with vertical panning
  * in steps of one row, as the vc4 driver has. */
-static void reset_fake_to_two_pages(void)
+static void set_fake_to_two_pages(void)
 {
-    reset_fake_to_one_page();
+    set_fake_to_one_page();
     fake_fb->var.yres_virtual = 12;
     fake_fb->fix.ypanstep = 1;
     fake_fb->can_pan = true;
+}
+
+static void reset_fake_to_two_pages(void)
+{
+    close_framebuffer_sink();
+    set_fake_to_two_pages();
 }
 
 static const uint8_t *read_screen_byte(void)
@@ -97,22 +117,22 @@ static const struct glint_image *make_grey_image(int width, int height,
     return &image;
 }
 
-static void open_framebuffer_sink(struct glint_fbdev *fb,
-                                  const struct glint_fbdev_options *options)
+/* Opens the sink FB, which the next opening, reset or end of a test closes. */
+static void open_framebuffer_sink(const struct glint_fbdev_options *options)
 {
     static const struct glint_fbdev_options none;
     struct glint_error error;
 
-    if (glint_fbdev_open(fb, fake_fb_path, options ? options : &none, &error))
+    close_framebuffer_sink();
+    if (glint_fbdev_open(&fb, fake_fb_path, options ? options : &none, &error))
         fail_msg("%s", error.text);
 }
 
-static void draw_and_free_image(struct glint_fbdev *fb,
-                                const struct glint_image *image)
+static void draw_grey_image(int width, int height, int code)
 {
     struct glint_error error;
 
-    if (fb->sink.put(&fb->sink, image, &error))
+    if (fb.sink.put(&fb.sink, make_grey_image(width, height, code), &error))
         fail_msg("%s", error.text);
 }
 
@@ -140,16 +160,12 @@ static void expect_screen_rows(size_t first, int code)
 static void end_child_by_signal(int how)
 {
     static const struct glint_fbdev_options options = {.console = true};
-    struct glint_fbdev fb;
 
     for (int i = 1; i < SIGRTMIN; i++)
         signal(i, SIG_DFL);
-    open_framebuffer_sink(
-        /* opening a second sink changes the list of open sinks */
-        &fb, NULL);
-    fb.sink.close(&fb.sink);
-    open_framebuffer_sink(&fb, &options);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
+    open_framebuffer_sink(NULL);
+    open_framebuffer_sink(&options);
+    draw_grey_image(8, 6, 1);
     if (fake_fb->tty_mode != KD_GRAPHICS || fake_fb->var.yoffset != 6)
         _exit(99);
     if (fork() == 0)
@@ -167,6 +183,11 @@ static void end_child_by_signal(int how)
 TEST_BEFORE
 {
     reset_fake_to_one_page();
+}
+
+TEST_AFTER
+{
+    close_framebuffer_sink();
 }
 
 /* Checks that however a process ends, the console returns to text mode and
@@ -199,14 +220,13 @@ TEST(console_is_restored_after_every_end)
 
 TEST(draws_a_grey_image)
 {
-    struct glint_fbdev fb;
 
-    open_framebuffer_sink(&fb, NULL);
+    open_framebuffer_sink(NULL);
     assert_string_equal(fb.id, "fake");
     assert_int_equal(fb.n_pages, 1);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 100));
+    draw_grey_image(8, 6, 100);
     expect_screen_rows(0, 100);
-    draw_and_free_image(&fb, make_grey_image(16, 12, 50));
+    draw_grey_image(16, 12, 50);
     expect_screen_rows(0, 50);
     assert_int_equal(read_screen_byte()[6 * 40],
                      /* the first byte below the screen's rows is unchanged */
@@ -221,61 +241,55 @@ TEST(draws_a_grey_image)
  * image covered. */
 TEST(border_around_the_image_is_black)
 {
-    struct glint_fbdev fb;
     const uint8_t *mem;
 
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 100));
-    draw_and_free_image(&fb, make_grey_image(8, 2, 50));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 100);
+    draw_grey_image(8, 2, 50);
     mem = read_screen_byte();
     for (int y = 0; y < 6; y++)
         assert_int_equal(mem[40 * y], y == 2 || y == 3 ? 50 : 0);
     /* A second image of the same size does not draw the border again. */
     write_screen_byte(0, 123);
-    draw_and_free_image(&fb, make_grey_image(8, 2, 50));
+    draw_grey_image(8, 2, 50);
     assert_int_equal(read_screen_byte()[0], 123);
-    fb.sink.close(&fb.sink);
 }
 
 TEST(screen_may_start_inside_a_page)
 {
-    struct glint_fbdev fb;
 
     fake_fb->fix.smem_start = 0xfd000064;
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 77));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 77);
     expect_screen_rows(0x64, 77);
     assert_int_equal(read_screen_byte()[0x63], 0xaa);
-    fb.sink.close(&fb.sink);
     /* A console that was scrolled begins at a later row. */
     reset_fake_to_one_page();
     fake_fb->var.yres_virtual = 20;
     fake_fb->var.yoffset = 5;
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 78));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 78);
     expect_screen_rows(5 * 40, 78);
     assert_int_equal(read_screen_byte()[5 * 40 - 1], 0xaa);
-    draw_and_free_image(&fb, make_grey_image(8, 2, 78));
+    draw_grey_image(8, 2, 78);
     fake_fb->var.yoffset = 14;
-    draw_and_free_image(&fb, make_grey_image(8, 2, 79));
+    draw_grey_image(8, 2, 79);
     assert_int_equal(read_screen_byte()[14 * 40], 0);
     assert_int_equal(read_screen_byte()[16 * 40], 79);
-    fb.sink.close(&fb.sink);
 }
 
 TEST(frames_alternate_between_two_pages)
 {
-    struct glint_fbdev fb;
 
     reset_fake_to_two_pages();
-    open_framebuffer_sink(&fb, NULL);
+    open_framebuffer_sink(NULL);
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(fake_fb->var.yoffset, 0);
     for (int i = 1; i <= 5; i++) {
         const uint32_t shown = i % 2 ? 6 : 0;
         const int before = read_screen_byte()[(6 - shown) * 40];
 
-        draw_and_free_image(&fb, make_grey_image(8, 6, 10 * i));
+        draw_grey_image(8, 6, 10 * i);
         assert_int_equal(fake_fb->var.yoffset, shown);
         assert_int_equal(read_screen_byte()[shown * 40], 10 * i);
         assert_int_equal(read_screen_byte()[(6 - shown) * 40], before);
@@ -284,89 +298,80 @@ TEST(frames_alternate_between_two_pages)
     assert_int_equal(fake_fb->var.yoffset, 0);
     /* a glint that was killed left the second page visible */
     fake_fb->var.yoffset = 6;
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 1);
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->var.yoffset, 0);
 }
 
 TEST(without_panning_one_page_is_used)
 {
-    struct glint_fbdev fb;
 
     reset_fake_to_two_pages();
     fake_fb->can_pan = false;
-    open_framebuffer_sink(&fb, NULL);
+    open_framebuffer_sink(NULL);
     assert_int_equal(fb.n_pages, 1);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 9));
+    draw_grey_image(8, 6, 9);
     assert_int_equal(read_screen_byte()[0], 9);
-    fb.sink.close(&fb.sink);
 
     reset_fake_to_two_pages();
     /* The framebuffer memory is too small for two pages of 6 rows. */
     fake_fb->fix.smem_len = 11 * 40;
-    open_framebuffer_sink(&fb, NULL);
+    open_framebuffer_sink(NULL);
     assert_int_equal(fb.n_pages, 1);
     assert_int_equal(fake_fb->n_pan, 0);
-    fb.sink.close(&fb.sink);
 
     reset_fake_to_two_pages();
     fake_fb->fix.ypanstep =
         /* the 6 rows of a page are not a multiple of the panning step of 4 */
         4;
-    open_framebuffer_sink(&fb, NULL);
+    open_framebuffer_sink(NULL);
     assert_int_equal(fb.n_pages, 1);
-    fb.sink.close(&fb.sink);
 
     /* the first panning request succeeds, later ones fail */
     reset_fake_to_two_pages();
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 9));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 9);
     fake_fb->can_pan = false;
     fake_fb->n_pan = 0;
-    draw_and_free_image(&fb, make_grey_image(8, 6, 11));
+    draw_grey_image(8, 6, 11);
     assert_int_equal(read_screen_byte()[fake_fb->var.yoffset * 40], 11);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 12));
+    draw_grey_image(8, 6, 12);
     /* after a failure the sink does not pan again */
     assert_int_equal(fake_fb->n_pan, 1);
-    fb.sink.close(&fb.sink);
 }
 
 TEST(failed_vsync_ends_waiting)
 {
     const struct glint_fbdev_options options = {.vsync = true};
-    struct glint_fbdev fb;
 
-    open_framebuffer_sink(&fb, &options);
+    open_framebuffer_sink(&options);
     for (int i = 0; i < 3; i++)
-        draw_and_free_image(&fb, make_grey_image(8, 6, i));
+        draw_grey_image(8, 6, i);
     /* after a failure the sink no longer waits for vsync */
     assert_int_equal(fake_fb->n_vsync, 1);
-    fb.sink.close(&fb.sink);
     reset_fake_to_one_page();
     fake_fb->vsync_errno = 0;
-    open_framebuffer_sink(&fb, &options);
+    open_framebuffer_sink(&options);
     for (int i = 0; i < 3; i++)
-        draw_and_free_image(&fb, make_grey_image(8, 6, i));
+        draw_grey_image(8, 6, i);
     assert_int_equal(fake_fb->n_vsync, 3);
     fb.sink.close(&fb.sink);
     fake_fb->n_vsync = 0;
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 1);
     assert_int_equal(fake_fb->n_vsync, 0);
-    fb.sink.close(&fb.sink);
 }
 
 TEST(reports_a_removed_framebuffer)
 {
-    struct glint_fbdev fb;
     struct glint_error error;
     char want[128];
 
     snprintf(want, sizeof want, "%s: the framebuffer was removed",
              fake_fb_path);
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 5));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 5);
     fake_fb->gone = true;
     assert_int_equal(fb.sink.put(&fb.sink, make_grey_image(8, 6, 6), &error),
                      GLINT_E_DEVICE);
@@ -380,48 +385,44 @@ TEST(reports_a_removed_framebuffer)
  * pixel, then two pages of 32 bits. */
 TEST(adopts_changed_modes)
 {
-    struct glint_fbdev fb;
     const uint8_t *mem;
 
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 255));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 255);
     fake_fb->var.bits_per_pixel = 16;
     fake_fb->var.red = (struct fb_bitfield){11, 5, 0};
     fake_fb->var.green = (struct fb_bitfield){5, 6, 0};
     fake_fb->var.blue = (struct fb_bitfield){0, 5, 0};
     fake_fb->var.xres = 4;
     fake_fb->fix.line_length = 64;
-    draw_and_free_image(&fb, make_grey_image(4, 6, 255));
+    draw_grey_image(4, 6, 255);
     assert_int_equal(fb.width, 4);
     mem = read_screen_byte();
     for (int i = 0; i < 8; i++)
         assert_int_equal(mem[5 * 64 + i], 255);
     assert_int_equal(mem[5 * 64 + 8], 0xaa);
-    reset_fake_to_two_pages();
-    draw_and_free_image(&fb, make_grey_image(8, 6, 3));
+    set_fake_to_two_pages();
+    draw_grey_image(8, 6, 3);
     assert_int_equal(fb.n_pages, 2);
     assert_int_equal(read_screen_byte()[6 * 40], 3);
     /* the page was mapped again, and its old mapping removed */
     assert_int_equal(fake_fb_maps, 0);
-    fb.sink.close(&fb.sink);
 }
 
 TEST(missing_bit_fields_mean_xrgb8888)
 {
     static const struct fb_bitfield none;
-    struct glint_fbdev fb;
 
     fake_fb->var.red = fake_fb->var.green = fake_fb->var.blue = none;
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 100));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 100);
     expect_screen_rows(0, 100);
     fb.sink.close(&fb.sink);
     fake_fb->var.bits_per_pixel = 16;
-    open_framebuffer_sink(&fb, NULL);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 255));
+    open_framebuffer_sink(NULL);
+    draw_grey_image(8, 6, 255);
     assert_int_equal(fb.layout.green.length, 6);
     assert_int_equal(read_screen_byte()[15], 255);
-    fb.sink.close(&fb.sink);
 }
 
 /* -------------------------------------------------------- rejected devices */
@@ -429,7 +430,6 @@ TEST(missing_bit_fields_mean_xrgb8888)
 static void expect_open_fails(const char *part)
 {
     static const struct glint_fbdev_options options = {.console = true};
-    struct glint_fbdev fb;
     struct glint_error error = {""};
 
     assert_int_equal(glint_fbdev_open(&fb, fake_fb_path, &options, &error),
@@ -444,7 +444,6 @@ static void expect_open_fails(const char *part)
 TEST(reports_why_opening_fails)
 {
     static const struct glint_fbdev_options none;
-    struct glint_fbdev fb;
     struct glint_error error;
 
     fake_fb->open_errno = ENOENT;
@@ -490,7 +489,6 @@ TEST(reports_why_opening_fails)
 TEST(environment_variable_names_the_framebuffer)
 {
     static const struct glint_fbdev_options none;
-    struct glint_fbdev fb;
     struct glint_error error;
 
     setenv("FRAMEBUFFER", fake_fb_path, 1);
@@ -508,12 +506,11 @@ TEST(environment_variable_names_the_framebuffer)
 static void check_console_modes(bool taken, int during, int after)
 {
     static const struct glint_fbdev_options options = {.console = true};
-    struct glint_fbdev fb;
 
-    open_framebuffer_sink(&fb, &options);
+    open_framebuffer_sink(&options);
     assert_int_equal(fb.has_note, !taken);
     assert_int_equal(fake_fb->tty_mode, during);
-    draw_and_free_image(&fb, make_grey_image(8, 6, 1));
+    draw_grey_image(8, 6, 1);
     fb.sink.close(&fb.sink);
     assert_int_equal(fake_fb->tty_mode, after);
     if (!taken)
@@ -564,7 +561,6 @@ static bool draw_three_frames(void)
     static const struct glint_fbdev_options options = {.console = true,
                                                        .vsync = true};
     struct glint_error error = {""};
-    struct glint_fbdev fb;
     enum glint_status status =
         glint_fbdev_open(&fb, fake_fb_path, &options, &error);
 

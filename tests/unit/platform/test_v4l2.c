@@ -18,7 +18,7 @@ static uint32_t open_and_read_fourcc(const struct fake_mode *list, int n,
     struct glint_v4l2_config wish = any_camera;
     uint32_t fourcc;
 
-    fake_camera_reset();
+    must_reset_camera();
     memset(camera.mode, 0, sizeof camera.mode);
     memcpy(camera.mode, list, (size_t)n * sizeof *list);
     wish.width = 64;
@@ -27,13 +27,7 @@ static uint32_t open_and_read_fourcc(const struct fake_mode *list, int n,
     wish.fps_den = 1;
     must_open_camera(&wish);
     fourcc = v4l2.device.format.fourcc;
-    must_close_camera();
     return fourcc;
-}
-
-TEST_BEFORE
-{
-    fake_camera_reset();
 }
 
 TEST(chooses_the_cheapest_format)
@@ -77,7 +71,6 @@ TEST(rate_without_size_keeps_the_size)
     must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_MJPEG);
     assert_int_equal(v4l2.device.format.fps_num, 30);
-    must_close_camera();
 }
 
 /* Checks that two frame intervals match a request of 30 frames per second:
@@ -111,12 +104,10 @@ TEST(chooses_from_stepwise_sizes)
     must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_RGB24);
     assert_int_equal(v4l2.device.format.width, 200);
-    must_close_camera();
-    fake_camera_reset();
+    must_reset_camera();
     camera.has_no_sizes = true;
     must_open_camera(&wish);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_YUYV);
-    must_close_camera();
 }
 
 TEST(mjpg_needs_libjpeg)
@@ -126,7 +117,6 @@ TEST(mjpg_needs_libjpeg)
     camera.mode[1] = (struct fake_mode){V4L2_PIX_FMT_GREY, 64, 48, 30, 1};
     must_open_camera(NULL);
     assert_int_equal(v4l2.device.format.fourcc, V4L2_PIX_FMT_GREY);
-    must_close_camera();
 }
 
 TEST(rejects_unsupported_formats)
@@ -138,7 +128,7 @@ TEST(rejects_unsupported_formats)
         NULL, GLINT_E_UNSUPPORTED,
         FAKE_PATH ": delivers pixel format H264, which glint does not support; "
                   "--list-formats");
-    fake_camera_reset();
+    must_reset_camera();
     wish.fourcc = V4L2_PIX_FMT_NV12;
     must_refuse_to_open(
         &wish, GLINT_E_DEVICE,
@@ -163,7 +153,6 @@ TEST(uses_the_format_that_the_camera_sets)
     assert_int_equal(frame.image.width, 64);
     assert_int_equal(frame.image.height, 48);
     release_frame();
-    must_close_camera();
 }
 
 TEST(invalid_rates_are_unknown)
@@ -172,12 +161,11 @@ TEST(invalid_rates_are_unknown)
         {1, 0}, {1, UINT32_MAX}, {UINT32_MAX, 1}, {UINT32_MAX, UINT32_MAX}};
 
     for (int i = 0; i < 4; i++) {
-        fake_camera_reset();
+        must_reset_camera();
         camera.rate = odd[i];
         must_open_camera(NULL);
         /* a frame rate out of range is reported as unknown */
         assert_int_equal(v4l2.device.format.fps_num, 0);
-        must_close_camera();
     }
 }
 
@@ -189,7 +177,6 @@ TEST(selects_the_input)
     wish.input = 1;
     must_open_camera(&wish);
     assert_int_equal(camera.input, 1);
-    must_close_camera();
     wish.input = 2;
     must_refuse_to_open(&wish, GLINT_E_DEVICE, "has no input 2");
     fake_camera_fail_request(VIDIOC_S_INPUT, EBUSY, 1);
@@ -207,7 +194,6 @@ TEST(reads_the_colour_declaration)
     must_open_camera(NULL);
     assert_int_equal(v4l2.device.format.range, GLINT_RANGE_FULL);
     assert_int_equal(v4l2.device.format.matrix, GLINT_MATRIX_BT709);
-    must_close_camera();
     wish.range = GLINT_RANGE_LIMITED;
     wish.matrix = GLINT_MATRIX_BT601;
     must_open_camera(&wish);
@@ -216,7 +202,6 @@ TEST(reads_the_colour_declaration)
     assert_int_equal(frame.image.range, GLINT_RANGE_LIMITED);
     assert_int_equal(frame.image.matrix, GLINT_MATRIX_BT601);
     release_frame();
-    must_close_camera();
 }
 
 /* Checks that a long device name, as created by udev, is accepted, and that a
@@ -237,14 +222,13 @@ TEST(limits_the_device_name)
     must_refuse_to_open(&wish, GLINT_E_DEVICE, "device is too long");
     wish.device = "77"; /* short for /dev/video77 */
     must_open_camera(&wish);
-    must_close_camera();
 }
 
 /* ------------------------------------------------------- planes and blocks */
 
 static void set_camera_format(uint32_t fourcc, bool multiplanar)
 {
-    fake_camera_reset();
+    must_reset_camera();
     camera.mode[0].fourcc = camera.now.fourcc = fourcc;
     camera.multiplanar = multiplanar;
     if (multiplanar)
@@ -275,7 +259,6 @@ TEST(reads_padded_rows)
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0,
                                    2 * 64 + 24);
     release_frame();
-    must_close_camera();
     camera.stride_more = 0;
     camera.reports_no_stride = true;
     must_open_camera(NULL);
@@ -283,7 +266,6 @@ TEST(reads_padded_rows)
     assert_int_equal(get_next_frame(), GLINT_OK);
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 2 * 64);
     release_frame();
-    must_close_camera();
 }
 
 TEST(reads_planes_in_one_block)
@@ -296,7 +278,6 @@ TEST(reads_planes_in_one_block)
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
     expect_plane_offset_and_stride(1, address_of_mapped_block(0), 80 * 48, 80);
     release_frame();
-    must_close_camera();
     set_camera_format(V4L2_PIX_FMT_YUV420, true);
     camera.stride_more = 16;
     must_open_camera(NULL);
@@ -307,7 +288,6 @@ TEST(reads_planes_in_one_block)
     expect_plane_offset_and_stride(2, address_of_mapped_block(0),
                                    80 * 48 + 40 * 24, 40);
     release_frame();
-    must_close_camera();
 }
 
 TEST(reads_planes_in_several_blocks)
@@ -324,7 +304,6 @@ TEST(reads_planes_in_several_blocks)
     expect_plane_offset_and_stride(0, address_of_mapped_block(0), 0, 80);
     expect_plane_offset_and_stride(1, address_of_mapped_block(1), 0, 80);
     release_frame();
-    must_close_camera();
     set_camera_format(V4L2_PIX_FMT_YUV420M, true);
     must_open_camera(NULL);
     f = fake_camera_add_frame(0, 9);
@@ -342,7 +321,6 @@ TEST(reads_planes_in_several_blocks)
     /* the third plane is empty, so the frame is not delivered */
     must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
-    must_close_camera();
 }
 
 TEST(skips_data_before_the_image)
@@ -371,7 +349,6 @@ TEST(skips_data_before_the_image)
     f->bytesused[0] = 100;
     must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
-    must_close_camera();
 }
 
 TEST(rejects_too_small_buffers)
@@ -380,15 +357,14 @@ TEST(rejects_too_small_buffers)
     must_refuse_to_open(
         NULL, GLINT_E_DEVICE,
         "64x48 YUYV needs more bytes than the 6143 that the driver reports");
-    fake_camera_reset();
+    must_reset_camera();
     /* The driver states that its buffer is one byte larger than it is. */
     camera.length_less = 1;
     must_open_camera(NULL);
     fake_camera_add_frame(0, 9);
     must_get_no_frame();
     assert_int_equal(frame.n_corrupt, 1);
-    must_close_camera();
-    fake_camera_reset();
+    must_reset_camera();
     camera.now.width = GLINT_MAX_SIDE + 1;
     must_refuse_to_open(NULL, GLINT_E_UNSUPPORTED, "pictures of ");
 }
@@ -417,7 +393,6 @@ TEST(skips_damaged_frames)
     deliver_frame_of_bytes(4, 2 * 64 * 48);
     must_get_frame(9);
     assert_int_equal(frame.n_corrupt, 0);
-    must_close_camera();
 }
 
 /* Checks that an intact frame is delivered even if damaged frames precede or
@@ -432,7 +407,6 @@ TEST(delivers_intact_frames_among_damaged)
     assert_int_equal(frame.n_corrupt, 2);
     assert_int_equal(frame.n_late, 0);
     assert_int_equal(camera.n_queued, 4);
-    must_close_camera();
 }
 
 TEST(delivers_the_newest_frame)
@@ -455,7 +429,6 @@ TEST(delivers_the_newest_frame)
     release_frame(); /* releasing the frame again has no effect */
     assert_int_equal(camera.n_queued, 4);
     must_get_frame(13);
-    must_close_camera();
 }
 
 static int64_t read_frame_time_stamp(int64_t stamp_us, bool unknown_clock)
@@ -482,7 +455,6 @@ TEST(time_stamps_are_never_in_the_future)
     assert_int_equal(read_frame_time_stamp(now_us - 9000000, true), now_us);
     assert_int_equal(read_frame_time_stamp(now_us + 5000, false), now_us);
     assert_int_equal(read_frame_time_stamp(now_us + 5000, true), now_us);
-    must_close_camera();
 }
 
 /* The source lends the buffer of a frame to the caller. Checks that other
@@ -503,7 +475,6 @@ TEST(lent_frame_is_unchanged)
     }
     v4l2.source.done(&v4l2.source, &kept);
     assert_int_equal(camera.n_queued, 4);
-    must_close_camera();
 }
 
 /* Checks when streaming starts. An open camera, also after a restart, has its
@@ -531,7 +502,6 @@ TEST(streams_only_when_started)
     fake_camera_add_frame(0, 5);
     must_get_frame(5);
     assert_int_equal(camera.n_streamons, 3);
-    must_close_camera();
 }
 
 static int count_dropped_before_sequence(uint32_t sequence)
@@ -552,23 +522,19 @@ TEST(sequence_gaps_are_dropped_frames)
     assert_int_equal(count_dropped_before_sequence(3),
                      0); /* the driver restarted its sequence numbers at 0 */
     assert_int_equal(count_dropped_before_sequence(4), 0);
-    must_close_camera();
     must_open_camera(NULL);
     assert_int_equal(count_dropped_before_sequence(UINT32_MAX - 1), 0);
     assert_int_equal(count_dropped_before_sequence(UINT32_MAX), 0);
     assert_int_equal(count_dropped_before_sequence(0), 0);
     assert_int_equal(count_dropped_before_sequence(2), 1);
-    must_close_camera();
     must_open_camera(NULL);
     /* The first frame of v4l2loopback is from before the stream began. */
     assert_int_equal(count_dropped_before_sequence(0), 0);
     assert_int_equal(count_dropped_before_sequence(28), 0);
     assert_int_equal(count_dropped_before_sequence(30), 1);
-    must_close_camera();
     must_open_camera(NULL); /* some drivers leave the sequence number at 0 */
     for (int i = 0; i < 5; i++)
         assert_int_equal(count_dropped_before_sequence(0), 0);
-    must_close_camera();
 }
 
 /* Checks that missing sequence numbers and damaged frames before a delivered
@@ -586,7 +552,6 @@ TEST(gaps_and_damaged_frames_are_counted_together)
     assert_int_equal(frame.n_dropped, 4);
     assert_int_equal(frame.n_corrupt, 1);
     assert_int_equal(frame.n_late, 1);
-    must_close_camera();
 }
 
 /* Checks that implausible jumps of the sequence number are not counted as
@@ -599,7 +564,6 @@ TEST(implausible_sequence_jumps_are_not_counted)
         fake_camera_add_frame(i * 0x7fffffff, 9);
     must_get_frame(9);
     assert_int_equal(frame.n_dropped, 0);
-    must_close_camera();
 }
 
 TEST(decodes_mjpg)
@@ -620,7 +584,6 @@ TEST(decodes_mjpg)
     assert_int_equal(frame.n_corrupt, 1);
     assert_int_equal(frame.n_late, 2);
     assert_int_equal(camera.n_queued, 4);
-    must_close_camera();
 }
 
 /* ------------------------------------------------------- other memory types */
@@ -637,7 +600,6 @@ static void check_chosen_io_method(enum glint_v4l2_io wish,
         assert_int_equal(frame.n_dropped, 0);
     }
     assert_int_equal(camera.n_maps, got == GLINT_V4L2_MMAP ? 4 : 0);
-    must_close_camera();
 }
 
 TEST(every_memory_type_is_used)
@@ -649,7 +611,7 @@ TEST(every_memory_type_is_used)
     check_chosen_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_USERPTR);
     set_camera_format(V4L2_PIX_FMT_NV12M, true);
     check_chosen_io_method(GLINT_V4L2_USERPTR, GLINT_V4L2_USERPTR);
-    fake_camera_reset();
+    must_reset_camera();
     camera.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
     check_chosen_io_method(GLINT_V4L2_AUTO, GLINT_V4L2_READ);
     check_chosen_io_method(GLINT_V4L2_READ, GLINT_V4L2_READ);
@@ -678,7 +640,6 @@ TEST(works_with_two_buffers)
         fake_camera_add_frame(i, (int)i);
         must_get_frame((int)i);
     }
-    must_close_camera();
     camera.max_buffers = 0;
     must_refuse_to_open(NULL, GLINT_E_DEVICE,
                         "VIDIOC_REQBUFS: Cannot allocate memory");

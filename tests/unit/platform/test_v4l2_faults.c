@@ -12,11 +12,6 @@
 
 /* -------------------------------------------------------- failing requests */
 
-TEST_BEFORE
-{
-    fake_camera_reset();
-}
-
 TEST(failed_queueing_is_repeated)
 {
     must_open_camera(NULL);
@@ -29,14 +24,12 @@ TEST(failed_queueing_is_repeated)
     must_get_frame(2);
     assert_int_equal(camera.n_queued, 4);
     assert_int_equal(v4l2.source.n_restarts, 0);
-    must_close_camera();
     fake_camera_fail_request(VIDIOC_QBUF, EIO,
                              1); /* a request fails while the stream starts */
     must_open_camera(NULL);
     assert_int_equal(camera.n_queued, 3);
     must_get_no_frame();
     assert_int_equal(camera.n_queued, 4);
-    must_close_camera();
 }
 
 TEST(opening_is_repeated_once)
@@ -44,13 +37,12 @@ TEST(opening_is_repeated_once)
     static const unsigned long request[] = {VIDIOC_REQBUFS, VIDIOC_STREAMON};
 
     for (int i = 0; i < 2; i++) {
-        fake_camera_reset();
+        must_reset_camera();
         fake_camera_fail_request(request[i], EINVAL, 1);
         must_open_camera(NULL);
         assert_int_equal(v4l2.io, GLINT_V4L2_MMAP);
         fake_camera_add_frame(0, 1);
         must_get_frame(1);
-        must_close_camera();
     }
 }
 
@@ -78,11 +70,11 @@ TEST(reports_failed_requests)
     };
 
     for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
-        fake_camera_reset();
+        must_reset_camera();
         fake_camera_fail_request(failure[i].request, failure[i].number, -1);
         must_refuse_to_open(NULL, GLINT_E_DEVICE, failure[i].text);
     }
-    fake_camera_reset();
+    must_reset_camera();
     camera.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
     must_refuse_to_open(NULL, GLINT_E_DEVICE,
                         "'Fake' does not capture pictures");
@@ -98,12 +90,11 @@ TEST(works_without_optional_requests)
         VIDIOC_EXPBUF,   VIDIOC_ENUM_FRAMESIZES, VIDIOC_ENUM_FRAMEINTERVALS};
 
     for (size_t i = 0; i < sizeof request / sizeof *request; i++) {
-        fake_camera_reset();
+        must_reset_camera();
         fake_camera_fail_request(request[i], ENOTTY, -1);
         must_open_camera(NULL);
         fake_camera_add_frame(0, 1);
         must_get_frame(1);
-        must_close_camera();
     }
 }
 
@@ -137,7 +128,6 @@ TEST(broken_stream_is_restarted)
     must_get_frame_of_width(32, 2);
     /* the sequence numbers restarted at 0, so no frame counts as dropped */
     assert_int_equal(frame.n_dropped, 0);
-    must_close_camera();
 }
 
 /* Checks that a restart may change to another supported format, and back. */
@@ -157,7 +147,6 @@ TEST(restart_may_change_the_format)
     camera.is_broken = true;
     assert_int_equal(get_next_frame(), GLINT_E_UNSUPPORTED);
     assert_non_null(strstr(said.text, "delivers pixel format H264"));
-    must_close_camera();
 }
 
 /* Checks that requests that fail during a restart are repeated for a limited
@@ -170,14 +159,13 @@ TEST(failing_restart_is_repeated)
     for (int i = 0; i < 4; i++) {
         int failed_ms;
 
-        fake_camera_reset();
+        must_reset_camera();
         must_open_camera(NULL);
         camera.is_broken = true;
         fake_camera_fail_request(request[i], EBUSY, 8);
         assert_int_equal(get_frames_during_ms(600, &failed_ms), GLINT_OK);
         fake_camera_add_frame(0, 3);
         must_get_frame(3);
-        must_close_camera();
     }
 }
 
@@ -206,7 +194,7 @@ TEST(failed_restart_ends_with_a_message)
     for (size_t i = 0; i < sizeof failure / sizeof *failure; i++) {
         int failed_ms;
 
-        fake_camera_reset();
+        must_reset_camera();
         must_open_camera(NULL);
         camera.is_broken = true;
         fake_camera_fail_request(failure[i].request, failure[i].number, -1);
@@ -215,7 +203,6 @@ TEST(failed_restart_ends_with_a_message)
         assert_in_range(failed_ms, 500, 1000);
         if (!strstr(said.text, failure[i].text))
             fail_msg("'%s' does not contain '%s'", said.text, failure[i].text);
-        must_close_camera();
     }
 }
 
@@ -230,7 +217,6 @@ TEST(delivered_frame_resets_the_restart_limit)
         assert_int_equal(v4l2.source.n_restarts, i);
         fake_camera_advance_clock(100000);
     }
-    must_close_camera();
 }
 
 TEST(reports_an_unplugged_camera)
@@ -246,19 +232,17 @@ TEST(reports_an_unplugged_camera)
     release_frame();
     assert_int_equal(get_next_frame(), GLINT_E_DEVICE);
     assert_string_equal(said.text, FAKE_PATH ": the camera was removed");
-    must_close_camera();
     must_refuse_to_open(NULL, GLINT_E_DEVICE, "no such device; --list-devices");
 
     /* The loss of the camera is reported first by request[i]. */
     for (int i = 0; i < 2; i++) {
-        fake_camera_reset();
+        must_reset_camera();
         must_open_camera(NULL);
         camera.is_broken = i == 1;
         fake_camera_fail_request(request[i], ENODEV, -1);
         assert_int_equal(get_frames_during_ms(100, &failed_ms), GLINT_E_DEVICE);
         assert_int_equal(failed_ms, 0);
         assert_non_null(strstr(said.text, "the camera was removed"));
-        must_close_camera();
     }
 }
 
@@ -271,7 +255,7 @@ static void check_stream_of_damaged_frames(bool as_jpeg)
     enum glint_status status = GLINT_OK;
     int n_corrupt = 0, n_frames;
 
-    fake_camera_reset();
+    must_reset_camera();
     if (as_jpeg)
         camera.mode[0].fourcc = V4L2_PIX_FMT_MJPEG;
     must_open_camera(NULL);
@@ -293,7 +277,6 @@ static void check_stream_of_damaged_frames(bool as_jpeg)
                                              "restarting the stream failed");
     assert_int_equal(n_frames, 60); /* two seconds at 30 frames per second */
     assert_int_equal(n_corrupt, 60);
-    must_close_camera();
 }
 
 TEST(only_damaged_frames_cause_a_restart)
@@ -318,7 +301,6 @@ TEST(one_intact_frame_in_30_is_enough)
             must_get_no_frame();
     }
     assert_int_equal(v4l2.source.n_restarts, 0);
-    must_close_camera();
 }
 
 TEST(unqueued_buffer_causes_a_restart)
@@ -346,7 +328,6 @@ TEST(unqueued_buffer_causes_a_restart)
     assert_int_equal(camera.n_queued, 4);
     fake_camera_add_frame(0, 3);
     must_get_frame(3);
-    must_close_camera();
 }
 
 /* ---------------------------------------------------------- missing frames */
@@ -370,7 +351,6 @@ TEST(missing_frames_cause_a_restart)
     assert_in_range(failed_ms, 4200, 4400);
     assert_string_equal(said.text, FAKE_PATH ": no frames arrive; restarting "
                                              "the stream failed");
-    must_close_camera();
 }
 
 TEST(slow_camera_is_not_restarted)
@@ -385,7 +365,6 @@ TEST(slow_camera_is_not_restarted)
         must_get_frame(1);
     }
     assert_int_equal(v4l2.source.n_restarts, 0);
-    must_close_camera();
 }
 
 /* ---------------------------------------------------- changed input signal */
@@ -401,12 +380,11 @@ TEST(changed_source_causes_a_restart)
     assert_int_equal(v4l2.source.n_restarts, 1);
     fake_camera_add_frame(0, 2);
     must_get_frame_of_width(32, 2);
-    must_close_camera();
 }
 
 static void reset_camera_with_hdmi(void)
 {
-    fake_camera_reset();
+    must_reset_camera();
     camera.has_dv = true;
 }
 
@@ -426,7 +404,6 @@ TEST(changed_timings_cause_a_restart)
     assert_int_equal(camera.timings.width, 128);
     fake_camera_add_frame(0, 2);
     must_get_frame_of_width(128, 2);
-    must_close_camera();
 }
 
 /* Checks that the signal at the input may be absent for any time and return,
@@ -452,7 +429,6 @@ TEST(signal_may_be_absent_for_any_time)
         }
         fake_camera_add_frame(0, 1);
         must_get_frame(1);
-        must_close_camera();
     }
 }
 
@@ -467,7 +443,6 @@ TEST(timings_without_signal_are_used)
     assert_int_equal(camera.n_s_dv_timings, 0);
     fake_camera_add_frame(0, 1);
     must_get_frame(1);
-    must_close_camera();
 }
 
 /* Checks a signal that is repeatedly lost and found again without a frame, as
@@ -495,7 +470,6 @@ TEST(wavering_signal_is_not_a_failure)
     must_get_no_frame();
     fake_camera_add_frame(0, 1);
     must_get_frame_of_width(96, 1);
-    must_close_camera();
 }
 
 /* Checks that a driver that reports a change at every start does not cause a
@@ -511,7 +485,6 @@ TEST(endless_changes_cause_no_busy_loop)
         must_get_no_frame();
     }
     assert_true(fake_camera_time_us() - start > 500000);
-    must_close_camera();
 }
 
 /* ------------------------------------------ restart with other memory types */
@@ -532,7 +505,6 @@ static void check_restart_of_io_method(enum glint_v4l2_io io)
     camera.now.width = 64;
     fake_camera_add_frame(0, 2);
     must_get_frame_of_width(64, 2);
-    must_close_camera();
 }
 
 TEST(restarts_with_user_memory_and_read)
@@ -580,7 +552,7 @@ static void check_session_failing_calls(int number, bool forever,
         enum glint_status status;
 
         n++;
-        fake_camera_reset();
+        must_reset_camera();
         camera.multiplanar = multiplanar;
         camera.mode[0].fourcc = camera.now.fourcc = fourcc;
         camera.caps = V4L2_CAP_READWRITE | V4L2_CAP_STREAMING |
