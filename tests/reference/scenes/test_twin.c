@@ -8,6 +8,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
+static struct twin_hit hit;
+
 struct stage {
     struct glint_description scene;
     struct twin twin;
@@ -91,7 +93,6 @@ TEST(a2_a3_triangle_has_its_normal_and_hit)
     struct stage *s = open_reference_for_text(
         TUTORIAL "triangle t 0 40 120 30 -40 60 -30 -40 60 material m\n");
     const struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
-    struct twin_hit hit;
 
     assert_true(reference_intersect_scene(&s->twin, &ray, 1e9, &hit));
     assert_vec_near(hit.normal, 0, .6, -.8, 1e-15);
@@ -122,7 +123,6 @@ TEST(a4_points_inside_a_triangle_are_hit)
             const bool is_in = u >= 0 && w >= 0 && u + w <= 1;
             double p[3];
             struct twin_ray ray;
-            struct twin_hit hit;
 
             for (int k = 0; k < 3; k++)
                 p[k] = corner[0][k] + u * (corner[1][k] - corner[0][k]) +
@@ -154,7 +154,6 @@ TEST(a5_nearest_triangle_is_visible)
     static const double t[3] = {80, 84, 77};
     const struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
     struct twin_pixel pixel;
-    struct twin_hit hit;
 
     for (int i = 0; i < 3; i++) {
         assert_true(reference_intersect_object(&s->twin, i, &ray, 1e9, &hit));
@@ -300,7 +299,6 @@ TEST(a10_lit_ball_has_no_shadow_acne)
     for (int i = 0; i < 20000; i++) {
         const double a = .24 * rng_signed(&seed), b = .24 * rng_signed(&seed);
         const struct twin_ray ray = make_ray(0, 0, -4, a, b, 1);
-        struct twin_hit hit;
 
         if (reference_intersect_scene(&s->twin, &ray, 1e9, &hit) &&
             vec_dot(hit.normal, ray.toward) < -.01)
@@ -471,7 +469,6 @@ TEST(a15_ray_finds_both_hits_of_a_ball)
         open_reference_for_text("hand left\nmaterial m phong 1 0 0\n"
                                 "sphere s at 0 0 5 radius 3 material m\n");
     struct twin_ray ray = make_ray(0, 0, 0, 0, 0, 1);
-    struct twin_hit hit;
 
     assert_true(reference_intersect_scene(&s->twin, &ray, 1e9, &hit));
     assert_true(hit.t == 2 && !hit.inside);
@@ -531,7 +528,6 @@ TEST(tree_matches_brute_force)
     for (int i = 0; i < 2000; i++) {
         const struct twin_ray ray = make_ray(0, 0, 0, .5 * rng_signed(&seed),
                                              .5 * rng_signed(&seed), 1);
-        struct twin_hit hit;
         double nearest = 1e9;
 
         for (int k = 0; k < 100; k++) {

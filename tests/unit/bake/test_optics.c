@@ -9,6 +9,8 @@
 #include "support/lens_check.h"
 #include "glint/bake.h"
 
+static struct glint_optics optics;
+
 static const double pi = 3.14159265358979323846;
 
 /* ------------------------------------------------------------------- glass */
@@ -221,7 +223,6 @@ static struct glint_prescription make_biconvex_lens(void)
 TEST(stop_behind_a_biconvex_lens_matches)
 {
     const struct glint_prescription lens = make_biconvex_lens();
-    struct glint_optics optics;
 
     glint_optics_of(&lens, &optics);
     assert_near(optics.focal_mm, BICONVEX_F, 1e-12);
@@ -244,7 +245,6 @@ TEST(stop_behind_a_biconvex_lens_matches)
 TEST(stop_before_a_biconvex_lens_matches)
 {
     struct glint_prescription lens = make_biconvex_lens();
-    struct glint_optics optics;
 
     lens.stop_after = 0;
     lens.stop_thickness_mm = 7.0;
@@ -286,7 +286,6 @@ static const struct {
 TEST(focal_lengths_match_published_values)
 {
     static struct glint_prescription lens;
-    struct glint_optics optics;
 
     for (int i = 0; i < N_TABLES; i++) {
         load_lens(&lens, tables[i].name);

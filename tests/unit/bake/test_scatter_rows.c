@@ -8,6 +8,8 @@
 #include "bake/translucent/slab.h"
 #include "support/lens_check.h"
 
+static struct glint_error error;
+
 enum { SIDE = 24, KERNEL = 13, K2 = KERNEL * KERNEL };
 
 static struct glint_stone make_medium(enum glint_stone_pattern pattern)
@@ -25,8 +27,6 @@ static struct glint_stone make_medium(enum glint_stone_pattern pattern)
 static void compute_scatter_rows(const struct glint_stone *stone,
                                  struct glint_scatter_rows *rows)
 {
-    struct glint_error error;
-
     assert_ok(glint_scatter_compute(stone, NULL, rows, &error));
 }
 
@@ -163,7 +163,6 @@ TEST(c2_places)
     const struct glint_float_image picture = {WIDE, WIDE, rgb};
     const struct glint_float_image narrow = {WIDE - 1, WIDE, rgb};
     struct glint_scatter_rows rows;
-    struct glint_error error;
     long long held;
 
     for (int i = 0; i < WIDE * WIDE * 3; i++)
@@ -270,7 +269,6 @@ TEST(medium_of_one_texel_has_one_entry)
 TEST(rejects_invalid_media)
 {
     struct glint_scatter_rows rows;
-    struct glint_error error;
 
     for (int i = 0; i < 9; i++) {
         struct glint_stone stone = make_medium(GLINT_STONE_CHESS);
@@ -324,7 +322,6 @@ TEST(reports_progress)
     const struct glint_watch watch = {count_progress_calls, cancel_after_limit,
                                       seen};
     struct glint_scatter_rows rows;
-    struct glint_error error;
 
     assert_ok(glint_scatter_compute(&stone, &watch, &rows, &error));
     assert_true(seen[0] > 1 - 1e-9 && seen[1] > 100);

@@ -9,6 +9,8 @@
 #include "glint/bake.h"
 #include "support/lens_check.h"
 
+static struct glint_optics optics;
+
 #define LINE_D_NM 587.5618
 
 static struct glint_prescription lens;
@@ -285,7 +287,6 @@ TEST(intersections_match_a_second_method)
 TEST(hyperboloid_has_a_point_focus)
 {
     const double direction[3] = {0, 0, 1};
-    struct glint_optics optics;
     struct glint_ray ray;
 
     load_lens_of_surfaces(
@@ -370,8 +371,6 @@ TEST(spheres_as_conics_or_torics_give_the_same_ghosts)
  * symmetry. */
 TEST(anamorphic_lens_has_two_focal_lengths)
 {
-    struct glint_optics optics;
-
     load_lens_of_surfaces(
         "surface -80 3 20 1.6 50\nshape cylinder x\nsurface flat 55 20 air\n"
         "surface 120 4 20 1.6 50\nshape cylinder x\nsurface flat 5 20 air\n"
@@ -519,7 +518,6 @@ TEST(stop_around_the_glass_gives_the_same_rays)
                                "surface -30 12 7 air\n";
     const double way[3] = {0.3, 0, sqrt(1 - 0.09)};
     struct glint_error error = {""};
-    struct glint_optics optics;
     struct glint_ray ray;
     char table[300];
 

@@ -7,6 +7,8 @@
 #include "support/lens_check.h"
 #include "glint/bake.h"
 
+static struct glint_error error;
+
 #define LINE_D_NM 587.5618
 
 static const char *const zooms[] = {"canon-zoom", "nikon-zoom", "itoh-zoom"};
@@ -24,8 +26,6 @@ static void load_zoom_lens(const char *name)
 
 static void set_zoom_position(double along)
 {
-    struct glint_error error = {""};
-
     if (glint_prescription_zoom(&zoom, along, &error) != GLINT_OK)
         fail_msg("%s", error.text);
 }
@@ -33,8 +33,6 @@ static void set_zoom_position(double along)
 static void focus_lens_at_distance(struct glint_prescription *lens,
                                    double metres)
 {
-    struct glint_error error = {""};
-
     if (glint_prescription_focus(lens, metres, &error) != GLINT_OK)
         fail_msg("%s", error.text);
 }
@@ -72,7 +70,6 @@ TEST(focal_length_is_monotone_between_columns)
         double before = 0;
 
         for (int k = 0; k <= STEPS; k++) {
-            struct glint_error error;
             struct glint_optics optics;
             double along = -1;
 
@@ -196,7 +193,6 @@ TEST(elements_stay_solid_behind_a_front_stop)
         "name t\nfilm 36 24\nf-number 10\nstop 5 8\n"
         "surface 100 4 12 1.5 60\nsurface -100 0.5 12 air\nfocus\n"
         "surface 100 4 12 1.5 60\nsurface -100 47 12 air\nend\n";
-    struct glint_error error = {""};
 
     parse_lens_text(&single, text);
     focus_lens_at_distance(&single, 20);
@@ -211,7 +207,6 @@ TEST(elements_stay_solid_behind_a_front_stop)
 
 static void check_table_is_rejected(const char *body, const char *cause)
 {
-    struct glint_error error = {""};
     char text[1000];
 
     snprintf(text, sizeof text, "name t\nfilm 36 24\n%s\n", body);
@@ -259,7 +254,6 @@ TEST(position_does_not_depend_on_the_previous_one)
     static const char text[] =
         "name t\nfilm 36 24\nf-number 10\n" FRONT "4/6/7" BACK;
     struct glint_prescription once;
-    struct glint_error error = {""};
     const double places[] = {0.3, 0.75, 1, 0.2, 0};
 
     parse_lens_text(&once, text);
@@ -279,7 +273,6 @@ TEST(two_columns_are_interpolated_linearly)
     static const char *const texts[] = {
         "name t\nfilm 36 24\nf-number 10/20\n" FRONT "4/6" BACK,
         "name t\nfilm 36 24\nf-number 10/20\n" FRONT "6/4" BACK};
-    struct glint_error error = {""};
 
     for (int k = 0; k < 2; k++) {
         struct glint_optics optics;
@@ -298,7 +291,6 @@ TEST(two_columns_are_interpolated_linearly)
 
 TEST(rejects_invalid_positions)
 {
-    struct glint_error error = {""};
     double along;
 
     load_lens(&single, "heliar-tronnier");

@@ -6,6 +6,8 @@
 #include "base/blob.h"
 #include "support/test.h"
 
+static struct glint_blob blob;
+
 enum { HEADER = 100, BYTES = 124 };
 
 static const struct glint_blob_kind kind = {UINT32_C(0x424f4c42), 3, HEADER};
@@ -31,8 +33,6 @@ static void make_baked_file(struct file *f)
 
 static enum glint_blob_fault open_baked_file(const struct file *f, size_t bytes)
 {
-    struct glint_blob blob;
-
     return glint_blob_open(&blob, &kind, f, bytes);
 }
 
@@ -45,7 +45,6 @@ TEST(crc32_of_known_text)
 
 TEST(fields_have_the_offsets_of_existing_files)
 {
-    struct glint_blob blob;
     struct file f;
 
     make_baked_file(&f);
@@ -100,7 +99,6 @@ TEST(detects_any_changed_bit)
 
 static enum glint_blob_fault check_blob_name(const char *name, size_t length)
 {
-    struct glint_blob blob;
     struct file f;
 
     make_baked_file(&f);
@@ -126,7 +124,6 @@ TEST(rejects_endless_and_unprintable_names)
 
 TEST(rejects_sections_outside_the_file)
 {
-    struct glint_blob blob;
     struct file f;
 
     make_baked_file(&f);

@@ -7,6 +7,8 @@
 #include "glint/area.h"
 #include "support/test.h"
 
+static struct glint_area area;
+
 static const double degree = 3.14159265358979323846 / 180;
 
 enum { MOST = 61, PIXELS = 1000 };
@@ -34,7 +36,6 @@ static void compute_lamp_position(const struct glint_lamp *lamp, double *u,
 static int compute_point_sums(const struct glint_lamp *lamp, double thinning,
                               double sum[5])
 {
-    struct glint_area area;
     const struct glint_area_rule rule = {PIXELS, MOST, lamp->power, thinning};
     const int n = glint_area_plan(&area, lamp, &rule);
     double u0, v0, u, v;
@@ -63,7 +64,6 @@ static int compute_point_sums(const struct glint_lamp *lamp, double thinning,
 TEST(small_lamp_is_one_point)
 {
     const struct glint_lamp lamp = make_disc_lamp(0, 0);
-    struct glint_area area;
     struct glint_lamp point;
     int total;
     const struct glint_area_rule rule =
@@ -156,7 +156,6 @@ TEST(point_count_is_limited)
         int n = 0;
 
         for (int i = 0; i < 10; i++) {
-            struct glint_area area;
 
             n += glint_area_plan(&area, &lamps[i], &rule);
         }
@@ -174,7 +173,6 @@ TEST(faint_lamps_get_fewer_points)
 {
     struct glint_lamp lamps[2] = {make_disc_lamp(30, 30),
                                   make_disc_lamp(30, 30)};
-    struct glint_area area;
     struct glint_area_rule rule;
     int total;
 
@@ -192,7 +190,6 @@ TEST(faint_lamps_get_fewer_points)
  * long it is a fifth of that. */
 TEST(point_distance_is_that_of_a_square_grid)
 {
-    struct glint_area area;
     double last = 0;
     int total;
 

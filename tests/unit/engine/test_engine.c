@@ -8,6 +8,8 @@
 #include "glint/options.h"
 #include "support/opened.h"
 
+static struct glint_error error;
+
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
 /* Draws two white lamps on grey into PX and returns the image. */
@@ -27,7 +29,6 @@ static struct glint_engine *create_engine(void *arena, size_t bytes)
 {
     struct glint_engine_config cfg;
     struct glint_engine *engine;
-    struct glint_error error;
 
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
@@ -183,7 +184,6 @@ TEST(stop_set_later_equals_stop_at_creation)
     struct glint_engine *engine = create_engine(NULL, 0);
     struct glint_engine_report report;
     struct glint_engine_config cfg;
-    struct glint_error error;
 
     draw_flare_of_found_lamps(engine, 0, open, &report);
     assert_int_equal(glint_engine_stop(engine, f / 2, &error),
@@ -247,7 +247,6 @@ TEST(layers_add_up_to_the_whole_flare)
     struct glint_engine_report report;
     struct glint_engine_config cfg;
     struct glint_engine *engine;
-    struct glint_error error;
     double once = 0, twice = 0;
 
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
@@ -395,7 +394,6 @@ TEST(engine_continues_the_video_of_another)
     struct glint_engine *second = create_engine(NULL, 0);
     struct glint_engine *small;
     struct glint_engine_config cfg;
-    struct glint_error error;
 
     for (int i = 0; i < 12; i++) {
         draw_frame_of_fading_lamps(whole, i, want);
@@ -447,7 +445,6 @@ TEST(model_takes_over_from_exact_rays_without_a_step)
     struct glint_engine *whole, *first, *second;
     struct glint_engine_config cfg;
     static struct glint_setup setup;
-    struct glint_error error;
     double step = 0;
 
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
@@ -484,7 +481,6 @@ TEST(rejects_invalid_configurations)
     const struct glint_lamp place = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine_lamp lamp = glint_engine_lamp_of(&place, 1);
     struct glint_image image = draw_lamp_picture(px);
-    struct glint_error error;
 
     image.height--;
     assert_int_equal(glint_engine_draw(engine, &lamp, 1, &image, &report),
@@ -525,7 +521,6 @@ TEST(shorter_config_of_older_programs_gets_defaults)
 {
     struct glint_engine *engine = NULL;
     struct glint_engine_config cfg;
-    struct glint_error error;
     const size_t bytes = offsetof(struct glint_engine_config, cache);
 
     memset(&cfg, 0x55, sizeof cfg);
@@ -545,7 +540,6 @@ TEST(shorter_options_of_older_programs_are_respected)
     const size_t bytes = offsetof(struct glint_options, tile);
     struct glint_engine_config cfg;
     struct glint_options o, *const older = malloc(bytes);
-    struct glint_error error;
 
     assert_non_null(older);
     memset(&o, 0x55, sizeof o);
@@ -576,7 +570,6 @@ TEST(options_by_name_equal_the_configuration)
     struct glint_engine_config cfg;
     struct glint_engine_report report;
     struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_error error;
 
     assert_ok(glint_engine_set(engine, "exposure", 3, &error));
     assert_ok(glint_engine_set_text(engine, "gain", "2", &error));
@@ -601,7 +594,6 @@ TEST(options_by_name_equal_the_configuration)
 static bool is_option_accepted(struct glint_options *o, const char *name,
                                const char *text)
 {
-    struct glint_error error = {""};
     const bool is_set =
         glint_options_set_text(o, name, text, &error) == GLINT_OK;
 
@@ -627,7 +619,6 @@ TEST(camera_options_equal_a_setup_by_steps)
     struct glint_engine_report report;
     struct glint_engine *engine;
     struct glint_options o;
-    struct glint_error error;
 
     assert_non_null(setup);
     assert_ok(glint_setup_from_model(setup, lens, 6, 10, nm, 2, &error));
@@ -679,7 +670,6 @@ TEST(dust_is_drawn_behind_straight_blades)
     const struct glint_iris iris = {.dust = 0.02, .dust_seed = 7};
     struct glint_engine_report report;
     struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_error error;
 
     draw_flare_of_found_lamps(engine, 0, clean, &report);
     assert_ok(glint_engine_iris(engine, 8, 0, &iris, &error));
@@ -694,7 +684,6 @@ TEST(config_without_stops_accepts_only_clean_blades)
 {
     struct glint_engine_config cfg;
     struct glint_engine *engine;
-    struct glint_error error;
 
     for (int k = 0; k < 3; k++) {
         glint_engine_defaults(&cfg, WIDTH, HEIGHT);
@@ -719,7 +708,6 @@ TEST(config_without_stops_accepts_only_clean_blades)
 TEST(options_accept_their_limits)
 {
     struct glint_options o;
-    struct glint_error error;
 
     glint_options_defaults(&o);
     for (int i = 0; i < GLINT_N_OPTIONS; i++) {
@@ -754,7 +742,6 @@ TEST(options_accept_their_limits)
 TEST(options_accept_their_defaults)
 {
     struct glint_options o, initial;
-    struct glint_error error;
     double v[3];
 
     glint_options_defaults(&o);

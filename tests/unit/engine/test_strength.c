@@ -9,6 +9,8 @@
 #include "support/settings_frame.h"
 #include "support/test.h"
 
+static struct glint_frame frame;
+
 static struct tool tool = {.name = "test", .quiet = true, .n_threads = 1};
 
 enum { PIXELS = 1000000, FRAME_US = 40000 };
@@ -408,7 +410,6 @@ static void check_automatic_exposure_of_lens(const char *lens,
 {
     struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r;
-    struct glint_frame frame;
 
     settings_set_defaults(&opened.settings);
     opened.settings.coating.kind = COATING_TABLE;
@@ -454,7 +455,6 @@ TEST(response_is_the_same_in_little_memory)
 {
     struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response r, free;
-    struct glint_frame frame;
 
     settings_set_defaults(&opened.settings);
     opened.settings.coating.kind = COATING_TABLE;
@@ -477,7 +477,6 @@ TEST(exact_response_is_measured_as_far_as_lamps_need)
 {
     struct opened opened = {.lens = {.tints = NULL}};
     struct glint_response all, few;
-    struct glint_frame frame;
     struct glint_lamp lamp = {0, 0, 1, {1, 1, 1}, {0, 0}, 0};
 
     settings_set_defaults(&opened.settings);

@@ -8,6 +8,8 @@
 #include "support/test.h"
 #include "support/tracks/tracks.h"
 
+static struct glint_located located;
+
 enum { FRAMES = 20000, SEED = 163635 };
 
 struct errors {
@@ -32,7 +34,6 @@ static struct errors measure_pose_errors(const struct track_options *options,
 
     track_begin_motion(&track, options);
     for (int i = 0; i < options->n_frames; i++) {
-        struct glint_located located;
         struct track_frame f;
         const double(*const seen)[3] = (const double(*)[3])f.seen;
         double square = 0;
@@ -175,7 +176,6 @@ TEST(two_foods_may_vanish_at_once)
     struct track_options o = make_track_options(0, 0, 0);
     struct glint_localiser l;
     struct four four;
-    struct glint_located located;
     struct track track;
     struct track_frame f;
     const bool two[5] = {false, true, false, true, false};
@@ -212,7 +212,6 @@ TEST(rejects_collinear_and_coplanar_foods)
     const bool none[5] = {false};
     struct glint_localiser l;
     struct four four;
-    struct glint_located located;
 
     glint_localiser_init(&l, true);
     assert_null(glint_localise_body(&l, 4, line, none, &located));

@@ -10,6 +10,8 @@
 #include "support/test.h"
 #include "support/tracks/tracks.h"
 
+static struct glint_motion motion;
+
 enum { FRAMES = 5000, FOODS = 5 };
 
 struct baked {
@@ -155,7 +157,6 @@ TEST(detects_any_changed_byte)
     static struct glint_motion streamed;
     struct glint_motion_blocks blocks = {.read = read_motion_block};
     struct baked baked;
-    struct glint_motion motion;
     const char *reason;
     uint32_t seed = 2;
 
@@ -201,7 +202,6 @@ TEST(rejects_invalid_blocks)
     struct baked baked;
     struct glint_motion_blocks blocks = {.read = read_motion_block,
                                          .ctx = &baked};
-    struct glint_motion motion;
     struct glint_motion_frame frame;
     struct glint_motion_header *header;
     const char *reason[2];
@@ -257,7 +257,6 @@ TEST(random_words_are_rejected_or_readable)
     copy = malloc(baked.bytes);
     assert_non_null(copy);
     for (int i = 0; i < 3000; i++) {
-        struct glint_motion motion;
         const char *reason;
         /* every second change is in the file header */
         const size_t at =

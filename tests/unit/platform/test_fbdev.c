@@ -19,6 +19,8 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
+static struct glint_error error;
+
 /* ------------------------------------------------------- fake framebuffer */
 
 static struct glint_fbdev fb = {.fd = -1};
@@ -121,7 +123,6 @@ static const struct glint_image *make_grey_image(int width, int height,
 static void open_framebuffer_sink(const struct glint_fbdev_options *options)
 {
     static const struct glint_fbdev_options none;
-    struct glint_error error;
 
     close_framebuffer_sink();
     if (glint_fbdev_open(&fb, fake_fb_path, options ? options : &none, &error))
@@ -130,8 +131,6 @@ static void open_framebuffer_sink(const struct glint_fbdev_options *options)
 
 static void draw_grey_image(int width, int height, int code)
 {
-    struct glint_error error;
-
     if (fb.sink.put(&fb.sink, make_grey_image(width, height, code), &error))
         fail_msg("%s", error.text);
 }
@@ -220,7 +219,6 @@ TEST(console_is_restored_after_every_end)
 
 TEST(draws_a_grey_image)
 {
-
     open_framebuffer_sink(NULL);
     assert_string_equal(fb.id, "fake");
     assert_int_equal(fb.n_pages, 1);
@@ -257,7 +255,6 @@ TEST(border_around_the_image_is_black)
 
 TEST(screen_may_start_inside_a_page)
 {
-
     fake_fb->fix.smem_start = 0xfd000064;
     open_framebuffer_sink(NULL);
     draw_grey_image(8, 6, 77);
@@ -280,7 +277,6 @@ TEST(screen_may_start_inside_a_page)
 
 TEST(frames_alternate_between_two_pages)
 {
-
     reset_fake_to_two_pages();
     open_framebuffer_sink(NULL);
     assert_int_equal(fb.n_pages, 2);
@@ -306,7 +302,6 @@ TEST(frames_alternate_between_two_pages)
 
 TEST(without_panning_one_page_is_used)
 {
-
     reset_fake_to_two_pages();
     fake_fb->can_pan = false;
     open_framebuffer_sink(NULL);
@@ -365,7 +360,6 @@ TEST(failed_vsync_ends_waiting)
 
 TEST(reports_a_removed_framebuffer)
 {
-    struct glint_error error;
     char want[128];
 
     snprintf(want, sizeof want, "%s: the framebuffer was removed",
@@ -430,7 +424,6 @@ TEST(missing_bit_fields_mean_xrgb8888)
 static void expect_open_fails(const char *part)
 {
     static const struct glint_fbdev_options options = {.console = true};
-    struct glint_error error = {""};
 
     assert_int_equal(glint_fbdev_open(&fb, fake_fb_path, &options, &error),
                      GLINT_E_DEVICE);
@@ -444,7 +437,6 @@ static void expect_open_fails(const char *part)
 TEST(reports_why_opening_fails)
 {
     static const struct glint_fbdev_options none;
-    struct glint_error error;
 
     fake_fb->open_errno = ENOENT;
     expect_open_fails("there is no framebuffer");
@@ -489,7 +481,6 @@ TEST(reports_why_opening_fails)
 TEST(environment_variable_names_the_framebuffer)
 {
     static const struct glint_fbdev_options none;
-    struct glint_error error;
 
     setenv("FRAMEBUFFER", fake_fb_path, 1);
     assert_ok(glint_fbdev_open(&fb, NULL, &none, &error));
@@ -560,7 +551,6 @@ static bool draw_three_frames(void)
 {
     static const struct glint_fbdev_options options = {.console = true,
                                                        .vsync = true};
-    struct glint_error error = {""};
     enum glint_status status =
         glint_fbdev_open(&fb, fake_fb_path, &options, &error);
 

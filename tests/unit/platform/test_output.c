@@ -21,6 +21,8 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
+static struct glint_error error;
+
 static char path[64];
 /* errno that the next close() sets; 0: close() succeeds */
 static int close_errno;
@@ -51,7 +53,6 @@ static void write_text_file(const char *text)
 
 static void expect_file_text(const char *text)
 {
-    struct glint_error error;
     uint8_t *data;
     size_t bytes;
 
@@ -71,8 +72,6 @@ static mode_t read_file_mode(const char *name)
 
 static void open_output_with_text(struct glint_output *out, const char *text)
 {
-    struct glint_error error;
-
     assert_ok(glint_output_open(out, path, GLINT_OUTPUT_BINARY, &error));
     assert_ok(glint_output_write(out, text, strlen(text), &error));
 }
@@ -83,7 +82,6 @@ static void check_no_file_after_signal(int signal_number, int handled)
     const pid_t child = fork();
 
     if (child == 0) {
-        struct glint_error error;
         struct glint_output out, other;
 
         signal(signal_number, handled ? SIG_IGN : SIG_DFL);
@@ -125,7 +123,6 @@ TEST(no_file_is_left_after_exit)
 
     if (child == 0) {
         struct glint_output out;
-        struct glint_error error;
 
         exit(glint_output_open(&out, path, GLINT_OUTPUT_TEXT, &error) ? 1 : 0);
     }
@@ -137,7 +134,6 @@ TEST(no_file_is_left_after_exit)
 TEST(commit_creates_the_file)
 {
     const mode_t old = umask(027);
-    struct glint_error error;
     struct glint_output out;
 
     open_output_with_text(&out, "one");
@@ -166,7 +162,6 @@ TEST(abort_leaves_no_file)
 
 TEST(commit_replaces_the_old_file)
 {
-    struct glint_error error;
     struct glint_output out;
 
     write_text_file("old");
@@ -201,7 +196,6 @@ TEST(temporary_file_is_locked)
 
 TEST(existing_temporary_name_is_not_overwritten)
 {
-    struct glint_error error;
     struct glint_output out;
     char taken[80];
     unsigned n;
@@ -226,7 +220,6 @@ TEST(existing_temporary_name_is_not_overwritten)
  * write it again. */
 TEST(flushed_data_is_in_the_file)
 {
-    struct glint_error error;
     struct glint_output out;
     struct stat st;
 
@@ -244,7 +237,6 @@ TEST(flushed_data_is_in_the_file)
  * of data only there. */
 TEST(failing_close_is_an_error)
 {
-    struct glint_error error;
     struct glint_output out;
 
     write_text_file("old");
@@ -263,7 +255,6 @@ TEST(failing_close_is_an_error)
 TEST(follows_links)
 {
     char link_path[80];
-    struct glint_error error;
     struct glint_output out;
     struct stat st;
 
@@ -288,7 +279,6 @@ TEST(writes_of_any_size_keep_their_order)
     static uint8_t data[200000];
     uint8_t *read_back;
     size_t bytes, at = 0;
-    struct glint_error error;
     struct glint_output out;
 
     open_output_with_text(&out, "");
@@ -311,7 +301,6 @@ TEST(writes_of_any_size_keep_their_order)
 TEST(full_device_is_an_error)
 {
     static uint8_t data[100000];
-    struct glint_error error;
     struct glint_output out;
 
     assert_ok(
@@ -336,7 +325,6 @@ static int write_beyond_file_size_limit(void)
 {
     static uint8_t data[100000];
     const struct rlimit limit = {5000, 5000};
-    struct glint_error error;
     struct glint_output out;
 
     if (setrlimit(RLIMIT_FSIZE, &limit) ||
@@ -366,7 +354,6 @@ TEST(closed_pipe_is_an_error)
 {
     static uint8_t data[100000];
     char name[32];
-    struct glint_error error;
     struct glint_output out;
     int fd[2];
 
@@ -385,7 +372,6 @@ TEST(closed_pipe_is_an_error)
 TEST(nonblocking_pipe_gets_all_data)
 {
     static uint8_t data[300000];
-    struct glint_error error;
     struct glint_output out;
     char name[32];
     int fd[2], how;
@@ -415,7 +401,6 @@ TEST(nonblocking_pipe_gets_all_data)
 
 static void check_path_is_rejected(const char *name, const char *text)
 {
-    struct glint_error error;
     struct glint_output out;
 
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
@@ -427,7 +412,6 @@ static void check_path_is_rejected(const char *name, const char *text)
 TEST(rejects_paths_that_cannot_be_written)
 {
     char name[300], text[300];
-    struct glint_error error;
     struct glint_output out;
 
     check_path_is_rejected(
@@ -452,7 +436,6 @@ TEST(rejects_paths_that_cannot_be_written)
 
 TEST(checks_paths_before_writing)
 {
-    struct glint_error error;
     char name[300], text[300];
 
     snprintf(text, sizeof text, "%s: is a folder; name a file in it",
@@ -475,7 +458,6 @@ TEST(checks_paths_before_writing)
 TEST(limits_the_number_of_open_outputs)
 {
     struct glint_output out[17];
-    struct glint_error error;
     char name[80];
     int n = 0;
 

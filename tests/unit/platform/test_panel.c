@@ -7,6 +7,9 @@
 #include "panel/panel.h"
 #include "support/test.h"
 
+static struct glint_error error;
+static struct glint_panel panel;
+
 static const struct glint_pixel_layout xrgb8888 = {
     4, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
 
@@ -189,8 +192,6 @@ TEST(writes_every_pixel_layout)
         .width = 6, .height = 1, .image_width = 6, .image_height = 1};
 
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
-        struct glint_error error;
-        struct glint_panel panel;
         uint8_t mem[28];
 
         cfg.layout = layouts[i].layout;
@@ -218,8 +219,6 @@ TEST(writes_565_there_and_back)
         .image_width = 256,
         .image_height = 256};
     struct glint_image image = glint_image_over(codes, GLINT_RGB565, 256, 256);
-    struct glint_error error;
-    struct glint_panel panel;
 
     for (int i = 0; i < 65536; i++) {
         codes[2 * i] = (uint8_t)(i & 255);
@@ -279,8 +278,6 @@ TEST(rejects_invalid_layouts)
                                      .layout = xrgb8888,
                                      .image_width = 8,
                                      .image_height = 8};
-    struct glint_error error;
-    struct glint_panel panel;
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         cfg.layout = bad[i];
@@ -431,9 +428,7 @@ static void check_drawing_of_format(enum glint_pixel_format format, int width,
                                            .fit = GLINT_PANEL_CENTRE};
     const int stride = 4 * panel_width;
     uint8_t *const mem = malloc((size_t)(stride * height));
-    struct glint_error error;
     struct glint_image image;
-    struct glint_panel panel;
     uint8_t *const codes =
         make_random_picture(&image, format, width, height, pad);
 
@@ -485,7 +480,6 @@ static void expect_image_area_on_panel(int panel_width, int panel_height,
                                            .image_width = width,
                                            .image_height = height,
                                            .fit = fit};
-    struct glint_error error;
     struct glint_panel p;
 
     assert_ok(glint_panel_open(&p, &cfg, &error));
@@ -531,8 +525,6 @@ static void draw_and_read_grey_ramp(uint8_t *shown, bool down, int panel_width,
         glint_image_over(ramp, GLINT_GREY, cfg.image_width, cfg.image_height);
     const int stride = bytes * panel_width;
     uint8_t mem[4 * 256];
-    struct glint_error error;
-    struct glint_panel panel;
 
     assert_ok(glint_panel_open(&panel, &cfg, &error));
     memset(mem, 99, sizeof mem);
@@ -577,8 +569,6 @@ TEST(writes_only_inside_the_image_area)
         .fit = GLINT_PANEL_CENTRE};
     uint8_t codes[15], mem[STRIDE * ROWS];
     struct glint_image image = glint_image_over(codes, GLINT_GREY, 5, 3);
-    struct glint_error error;
-    struct glint_panel panel;
 
     memset(codes, 77, sizeof codes);
     memset(mem, 200, sizeof mem);

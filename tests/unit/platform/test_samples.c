@@ -6,6 +6,8 @@
 #include "formats/samples.h"
 #include "support/test.h"
 
+static struct glint_image proxy;
+
 /* Returns a description of WIDTH x HEIGHT pixels at MEM: three channels of
  * type SAMPLE, or four with alpha. */
 static struct glint_samples describe_samples(int width, int height,
@@ -182,7 +184,6 @@ TEST(floats_keep_their_range)
     struct glint_samples s =
         describe_samples(1, 1, GLINT_SAMPLE_FLOAT, false, mem);
     const float layer[] = {0.5F, 0.5F, 0.5F};
-    struct glint_image proxy;
     double white;
 
     assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
@@ -203,7 +204,6 @@ TEST(transparent_pixels_count_as_dark)
     uint8_t mem[] = {255, 255, 255, 0, 200, 200, 200, 255};
     struct glint_samples s = describe_samples(2, 1, GLINT_SAMPLE_U8, true, mem);
     const float layer[] = {1, 1, 1, 0.01F, 0.01F, 0.01F};
-    struct glint_image proxy;
     double white;
 
     assert_ok(glint_samples_make_proxy(&s, &proxy, &white));
@@ -274,7 +274,6 @@ TEST(every_exif_orientation_is_upright)
     for (int o = 1; o <= 8; o++) {
         struct glint_samples s =
             describe_samples(2, 3, GLINT_SAMPLE_U8, false, mem);
-        struct glint_image proxy;
         double white;
 
         s.orientation = o;

@@ -18,6 +18,10 @@
 #include "support/scratch.h"
 #include "support/test.h"
 
+static struct glint_row_rgb row;
+static struct glint_y4m_sink y4m;
+static struct glint_error error;
+
 /* Returns an image with its planes in MEM. */
 static struct glint_image make_image_over_memory(enum glint_pixel_format format,
                                                  int width, int height,
@@ -41,7 +45,6 @@ static void expect_converted_planes(enum glint_pixel_format format,
     const struct glint_image image =
         make_image_over_memory(format, 3, 3, (uint8_t *)(uintptr_t)from);
     struct glint_image to;
-    struct glint_row_rgb row;
     uint8_t mem[64], work[64];
     const size_t n = glint_image_bytes(planar, 3, 3);
 
@@ -102,7 +105,6 @@ static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
     const struct glint_image from =
         make_image_over_memory(GLINT_RGB24, 256, 1, rgb);
     struct glint_image to = make_image_over_memory(GLINT_I444, 256, 1, ycc);
-    struct glint_row_rgb row;
     long n_off = 0;
 
     to.matrix = matrix;
@@ -138,7 +140,6 @@ static void check_clamped_chroma_codes(void)
     const struct glint_image from =
         make_image_over_memory(GLINT_RGB24, 2, 1, rgb);
     struct glint_image to = make_image_over_memory(GLINT_I444, 2, 1, ycc);
-    struct glint_row_rgb row;
 
     to.range = GLINT_RANGE_FULL;
     glint_row_rgb_init(&row, work, 2);
@@ -175,8 +176,6 @@ TEST(writes_y4m)
         "FRAME\nabcdefghABCD1234FRAME\nabcdefghABCD1234";
     struct glint_image image =
         make_image_over_memory(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
-    struct glint_y4m_sink y4m;
-    struct glint_error error;
 
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 25, 1);
@@ -200,8 +199,6 @@ TEST(y4m_writes_supported_formats_without_copy)
                                 "XCOLORRANGE=LIMITED\nFRAME\n\xeb\x80\x80";
     struct glint_image image =
         make_image_over_memory(GLINT_I420, 2, 2, (void *)"abcdA1");
-    struct glint_y4m_sink y4m;
-    struct glint_error error;
 
     glint_y4m_sink_open(&y4m, scratch_file, 0, 0);
     assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
@@ -224,8 +221,6 @@ TEST(y4m_drops_frames_for_a_slow_reader)
     static uint8_t mem[4096 * 3], sink_hole[65536];
     const struct glint_image image =
         make_image_over_memory(GLINT_GREY, 96, 128, mem);
-    struct glint_y4m_sink y4m;
-    struct glint_error error;
     char name[32];
     int fd[2];
 
@@ -256,8 +251,6 @@ TEST(y4m_reports_an_invalid_path)
 {
     const struct glint_image image =
         make_image_over_memory(GLINT_YUYV, 2, 1, (void *)"aAb1");
-    struct glint_y4m_sink y4m;
-    struct glint_error error;
 
     glint_y4m_sink_open(&y4m, "/nowhere/x.y4m", 25, 1);
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
@@ -270,7 +263,6 @@ TEST(null_sink_accepts_images)
     const struct glint_image image =
         make_image_over_memory(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_null_sink null;
-    struct glint_error error;
 
     glint_null_sink_open(&null);
     assert_ok(null.sink.put(&null.sink, &image, &error));
@@ -360,8 +352,6 @@ static void reset_fake_v4l2_node(void)
 static void open_v4l2_sink(struct glint_v4l2_sink *out,
                            const struct glint_image *like)
 {
-    struct glint_error error;
-
     if (glint_v4l2_sink_open(out, scratch_file, like, 30, 1, &error))
         fail_msg("%s", error.text);
 }
@@ -371,7 +361,6 @@ TEST(v4l2_writes_an_image)
     struct glint_image image =
         make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
-    struct glint_error error;
 
     reset_fake_v4l2_node();
     image.matrix = GLINT_MATRIX_BT709;
@@ -400,7 +389,6 @@ TEST(v4l2_writes_padded_rows)
     struct glint_image image =
         make_image_over_memory(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
     struct glint_v4l2_sink out;
-    struct glint_error error;
     char want[] = "abcd..efgh..AB.CD.";
 
     for (char *c = want; *c; c++)
@@ -444,7 +432,6 @@ TEST(v4l2_drops_frames_without_a_buffer)
     const struct glint_image image =
         make_image_over_memory(GLINT_GREY, 4, 1, (void *)"abcd");
     struct glint_v4l2_sink out;
-    struct glint_error error;
 
     reset_fake_v4l2_node();
     open_v4l2_sink(&out, &image);
@@ -469,7 +456,6 @@ static void expect_sink_rejects_image(enum glint_status status,
     const struct glint_image image =
         make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
-    struct glint_error error;
 
     assert_int_equal(
         glint_v4l2_sink_open(&out, scratch_file, &image, 30, 1, &error),
@@ -485,7 +471,6 @@ TEST(v4l2_rejects_unsuitable_devices)
     struct glint_image image =
         make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
-    struct glint_error error;
 
     reset_fake_v4l2_node();
     node.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;

@@ -9,6 +9,8 @@
 #include "support/stage.h"
 #include "support/test.h"
 
+static struct glint_error error;
+
 /* Images are so small that each takes 0.1 s. A draft model (tolerance 4) may
  * displace outlines by 0.12 pixel, in faint ghosts by a pixel, and its energy
  * may deviate by 2.4 %. For ghosts about ten pixels wide, this means a PSNR of
@@ -87,7 +89,6 @@ TEST(extreme_f_numbers_match_exact_rays)
     struct worst worst = make_worst_errors();
 
     for (int k = 0; k < 6; k++) {
-        struct glint_error error;
 
         stage_free(&stage);
         assert_true(stage_parse_lens(&stage, doublet));
@@ -127,7 +128,6 @@ TEST(outline_of_a_round_stop_shows_no_chords)
     const size_t bytes = sizeof(float) * 3 * WIDE * HIGH;
     const struct glint_lamp lamp = stage_make_lamp(6, 25, 1);
     float *drawn = malloc(bytes), *want = malloc(bytes);
-    struct glint_error error;
     double db;
 
     assert_true(drawn && want);
@@ -387,7 +387,6 @@ TEST(lenses_of_2_to_64_surfaces_match_exact_rays)
     static const int n[] = {2, 4, 8, 16, 32, 64};
     const struct glint_lamp lamp = stage_make_lamp(2, 25, 1);
     struct worst worst = make_worst_errors();
-    struct glint_error error;
     struct glint_prescription lens;
     static const char one[] = "name one\nf-number 8\nfilm 36 24\n"
                               "surface 50 100 5 air\nstop 5 5\n";

@@ -13,6 +13,8 @@
 #include "support/shuffle.h"
 #include "support/test.h"
 
+static struct glint_scene_stats stats;
+
 enum {
     UNIT = 1 << 16,
     ONE_Q30 = 1 << 30,
@@ -104,7 +106,6 @@ static void draw_scene(struct glint_scene_config cfg,
                        uint32_t order, uint8_t *px)
 {
     struct glint_image image = glint_image_over(px, format, WIDTH, HEIGHT);
-    struct glint_scene_stats stats;
     struct shuffle shuffle;
 
     fill_image_with_pattern(px, BYTES);
@@ -154,7 +155,6 @@ TEST(invisible_objects_change_nothing)
     static uint8_t px[BYTES], before[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_I420, WIDTH, HEIGHT);
     const struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
 
     fill_image_with_pattern(px, BYTES);
     fill_image_with_pattern(before, BYTES);
@@ -193,7 +193,6 @@ TEST(ball_covers_its_disc)
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     struct glint_scene_config cfg;
-    struct glint_scene_stats stats;
     struct glint_scene *s;
     int64_t sum = 0;
 
@@ -249,7 +248,6 @@ TEST(closed_mesh_has_no_leaks)
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
     uint32_t seed = 1;
 
     cfg.max_refs = 1 << 18;
@@ -277,7 +275,6 @@ TEST(closed_mesh_has_no_leaks)
 TEST(sample_shows_the_first_object)
 {
     const struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
     const struct glint_scene *s;
     int n = 0, other = 0;
 
@@ -322,7 +319,6 @@ static void draw_scene_linear(int edge_samples, int half, int32_t *px_q20)
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
     struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
 
     cfg.edge_samples = edge_samples;
     cfg.half_shading = half;
@@ -385,7 +381,6 @@ TEST(more_samples_come_closer)
 TEST(exact_capacity_is_sufficient)
 {
     struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
     const struct glint_scene_model model =
         (make_scene_of_all_objects(), scene_open_model(&file));
 
@@ -418,7 +413,6 @@ TEST(changed_poses_equal_a_new_scene)
     const int32_t turn[4] = {ONE_Q30 / 5 * 3, 0, ONE_Q30 / 5 * 4, 0};
     const int32_t axes[3][3] = {{ONE_Q30}, {0, ONE_Q30}, {0, 0, -ONE_Q30}};
     const int32_t crooked[3][3] = {{ONE_Q30}, {ONE_Q30}, {0, 0, ONE_Q30}};
-    struct glint_scene_stats stats;
     struct glint_scene *s;
     int32_t x[3] = {1 << 20, 0, 0}, to[3];
 
@@ -466,7 +460,6 @@ TEST(shadow_grid_equals_brute_force)
 
     for (int points = 1; points <= 16; points *= 4) {
         struct glint_scene_config cfg = make_scene_config();
-        struct glint_scene_stats stats;
         struct glint_scene *s;
 
         cfg.shadow_points = points;
@@ -503,7 +496,6 @@ TEST(shadow_grid_equals_brute_force)
 TEST(lamp_is_as_visible_as_its_points)
 {
     struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
     uint32_t seed = 1;
     int lit = 0, partly = 0;
 
@@ -555,7 +547,6 @@ TEST(flat_mesh_shadows_a_lamp)
             const struct glint_scene_config cfg = make_scene_config();
             struct glint_met_surface surface = {.object = 0};
             int32_t at[4][3], lamp[3] = {0, 0, 0};
-            struct glint_scene_stats stats;
             struct glint_scene *s;
 
             memset(at, 0, sizeof at);
@@ -597,7 +588,6 @@ TEST(confined_shading_equals_full_shading)
     int less = 0, flat = 0;
 
     for (int i = 0; i < 40; i++) {
-        struct glint_scene_stats stats;
         struct glint_scene *s;
 
         make_scene_of_all_objects();
@@ -644,7 +634,6 @@ TEST(lights_for_the_lens_match_double_precision)
 {
     const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
-    struct glint_scene_stats stats;
     uint32_t seed = 1;
 
     for (int i = 0; i < 200; i++) {
@@ -693,7 +682,6 @@ TEST(lens_and_scene_agree_on_directions)
         glint_real_value(glint_flare_pixels_per_mm(&lens, WIDTH, HEIGHT));
     struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
-    struct glint_scene_stats stats;
     uint32_t seed = 1;
 
     cfg.focal_q16 = llround(ldexp(f, 16));
@@ -727,7 +715,6 @@ TEST(setting_sun_is_occluded_gradually)
 {
     const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
-    struct glint_scene_stats stats;
     int last = 16, levels = 0;
 
     make_scene_of_all_objects();
@@ -754,7 +741,6 @@ TEST(lamps_are_dimmed_by_coverage)
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
     const struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
     struct glint_scene *s;
 
     make_scene_of_all_objects();
@@ -773,7 +759,6 @@ TEST(lamps_are_dimmed_by_coverage)
 static int64_t sum_scene_coverage(const struct glint_image *image)
 {
     const struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene_stats stats;
     struct glint_scene *s = scene_init_renderer(&file, &cfg, &stats);
     int64_t sum = 0;
 

@@ -9,6 +9,8 @@
 #include "support/rng.h"
 #include "support/test.h"
 
+static struct glint_met met;
+
 enum { UNIT = 1 << 16, ONE_Q30 = 1 << 30, SIDE = 64 };
 
 static struct scene_file file;
@@ -43,7 +45,6 @@ static int intersect_and_shade_ray(const struct glint_scene *s,
                                    struct glint_met_shade *to)
 {
     struct glint_met_surface surface;
-    struct glint_met met;
 
     if (!glint_scene_find_nearest_hit(s, ray, GLINT_NOTHING, 0, &met) ||
         !glint_scene_find_surface_at_hit(s, ray, &met, &surface))
@@ -78,7 +79,6 @@ TEST(a5_nearest_triangle_is_visible)
 
     for (int first = 0; first < 4; first++) {
         struct glint_scene *s;
-        struct glint_met met;
 
         scene_begin_header(&file);
         scene_add_material(&file, "m");
@@ -689,7 +689,6 @@ TEST(a13_texture_coordinates)
         struct glint_met_surface surface;
         struct glint_scene_ray ray;
         struct glint_met_shade to;
-        struct glint_met met;
 
         if (i >= 3) {
             w[1] = rng_unit(&seed);

@@ -7,6 +7,8 @@
 #include "support/test.h"
 #include "synth/draw.h"
 
+static struct synth_ranges ranges;
+
 static const struct synth_item named = {.width = 64,
                                         .height = 48,
                                         .glint = "0",
@@ -25,7 +27,6 @@ static double read_json_field(const struct synth_item *item, int k)
 TEST(lines_contain_all_fields)
 {
     static const struct synth_result none;
-    struct synth_ranges ranges;
 
     synth_ranges_set_defaults(&ranges);
     for (int i = 0; i < 500; i++) {
@@ -57,7 +58,6 @@ TEST(lines_contain_all_fields)
 
 TEST(random_numbers_stay_in_range)
 {
-    struct synth_ranges ranges;
     double low[SYNTH_FIELDS], high[SYNTH_FIELDS];
     int zeros = 0;
 
@@ -96,7 +96,6 @@ TEST(random_numbers_stay_in_range)
 TEST(random_numbers_are_independent)
 {
     struct synth_item a = named, b = named;
-    struct synth_ranges ranges;
     struct glint_error why = {""};
 
     synth_ranges_set_defaults(&ranges);

@@ -12,6 +12,8 @@
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 
+static struct glint_error error;
+
 enum {
     MAX_DEG = 9,
     GHOSTS = 7,
@@ -41,7 +43,6 @@ TEST_OPEN
 {
     static struct glint_prescription lens;
     static const double rgb_nm[] = {650, 532, 450};
-    struct glint_error error = {""};
 
     parse_lens_text(&lens, table);
     for (int k = 0; k < 2; k++) {
@@ -275,7 +276,6 @@ TEST(barrel_of_the_other_position_is_chosen)
     static struct glint_zone_rays rays;
     const double range[2] = {0, glint_sin_deg(4)};
     struct glint_prescription lens = at[0];
-    struct glint_error error = {""};
     struct glint_zone zone;
     int n[2];
 
@@ -303,7 +303,6 @@ TEST(ghost_visible_at_the_other_position_is_baked)
     const bool ghosts[GHOSTS] = {[CUT] = true};
     struct glint_bake_options options;
     struct glint_bake_report report;
-    struct glint_error error = {""};
     unsigned char *data[3];
     size_t bytes[3];
 
@@ -331,7 +330,6 @@ TEST(rejects_a_different_lens)
     struct glint_prescription other = at[1];
     struct glint_bake_options options;
     struct glint_bake_report report;
-    struct glint_error error = {""};
     unsigned char *data = NULL;
     size_t bytes;
 
