@@ -9,6 +9,9 @@
 #include "support/opened.h"
 
 static struct glint_error error;
+static struct glint_engine_config cfg;
+static struct glint_engine *engine;
+static struct glint_engine_report report;
 
 enum { WIDTH = 160, HEIGHT = 120, BYTES = 3 * WIDTH * HEIGHT };
 
@@ -25,42 +28,53 @@ static struct glint_image draw_lamp_picture(uint8_t *px)
     return image;
 }
 
-static struct glint_engine *create_engine(void *arena, size_t bytes)
+static struct glint_engine *create_engine(void)
 {
-    struct glint_engine_config cfg;
-    struct glint_engine *engine;
+    struct glint_engine *created;
 
+    assert_ok(glint_engine_create(&created, &cfg, &error));
+    return created;
+}
+
+/* Replaces the engine of the test by one of the configuration CFG. */
+static void open_engine(void)
+{
+    glint_engine_destroy(engine);
+    engine = create_engine();
+}
+
+TEST_BEFORE
+{
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     cfg.model = &opened.lens.model.lens;
-    cfg.arena = arena;
-    cfg.arena_bytes = bytes;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    return engine;
+    open_engine();
+}
+
+TEST_AFTER
+{
+    glint_engine_destroy(engine);
+    engine = NULL;
 }
 
 /* Draws the picture of draw_lamp_picture() into PX, US microseconds after the
  * previous one, and adds the flare of the lamps that the engine finds in it.
  * Returns the number of lamps. */
-static int draw_flare_of_found_lamps(struct glint_engine *engine, int32_t us,
-                                     uint8_t *px,
-                                     struct glint_engine_report *report)
+static int draw_flare_of_found_lamps(int32_t us, uint8_t *px)
 {
     struct glint_engine_lamp lamps[8];
     const struct glint_image image = draw_lamp_picture(px);
     const int n = glint_engine_find(engine, &image, us, lamps, 8);
 
-    assert_ok(glint_engine_draw(engine, lamps, n, &image, report));
+    assert_ok(glint_engine_draw(engine, lamps, n, &image, &report));
     return n;
 }
 
 TEST(draws_flares_of_found_lamps)
 {
     static uint8_t px[BYTES], plain[BYTES];
-    struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_engine_report report;
 
     draw_lamp_picture(plain);
-    assert_int_equal(draw_flare_of_found_lamps(engine, 0, px, &report), 2);
+    assert_int_equal(draw_flare_of_found_lamps(0, px), 2);
     assert_int_equal(report.lights, 2);
     assert_true(report.ghosts > 0 && report.stats.bundles > 0 &&
                 report.scale > 0);
@@ -68,7 +82,6 @@ TEST(draws_flares_of_found_lamps)
     assert_true(report.need_bytes > 0 &&
                 report.need_bytes <= report.arena_bytes);
     assert_memory_not_equal(px, plain, BYTES);
-    glint_engine_destroy(engine);
 }
 
 /* Checks that the engine draws the same image in its own and in the caller's
@@ -77,24 +90,25 @@ TEST(draws_flares_of_found_lamps)
 TEST(callers_memory_gives_the_same_image)
 {
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_engine *engine = create_engine(NULL, 16 << 20);
-    struct glint_engine_report full, little, report;
-    void *mem;
+    size_t need_bytes;
 
-    draw_flare_of_found_lamps(engine, 0, want, &full);
-    glint_engine_destroy(engine);
-    assert_int_equal(posix_memalign(&mem, 64, 16 << 20), 0);
-    engine = create_engine(mem, 16 << 20);
-    draw_flare_of_found_lamps(engine, 0, got, &report);
-    glint_engine_destroy(engine);
+    cfg.arena_bytes = 16 << 20;
+    open_engine();
+    draw_flare_of_found_lamps(0, want);
+    need_bytes = report.need_bytes;
+    assert_int_equal(posix_memalign(&cfg.arena, 64, 16 << 20), 0);
+    open_engine();
+    draw_flare_of_found_lamps(0, got);
     assert_memory_equal(got, want, BYTES);
     assert_int_equal(report.stats.dropped_bundles, 0);
-    engine = create_engine(mem, 1100 << 10);
-    draw_flare_of_found_lamps(engine, 0, got, &little);
+    cfg.arena_bytes = 1100 << 10;
+    open_engine();
+    draw_flare_of_found_lamps(0, got);
+    assert_true(report.stats.dropped_bundles > 0);
+    assert_int_equal(report.need_bytes, need_bytes);
     glint_engine_destroy(engine);
-    assert_true(little.stats.dropped_bundles > 0);
-    assert_int_equal(little.need_bytes, full.need_bytes);
-    free(mem);
+    engine = NULL;
+    free(cfg.arena);
 }
 
 /* Checks that both lamps of a video are found after 30 frames, and that lower
@@ -102,30 +116,25 @@ TEST(callers_memory_gives_the_same_image)
 TEST(tracked_lamps_are_present_after_30_frames)
 {
     static uint8_t px[BYTES];
-    struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_engine_report report;
     int n = 0, bundles;
 
     for (int i = 0; i < 30; i++)
-        n = draw_flare_of_found_lamps(engine, 40000, px, &report);
+        n = draw_flare_of_found_lamps(40000, px);
     assert_int_equal(n, 2);
     bundles = report.stats.bundles;
     glint_engine_set_dials(
         engine,
         glint_dials_coarser(glint_dials_at(1 << 14), glint_dials_at(1 << 12)));
-    draw_flare_of_found_lamps(engine, 40000, px, &report);
+    draw_flare_of_found_lamps(40000, px);
     assert_in_range(report.stats.bundles, 1, bundles - 1);
-    glint_engine_destroy(engine);
 }
 
 /* Draws LAMP alone on grey into PX, with its flare, US microseconds after the
  * previous image; US < 0: time unknown. Returns the exposure. */
-static double draw_flare_of_given_lamp(struct glint_engine *engine,
-                                       const struct glint_lamp *lamp,
+static double draw_flare_of_given_lamp(const struct glint_lamp *lamp,
                                        int32_t us, uint8_t *px)
 {
     struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
-    struct glint_engine_report report;
     const struct glint_image image = draw_lamp_picture(px);
 
     memset(px, 40, BYTES);
@@ -145,8 +154,6 @@ TEST(given_lamp_is_exposed_like_a_found_one)
     const struct glint_image image = draw_lamp_picture(px);
     const struct glint_lamp dim = {12, 0, 20, {1, 1, 1}, {0, 0}, 0};
     const struct glint_lamp lit = {12, 0, 2e6, {1, 1, 1}, {0, 0}, 0};
-    struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_engine_report report;
     struct glint_engine_lamp lamps[8];
     double alone, scale;
     int n;
@@ -158,21 +165,20 @@ TEST(given_lamp_is_exposed_like_a_found_one)
         lamps[i] = glint_engine_lamp_of(&lamps[i].lamp, 1);
     assert_ok(glint_engine_draw(engine, lamps, n, &image, &report));
     scale = report.scale;
-    draw_flare_of_found_lamps(engine, 0, found, &report);
+    draw_flare_of_found_lamps(0, found);
     assert_true(fabs(report.scale / scale - 1) < 1e-6);
-    alone = draw_flare_of_given_lamp(engine, &dim, -1, px);
-    draw_flare_of_given_lamp(engine, &lit, -1, again);
-    assert_true(draw_flare_of_given_lamp(engine, &dim, -1, again) == alone);
+    alone = draw_flare_of_given_lamp(&dim, -1, px);
+    draw_flare_of_given_lamp(&lit, -1, again);
+    assert_true(draw_flare_of_given_lamp(&dim, -1, again) == alone);
     assert_memory_equal(px, again, BYTES);
-    scale = draw_flare_of_given_lamp(engine, &lit, 0, px);
+    scale = draw_flare_of_given_lamp(&lit, 0, px);
     for (int i = 0; i < 8; i++) {
-        const double next = draw_flare_of_given_lamp(engine, &dim, 40000, px);
+        const double next = draw_flare_of_given_lamp(&dim, 40000, px);
 
         assert_true(next >= scale && next <= 1.1 * scale);
         scale = next;
     }
     assert_true(scale < alone);
-    glint_engine_destroy(engine);
 }
 
 /* Checks that setting a stop later gives the image of an engine created with
@@ -181,29 +187,22 @@ TEST(stop_set_later_equals_stop_at_creation)
 {
     static uint8_t open[BYTES], set[BYTES], made[BYTES];
     const double f = glint_real_value(opened.lens.model.lens.header->f_number);
-    struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_engine_report report;
-    struct glint_engine_config cfg;
 
-    draw_flare_of_found_lamps(engine, 0, open, &report);
+    draw_flare_of_found_lamps(0, open);
     assert_int_equal(glint_engine_stop(engine, f / 2, &error),
                      GLINT_E_ARGUMENT);
-    draw_flare_of_found_lamps(engine, 0, set, &report);
+    draw_flare_of_found_lamps(0, set);
     assert_memory_equal(set, open, BYTES);
     assert_ok(glint_engine_stop(engine, 3 * f, &error));
-    draw_flare_of_found_lamps(engine, 0, set, &report);
-    glint_engine_destroy(engine);
+    draw_flare_of_found_lamps(0, set);
     assert_memory_not_equal(set, open, BYTES);
-    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &opened.lens.model.lens;
     cfg.camera.f_number = 3 * f;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_flare_of_found_lamps(engine, 0, made, &report);
+    open_engine();
+    draw_flare_of_found_lamps(0, made);
     assert_memory_equal(set, made, BYTES);
     assert_ok(glint_engine_stop(engine, f, &error));
-    draw_flare_of_found_lamps(engine, 0, set, &report);
+    draw_flare_of_found_lamps(0, set);
     assert_memory_equal(set, open, BYTES);
-    glint_engine_destroy(engine);
 }
 
 /* Checks that an image of a wrong size, and too many lamps, are rejected by all
@@ -212,8 +211,6 @@ TEST(rejects_images_of_wrong_size)
 {
     static uint8_t px[BYTES];
     static float rgb[BYTES];
-    struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_engine_report report;
     struct glint_engine_lamp lamps[8];
     struct glint_image image = draw_lamp_picture(px);
     const int n = glint_engine_find(engine, &image, 0, lamps, 8);
@@ -231,7 +228,6 @@ TEST(rejects_images_of_wrong_size)
     assert_int_equal(
         glint_engine_draw_at(engine, &lamps[0].lamp, 1, 1, &image, &report),
         GLINT_E_ARGUMENT);
-    glint_engine_destroy(engine);
 }
 
 /* Checks that the layers of a flare add up to the complete flare, that a given
@@ -244,16 +240,11 @@ TEST(layers_add_up_to_the_whole_flare)
     const struct glint_lamp lamp = {12, 30, 1e5, {1, 1, 1}, {0, 0}, 0};
     const struct glint_image image = draw_lamp_picture(px);
     struct glint_engine_lamp known = glint_engine_lamp_of(&lamp, 1);
-    struct glint_engine_report report;
-    struct glint_engine_config cfg;
-    struct glint_engine *engine;
     double once = 0, twice = 0;
 
-    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &opened.lens.model.lens;
     cfg.search.max_found = 0;
     cfg.search.more_lamps = 1;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
+    open_engine();
     assert_int_equal(glint_engine_find(engine, &image, 0, &known, 1), 0);
     assert_ok(glint_engine_expose(engine, &known, 1, &image, 1));
     assert_ok(glint_engine_draw_layer(engine, &known, 1, GLINT_ENGINE_ALL, all,
@@ -277,20 +268,17 @@ TEST(layers_add_up_to_the_whole_flare)
     glint_engine_set_light(engine, &cfg.light);
     assert_ok(glint_engine_expose(engine, &known, 1, &image, 1));
     assert_true(glint_engine_exposed(engine)->scale == 8);
-    glint_engine_destroy(engine);
 }
 
 /* Returns the light of one component of the flare of LAMP, PART (such as
  * GLINT_ENGINE_GHOSTS), US microseconds after the previous picture. */
-static double sum_layer_light(struct glint_engine *engine,
-                              const struct glint_lamp *lamp, int32_t us,
+static double sum_layer_light(const struct glint_lamp *lamp, int32_t us,
                               unsigned part)
 {
     static uint8_t px[BYTES];
     static float layer[BYTES];
     struct glint_engine_lamp one = glint_engine_lamp_of(lamp, 1);
     const struct glint_image image = draw_lamp_picture(px);
-    struct glint_engine_report report;
     double sum = 0;
 
     glint_engine_elapsed(engine, us);
@@ -311,15 +299,14 @@ TEST(limited_lamp_keeps_its_starburst)
     double still[2], video[2];
 
     for (int k = 0; k < 2; k++) {
-        struct glint_engine *engine = create_engine(NULL, 0);
         const unsigned part = k ? GLINT_ENGINE_STAR : GLINT_ENGINE_GHOSTS;
 
-        still[k] = sum_layer_light(engine, &sun, 0, part);
-        sum_layer_light(engine, &faint, 0, part);
+        still[k] = sum_layer_light(&sun, 0, part);
+        sum_layer_light(&faint, 0, part);
         for (int i = 0; i < 3; i++)
-            sum_layer_light(engine, &faint, 40000, part);
-        video[k] = sum_layer_light(engine, &sun, 40000, part);
-        glint_engine_destroy(engine);
+            sum_layer_light(&faint, 40000, part);
+        video[k] = sum_layer_light(&sun, 40000, part);
+        open_engine();
     }
     assert_true(still[0] > 0 && video[0] < 2 * still[0]);
     assert_true(fabs(video[1] / still[1] - 1) < 1e-3);
@@ -327,11 +314,9 @@ TEST(limited_lamp_keeps_its_starburst)
 
 /* Returns the light of the ghosts of the N lamps of LAMPS, whose powers include
  * the exposure. */
-static double sum_ghost_light(struct glint_engine *engine,
-                              const struct glint_engine_lamp *lamps, int n)
+static double sum_ghost_light(const struct glint_engine_lamp *lamps, int n)
 {
     static float layer[BYTES];
-    struct glint_engine_report report;
     double sum = 0;
 
     assert_ok(glint_engine_draw_layer(engine, lamps, n, GLINT_ENGINE_GHOSTS,
@@ -350,37 +335,34 @@ TEST(layers_of_single_lamps_add_up)
     const struct glint_lamp sun = {9, -140, 1e6, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine_lamp both[2] = {glint_engine_lamp_of(&faint, 1),
                                         glint_engine_lamp_of(&sun, 2)};
-    struct glint_engine *engine = create_engine(NULL, 0);
     const struct glint_image image = draw_lamp_picture(px);
     double sum;
 
     for (int i = 0; i < 4; i++)
-        sum_layer_light(engine, &faint, 40000, GLINT_ENGINE_GHOSTS);
+        sum_layer_light(&faint, 40000, GLINT_ENGINE_GHOSTS);
     glint_engine_elapsed(engine, 40000);
     assert_ok(glint_engine_expose(engine, both, 2, &image, 1));
-    sum = sum_ghost_light(engine, both, 2);
+    sum = sum_ghost_light(both, 2);
     assert_true(sum > 0);
-    assert_true(fabs((sum_ghost_light(engine, &both[0], 1) +
-                      sum_ghost_light(engine, &both[1], 1)) /
-                         sum -
-                     1) < 1e-3);
-    glint_engine_destroy(engine);
+    assert_true(
+        fabs((sum_ghost_light(&both[0], 1) + sum_ghost_light(&both[1], 1)) /
+                 sum -
+             1) < 1e-3);
 }
 
 /* Draws frame I of a video. Lamps appear in frames 1 and 3, fade in, and change
  * the exposure. */
-static void draw_frame_of_fading_lamps(struct glint_engine *engine, int i,
+static void draw_frame_of_fading_lamps(struct glint_engine *drawing, int i,
                                        uint8_t *px)
 {
     struct glint_engine_lamp lamps[8];
-    struct glint_engine_report report;
     const struct glint_image image = draw_lamp_picture(px);
     int n;
 
     if (i < 3) /* The second lamp is in the lower half. */
         memset(px + (i < 1 ? 0 : BYTES / 2), 40, i < 1 ? BYTES : BYTES / 2);
-    n = glint_engine_find(engine, &image, 40000, lamps, 8);
-    assert_ok(glint_engine_draw(engine, lamps, n, &image, &report));
+    n = glint_engine_find(drawing, &image, 40000, lamps, 8);
+    assert_ok(glint_engine_draw(drawing, lamps, n, &image, &report));
 }
 
 /* Checks that the frames of a video are the same if another engine continues it
@@ -389,28 +371,25 @@ static void draw_frame_of_fading_lamps(struct glint_engine *engine, int i,
 TEST(engine_continues_the_video_of_another)
 {
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_engine *whole = create_engine(NULL, 0);
-    struct glint_engine *first = create_engine(NULL, 0);
-    struct glint_engine *second = create_engine(NULL, 0);
+    struct glint_engine *const whole = create_engine();
+    struct glint_engine *const first = create_engine();
     struct glint_engine *small;
-    struct glint_engine_config cfg;
 
     for (int i = 0; i < 12; i++) {
         draw_frame_of_fading_lamps(whole, i, want);
         if (i == 5)
-            assert_ok(glint_engine_continue(second, first));
-        draw_frame_of_fading_lamps(i < 5 ? first : second, i, got);
+            assert_ok(glint_engine_continue(engine, first));
+        draw_frame_of_fading_lamps(i < 5 ? first : engine, i, got);
         assert_memory_equal(got, want, BYTES);
     }
     glint_engine_defaults(&cfg, WIDTH, HEIGHT - 2);
     cfg.model = &opened.lens.model.lens;
-    assert_ok(glint_engine_create(&small, &cfg, &error));
-    assert_int_equal(glint_engine_continue(small, second), GLINT_E_ARGUMENT);
+    small = create_engine();
+    assert_int_equal(glint_engine_continue(small, engine), GLINT_E_ARGUMENT);
     draw_frame_of_fading_lamps(whole, 12, want);
-    draw_frame_of_fading_lamps(second, 12, got);
+    draw_frame_of_fading_lamps(engine, 12, got);
     assert_memory_equal(got, want, BYTES);
     glint_engine_destroy(small);
-    glint_engine_destroy(second);
     glint_engine_destroy(first);
     glint_engine_destroy(whole);
 }
@@ -442,8 +421,7 @@ static double find_max_block_step(const uint8_t *a, const uint8_t *b)
 TEST(model_takes_over_from_exact_rays_without_a_step)
 {
     static uint8_t want[BYTES], got[BYTES];
-    struct glint_engine *whole, *first, *second;
-    struct glint_engine_config cfg;
+    struct glint_engine *whole, *first;
     static struct glint_setup setup;
     double step = 0;
 
@@ -454,20 +432,19 @@ TEST(model_takes_over_from_exact_rays_without_a_step)
     cfg.camera.rays = &glint_frame_traces;
     cfg.camera.sensor_width_mm = opened.lens.table.film_width_mm;
     cfg.camera.sensor_height_mm = opened.lens.table.film_height_mm;
-    assert_ok(glint_engine_create(&whole, &cfg, &error));
-    assert_ok(glint_engine_create(&first, &cfg, &error));
+    whole = create_engine();
+    first = create_engine();
     cfg.model = &opened.lens.model.lens;
     cfg.camera.rays = NULL;
-    assert_ok(glint_engine_create(&second, &cfg, &error));
+    open_engine();
     for (int i = 0; i < 12; i++) {
         draw_frame_of_fading_lamps(whole, i, want);
         if (i == 5)
-            assert_ok(glint_engine_continue(second, first));
-        draw_frame_of_fading_lamps(i < 5 ? first : second, i, got);
+            assert_ok(glint_engine_continue(engine, first));
+        draw_frame_of_fading_lamps(i < 5 ? first : engine, i, got);
         step = fmax(step, find_max_block_step(got, want));
     }
     assert_true(step > 0 && step < 1);
-    glint_engine_destroy(second);
     glint_engine_destroy(first);
     glint_engine_destroy(whole);
 }
@@ -475,9 +452,6 @@ TEST(model_takes_over_from_exact_rays_without_a_step)
 TEST(rejects_invalid_configurations)
 {
     static uint8_t px[BYTES];
-    struct glint_engine *engine = create_engine(NULL, 0);
-    struct glint_engine_config cfg;
-    struct glint_engine_report report;
     const struct glint_lamp place = {5, 0, 1, {1, 1, 1}, {0, 0}, 0};
     struct glint_engine_lamp lamp = glint_engine_lamp_of(&place, 1);
     struct glint_image image = draw_lamp_picture(px);
@@ -519,16 +493,13 @@ TEST(rejects_invalid_configurations)
  * the struct contains. */
 TEST(shorter_config_of_older_programs_gets_defaults)
 {
-    struct glint_engine *engine = NULL;
-    struct glint_engine_config cfg;
     const size_t bytes = offsetof(struct glint_engine_config, cache);
 
     memset(&cfg, 0x55, sizeof cfg);
     glint_engine_defaults_sized(&cfg, bytes, WIDTH, HEIGHT);
     assert_int_equal(((unsigned char *)&cfg)[bytes], 0x55);
     cfg.model = &opened.lens.model.lens;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    glint_engine_destroy(engine);
+    open_engine();
 }
 
 /* Checks the options struct of an older program, which lacks the last option.
@@ -538,7 +509,6 @@ TEST(shorter_config_of_older_programs_gets_defaults)
 TEST(shorter_options_of_older_programs_are_respected)
 {
     const size_t bytes = offsetof(struct glint_options, tile);
-    struct glint_engine_config cfg;
     struct glint_options o, *const older = malloc(bytes);
 
     assert_non_null(older);
@@ -552,7 +522,6 @@ TEST(shorter_options_of_older_programs_are_respected)
     memcpy(older, &o, bytes);
     assert_int_equal(glint_options_quality(older).dials.fineness,
                      glint_dials_at(1 << 14).fineness);
-    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     glint_engine_configure(&cfg, older);
     assert_true(cfg.light.strength == 0.25);
     assert_int_equal(cfg.drawing.dials.snap_codes_q8, 3 << 8);
@@ -567,9 +536,6 @@ TEST(options_by_name_equal_the_configuration)
 {
     static uint8_t set[BYTES], made[BYTES];
     const char *const bad[] = {"veil", "strengt", "gain"};
-    struct glint_engine_config cfg;
-    struct glint_engine_report report;
-    struct glint_engine *engine = create_engine(NULL, 0);
 
     assert_ok(glint_engine_set(engine, "exposure", 3, &error));
     assert_ok(glint_engine_set_text(engine, "gain", "2", &error));
@@ -578,16 +544,12 @@ TEST(options_by_name_equal_the_configuration)
                          GLINT_E_ARGUMENT);
         assert_true(error.text[0] != '\0');
     }
-    draw_flare_of_found_lamps(engine, 0, set, &report);
-    glint_engine_destroy(engine);
-    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = &opened.lens.model.lens;
+    draw_flare_of_found_lamps(0, set);
     cfg.light.by_hand = 1;
     cfg.light.exposure_ev = 3;
     cfg.light.gain = 2;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_flare_of_found_lamps(engine, 0, made, &report);
-    glint_engine_destroy(engine);
+    open_engine();
+    draw_flare_of_found_lamps(0, made);
     assert_memory_equal(set, made, BYTES);
 }
 
@@ -615,9 +577,6 @@ TEST(camera_options_equal_a_setup_by_steps)
     struct glint_setup *const setup = malloc(sizeof *setup);
     struct glint_dirt *dirt = NULL;
     struct glint_front_dirt *on_front = NULL;
-    struct glint_engine_config cfg;
-    struct glint_engine_report report;
-    struct glint_engine *engine;
     struct glint_options o;
 
     assert_non_null(setup);
@@ -625,14 +584,11 @@ TEST(camera_options_equal_a_setup_by_steps)
     assert_ok(glint_setup_iris(setup, &iris, &dirt, &error));
     glint_setup_balance(setup);
     assert_ok(glint_front_make(&on_front, &front, &error));
-    glint_engine_defaults(&cfg, WIDTH, HEIGHT);
-    cfg.model = lens;
     cfg.camera.setup = setup;
     cfg.camera.front = on_front;
     cfg.arena_has_all = 1;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_flare_of_found_lamps(engine, 0, want, &report);
-    glint_engine_destroy(engine);
+    open_engine();
+    draw_flare_of_found_lamps(0, want);
 
     glint_options_defaults(&o);
     assert_true(
@@ -644,19 +600,18 @@ TEST(camera_options_equal_a_setup_by_steps)
     glint_engine_defaults(&cfg, WIDTH, HEIGHT);
     glint_engine_configure(&cfg, &o);
     cfg.model = lens;
-    assert_ok(glint_engine_create(&engine, &cfg, &error));
-    draw_flare_of_found_lamps(engine, 0, got, &report);
+    open_engine();
+    draw_flare_of_found_lamps(0, got);
     assert_memory_equal(got, want, BYTES);
 
     iris.roundness = iris.softness = 0;
     assert_ok(glint_engine_iris(engine, 5, 0, &iris, &error));
-    draw_flare_of_found_lamps(engine, 0, want, &report);
+    draw_flare_of_found_lamps(0, want);
     assert_memory_not_equal(got, want, BYTES);
     assert_ok(glint_engine_iris(engine, 0, 0, &iris, &error));
     assert_ok(glint_engine_set_text(engine, "stop", "polygon:5", &error));
-    draw_flare_of_found_lamps(engine, 0, got, &report);
+    draw_flare_of_found_lamps(0, got);
     assert_memory_equal(got, want, BYTES);
-    glint_engine_destroy(engine);
     glint_front_free(on_front);
     glint_dirt_free(dirt);
     free(setup);
@@ -668,36 +623,30 @@ TEST(dust_is_drawn_behind_straight_blades)
 {
     static uint8_t dusty[BYTES], clean[BYTES];
     const struct glint_iris iris = {.dust = 0.02, .dust_seed = 7};
-    struct glint_engine_report report;
-    struct glint_engine *engine = create_engine(NULL, 0);
 
-    draw_flare_of_found_lamps(engine, 0, clean, &report);
+    draw_flare_of_found_lamps(0, clean);
     assert_ok(glint_engine_iris(engine, 8, 0, &iris, &error));
-    draw_flare_of_found_lamps(engine, 0, dusty, &report);
+    draw_flare_of_found_lamps(0, dusty);
     assert_memory_not_equal(dusty, clean, BYTES);
-    glint_engine_destroy(engine);
 }
 
 /* Checks that a configuration whose member STOPS is NULL accepts only stops
  * with straight blades and without dirt. */
 TEST(config_without_stops_accepts_only_clean_blades)
 {
-    struct glint_engine_config cfg;
-    struct glint_engine *engine;
 
     for (int k = 0; k < 3; k++) {
         glint_engine_defaults(&cfg, WIDTH, HEIGHT);
         cfg.model = &opened.lens.model.lens;
         cfg.camera.iris.roundness = k == 1 ? 0.2 : 0;
         cfg.camera.front_dirt.dust = k == 2 ? 0.02 : 0;
+        glint_engine_destroy(engine);
         *error.text = '\0';
         assert_int_equal(glint_engine_create(&engine, &cfg, &error),
                          k ? GLINT_E_ARGUMENT : GLINT_OK);
         assert_true(!k == !strstr(error.text, "camera.stops"));
-        glint_engine_destroy(engine);
         cfg.camera.stops = &glint_engine_all_stops;
-        assert_ok(glint_engine_create(&engine, &cfg, &error));
-        glint_engine_destroy(engine);
+        open_engine();
     }
 }
 
