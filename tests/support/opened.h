@@ -10,7 +10,6 @@
 #define GLINT_TESTS_OPENED_H
 
 #include "support/settings_frame.h"
-#include "options/tool.h"
 #include "support/test.h"
 
 static struct opened opened;

@@ -12,7 +12,6 @@
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 #include "support/shuffle.h"
-#include "support/rng.h"
 
 #define TOLERANCE 20
 #define MAX_DEG   12

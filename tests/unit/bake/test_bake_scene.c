@@ -4,7 +4,6 @@
  * of the scene text, rounded to steps of the scene's unit.
  */
 #include "glint/scene/bake.h"
-#include "glint/scene/model.h"
 #include "support/models/scene_builder.h"
 #include "support/rng.h"
 #include "support/test.h"

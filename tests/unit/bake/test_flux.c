@@ -6,7 +6,6 @@
  */
 #include "bake/model_header.h"
 #include "support/lens_check.h"
-#include "glint/bake.h"
 
 static const double nm[3] = {650, 532, 450};
 

@@ -7,7 +7,6 @@
 #include <complex.h>
 
 #include "support/lens_check.h"
-#include "glint/bake.h"
 
 static struct glint_optics optics;
 

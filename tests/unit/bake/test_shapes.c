@@ -6,7 +6,6 @@
  */
 #include "bake/table/form.h"
 #include "bake/trace/beam.h"
-#include "glint/bake.h"
 #include "support/lens_check.h"
 
 static struct glint_optics optics;

@@ -7,7 +7,6 @@
  */
 #include <complex.h>
 
-#include "glint/bake.h"
 #include "support/lens_check.h"
 
 static const double pi = 3.14159265358979323846;

@@ -6,7 +6,6 @@
 #include <dirent.h>
 
 #include "support/lens_check.h"
-#include "glint/bake.h"
 
 #define GOLDEN    "tests/data/golden"
 #define N_GOLDEN  9

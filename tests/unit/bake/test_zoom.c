@@ -5,7 +5,6 @@
  * lens must have its paraxial focus on the sensor.
  */
 #include "support/lens_check.h"
-#include "glint/bake.h"
 
 static struct glint_error error;
 

@@ -4,8 +4,6 @@
  * tool_clock_s() is replaced by a formula for the time of a frame.
  */
 #include "support/rng.h"
-#include "engine/frame/cost.h"
-#include "glint/quality.h"
 #include "support/opened.h"
 
 enum { WIDTH = 160, HEIGHT = 120, SETTLED = 40 };

@@ -3,9 +3,6 @@
  * Checks the engine's public API: invalid arguments are rejected, reports match
  * the frame, and images are equal in the engine's and in the caller's memory.
  */
-#include "glint/engine.h"
-#include "glint/exact.h"
-#include "glint/options.h"
 #include "support/opened.h"
 
 static struct glint_error error;

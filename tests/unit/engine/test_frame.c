@@ -6,9 +6,7 @@
  */
 #include <errno.h>
 
-#include "engine/frame/frame.h"
 #include "support/settings_frame.h"
-#include "options/tool.h"
 #include "support/fakes/wrapped.h"
 #include "support/shuffle.h"
 #include "support/test.h"

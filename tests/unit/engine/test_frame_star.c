@@ -3,9 +3,7 @@
  * Checks the starbursts of a frame: the estimated power and extent of each
  * lamp, the number of stars drawn, and their use of memory and time.
  */
-#include "engine/frame/frame.h"
 #include "support/settings_frame.h"
-#include "options/tool.h"
 #include "support/night.h"
 #include "support/test.h"
 

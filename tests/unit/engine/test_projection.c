@@ -4,7 +4,6 @@
  * chief rays, and checks their inverses.
  */
 #include "engine/setup/degrees.h"
-#include "glint/bake.h"
 #include "support/lens_check.h"
 
 static struct glint_projection

@@ -6,7 +6,6 @@
  * that move less than a tolerance are drawn with their old rays but their
  * present power; they are never displaced by more than the tolerance.
  */
-#include "glint/flare.h"
 #include "support/shuffle.h"
 #include "support/stage.h"
 #include "support/test.h"

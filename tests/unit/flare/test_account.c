@@ -7,7 +7,6 @@
  */
 #include "base/real.h"
 #include "flare/by_edges.h"
-#include "glint/flare.h"
 #include "support/model_builder.h"
 #include "support/models/frame_parts.h"
 #include "support/test.h"

@@ -7,7 +7,6 @@
 #include "base/real.h"
 #include "glint/flare.h"
 #include "support/shuffle.h"
-#include "support/rng.h"
 #include "support/test.h"
 
 /* NEAR_Q30: the distance up to which lights are merged. It is about 1/8 pixel

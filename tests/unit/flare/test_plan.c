@@ -5,13 +5,11 @@
  */
 #include "base/real.h"
 #include "flare/plan.h"
-#include "glint/flare.h"
 #include "glint/kernels.h"
 #include "support/canvas.h"
 #include "support/model_builder.h"
 #include "support/models/frame_parts.h"
 #include "support/shuffle.h"
-#include "support/rng.h"
 #include "support/test.h"
 
 enum { WIDTH = 160, HEIGHT = 120 };

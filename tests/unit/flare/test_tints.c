@@ -4,7 +4,6 @@
  * tint, muted ghosts are not planned, and tints of 1 change no bit.
  */
 #include "base/real.h"
-#include "glint/flare.h"
 #include "support/model_builder.h"
 #include "support/models/frame_parts.h"
 #include "support/test.h"

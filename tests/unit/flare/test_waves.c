@@ -4,7 +4,6 @@
  * dispersion and brightness require, without colour steps that 31 wavelengths
  * would not have. Explicit lists of wavelengths must be used as given.
  */
-#include "engine/frame/frame.h"
 #include "support/settings_frame.h"
 #include "support/test.h"
 

@@ -3,7 +3,6 @@
  * Tests tracking of lamps that are hidden or that meet: the displayed energy
  * must not change abruptly, and tracks must keep their ids.
  */
-#include "glint/lamp_tracker.h"
 
 #include "support/night.h"
 #include "support/test.h"

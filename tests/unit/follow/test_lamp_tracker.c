@@ -3,7 +3,6 @@
  * Tests tracking of lamps in synthetic night scenes with the real finder:
  * tracks must suppress noise and follow motion without abrupt changes.
  */
-#include "glint/lamp_tracker.h"
 
 #include "support/night.h"
 #include "support/rng.h"

@@ -3,7 +3,6 @@
  * Tests tracking with random input: results stay within limits and do not
  * depend on the order of spots (lamps found in one frame).
  */
-#include "glint/lamp_tracker.h"
 
 #include "support/night.h"
 #include "support/rng.h"

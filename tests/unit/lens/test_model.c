@@ -2,7 +2,6 @@
  *
  * Checks that each kind of damage to a model file is rejected.
  */
-#include "glint/model.h"
 #include "support/model_builder.h"
 #include "support/rng.h"
 #include "support/test.h"

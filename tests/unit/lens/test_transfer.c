@@ -6,7 +6,6 @@
 #include "glint/flare.h"
 #include "glint/transfer.h"
 #include "support/model_builder.h"
-#include "support/rng.h"
 #include "support/shuffle.h"
 #include "support/test.h"
 

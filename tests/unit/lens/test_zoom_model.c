@@ -5,7 +5,6 @@
  * rays do. Files that are not zooms must be rejected.
  */
 #include "base/blob.h"
-#include "glint/bake.h"
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 

@@ -4,10 +4,7 @@
  */
 #include "control/steer.h"
 #include "glint/scene/bake.h"
-#include "glint/scene/motion_bake.h"
-#include "glint/view.h"
 #include "scene/motion/play.h"
-#include "scenes/scene_frame.h"
 #include "support/rng.h"
 #include "support/test.h"
 #include "support/tracks/moving.h"

@@ -4,7 +4,6 @@
  * compares the position of each ghost's outline, drawn with the grid that is
  * chosen for that error, with the position in the finest grid.
  */
-#include "glint/quality.h"
 #include "support/extreme.h"
 #include "support/stage.h"
 #include "support/test.h"

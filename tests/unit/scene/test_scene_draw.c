@@ -9,7 +9,6 @@
 #include "scene/state.h"
 #include "support/model_builder.h"
 #include "support/models/scene_builder.h"
-#include "support/rng.h"
 #include "support/shuffle.h"
 #include "support/test.h"
 

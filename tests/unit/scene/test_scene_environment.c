@@ -5,9 +5,7 @@
  * and the brightness of highlights are checked, too.
  */
 #include "base/blob.h"
-#include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
-#include "glint/view.h"
 #include "scenes/account.h"
 #include "support/models/drawn_scene.h"
 #include "reference/scenes/twin.h"

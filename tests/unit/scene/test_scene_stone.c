@@ -5,8 +5,6 @@
  * tiles. Also tests incremental updates of light maps, extreme values, and
  * errors.
  */
-#include "glint/scene/account.h"
-#include "glint/scene/bake.h"
 #include "glint/scene/environment_bake.h"
 #include "support/models/drawn_scene.h"
 #include "support/models/scene_builder.h"

@@ -8,8 +8,6 @@
 #include "engine/star/core_table.h"
 #include "engine/star/psf.h"
 #include "engine/star/star_tables.h"
-#include "glint/flare.h"
-#include "star/starburst.h"
 #include "glint/view.h"
 #include "support/canvas.h"
 #include "support/stars/canvas.h"

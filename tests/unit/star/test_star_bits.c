@@ -6,7 +6,6 @@
  * libm.
  */
 #include "base/real.h"
-#include "support/rng.h"
 #include "support/stars/any.h"
 #include "support/stars/canvas.h"
 #include "support/test.h"

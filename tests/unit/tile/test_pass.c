@@ -8,7 +8,6 @@
 #include "flare/draw_over.h"
 #include "glint/kernels.h"
 #include "support/model_builder.h"
-#include "support/rng.h"
 #include "support/shuffle.h"
 #include "support/test.h"
 

@@ -4,7 +4,6 @@
  * both ends. Lights must be at the reported angles. The error must be small at
  * the ends and larger half-way.
  */
-#include "glint/view.h"
 #include "support/lens_check.h"
 #include "zooms/zoom_error.h"
 

@@ -8,7 +8,6 @@
 #include "engine/frame/front.h"
 #include "engine/setup/entrance.h"
 #include "support/hash.h"
-#include "support/rng.h"
 #include "support/stars/bare_flare.h"
 #include "support/test.h"
 #include "veil/glare.h"

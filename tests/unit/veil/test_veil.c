@@ -5,10 +5,8 @@
  * workers, tiles and order of jobs, and change continuously while a lamp
  * moves.
  */
-#include "glint/flare.h"
 #include "glint/kernels.h"
 #include "support/hash.h"
-#include "support/rng.h"
 #include "support/stars/bare_flare.h"
 #include "support/test.h"
 #include "veil/glare.h"

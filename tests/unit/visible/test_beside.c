@@ -8,7 +8,6 @@
 #include "bake/fit/zone_rays.h"
 #include "bake/visible/visible.h"
 #include "engine/setup/degrees.h"
-#include "glint/bake.h"
 #include "glint/transfer.h"
 #include "support/lens_check.h"
 
