@@ -318,10 +318,10 @@ TEST(a10_lit_ball_has_no_shadow_acne)
  * and without "refract 1". */
 TEST(a11_transparent_ball_shows_what_is_behind)
 {
-    static const char plain[] = GLASS("") "sphere w at 1 0 6 radius .5 "
-                                          "material w\n";
-    static const char one[] = GLASS("refract 1") "sphere w at 1 0 6 radius .5 "
-                                                 "material w\n";
+    static const char plain[] =
+        GLASS("") "sphere w at 1 0 6 radius .5 material w\n";
+    static const char one[] =
+        GLASS("refract 1") "sphere w at 1 0 6 radius .5 material w\n";
     int seen = 0;
 
     for (int k = 0; k < 40; k++) {
@@ -372,14 +372,12 @@ TEST(a12_glass_ball_refracts_by_snells_law)
      * critical angle of 41.8 degrees to the normal, does not leave the ball. */
     assert_rgb_light(
         trace_ray_in_text(
-            GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
-                                 "w\n",
+            GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n",
             .9, 0, 0, 0, 0, 1),
         0, 0, 0);
     assert_rgb_light(
         trace_ray_in_text(
-            GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material "
-                                 "w\n",
+            GLASS("refract 1.5") "plane w at 0 0 9 normal 0 0 -1 material w\n",
             .5, 0, 0, 0, 0, 1),
         .1, .2, .4);
 }
@@ -512,11 +510,10 @@ TEST(tree_matches_brute_force)
     for (int i = 0; i < 100; i++) {
         const double x = 2 * rng_signed(&seed), y = 2 * rng_signed(&seed);
 
-        snprintf(text + strlen(text), sizeof text - strlen(text),
-                 "triangle t%d %.3f %.3f %.3f %.3f %.3f 5 %.3f %.3f 5 "
-                 "material m\n",
-                 i, x, y, 4 + rng_signed(&seed), x + 1, y, x,
-                 y + rng_signed(&seed));
+        snprintf(
+            text + strlen(text), sizeof text - strlen(text),
+            "triangle t%d %.3f %.3f %.3f %.3f %.3f 5 %.3f %.3f 5 material m\n",
+            i, x, y, 4 + rng_signed(&seed), x + 1, y, x, y + rng_signed(&seed));
     }
     s = open_reference_for_text(text);
     /* merge all triangles into one mesh object */

@@ -19,30 +19,28 @@ static const char table[] = "name films\n"
                             "surface 80 3 12 1.5168 64.17\n"
                             "surface -400 60 12 air\n";
 
+static struct glint_error error;
+
 static enum glint_status parse_table_with_line(struct glint_prescription *lens,
-                                               const char *line,
-                                               struct glint_error *error)
+                                               const char *line)
 {
     char text[1024] = "";
 
     strcat(text, table);
     strcat(text, line);
-    return glint_prescription_parse(lens, text, strlen(text), "x.lens", error);
+    return glint_prescription_parse(lens, text, strlen(text), "x.lens", &error);
 }
 
 static void parse_valid_table_with_line(struct glint_prescription *lens,
                                         const char *line)
 {
-    struct glint_error error;
-
-    if (parse_table_with_line(lens, line, &error) != GLINT_OK)
+    if (parse_table_with_line(lens, line) != GLINT_OK)
         fail_msg("%s", error.text);
 }
 
 static void apply_coatings(struct glint_prescription *lens, const char *films)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
-    struct glint_error error;
     int n = 0;
 
     if (glint_coatings_parse(coating, &n, films, &error) != GLINT_OK)
@@ -96,10 +94,8 @@ TEST(rejects_wrong_lines)
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         static struct glint_prescription lens;
-        struct glint_error error = {""};
 
-        assert_int_equal(parse_table_with_line(&lens, bad[i][0], &error),
-                         GLINT_E_LENS);
+        assert_int_equal(parse_table_with_line(&lens, bad[i][0]), GLINT_E_LENS);
         assert_string_equal(error.text, bad[i][1]);
     }
 }
@@ -144,7 +140,6 @@ TEST(rejects_invalid_coatings)
 
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct glint_coating coating[GLINT_MAX_COATINGS] = {{.nm = 1}};
-        struct glint_error error = {""};
         int n = 7;
 
         assert_int_equal(glint_coatings_parse(coating, &n, bad[i][0], &error),
@@ -157,7 +152,6 @@ TEST(rejects_invalid_coatings)
 TEST(rejects_too_many_coatings)
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
-    struct glint_error error = {""};
     char text[600] = "";
     int n;
 
@@ -175,7 +169,6 @@ static void check_films_of_coating(const char *text, double nm, int n,
                                    const double film[][2])
 {
     struct glint_coating coating[GLINT_MAX_COATINGS];
-    struct glint_error error = {""};
     int n_coatings = 0;
 
     if (glint_coatings_parse(coating, &n_coatings, text, &error) != GLINT_OK)

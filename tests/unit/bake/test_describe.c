@@ -30,6 +30,9 @@ static const char *const good[] = {
 
 #define N_GOOD 15
 
+static struct glint_description scene;
+static struct glint_error fault;
+
 /* A quad, whose second half has another material, and a triangle. */
 static const char cup[] = "# a cup\n"
                           "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\n"
@@ -88,9 +91,7 @@ static const struct glint_description_files files = {
 
 /* Parses the valid text with its line NUMBER (from 1) replaced by LINE; NUMBER
  * 0: no replacement. */
-static enum glint_status parse_text_with_line(struct glint_description *scene,
-                                              int number, const char *line,
-                                              struct glint_error *error)
+static enum glint_status parse_text_with_line(int number, const char *line)
 {
     char text[4096] = "", *copy;
     enum glint_status status;
@@ -106,9 +107,10 @@ static enum glint_status parse_text_with_line(struct glint_description *scene,
     copy = malloc(bytes);
     assert_non_null(copy);
     memcpy(copy, text, bytes);
-    error->text[0] = '\0';
+    glint_description_free(&scene);
+    fault.text[0] = '\0';
     status =
-        glint_description_parse(scene, copy, bytes, "x.scene", &files, error);
+        glint_description_parse(&scene, copy, bytes, "x.scene", &files, &fault);
     free(copy);
     return status;
 }
@@ -122,81 +124,66 @@ static void check_vector_is_near(const double *a, double x, double y, double z)
 
 TEST(parses_every_line)
 {
-    struct glint_description *s = malloc(sizeof *s);
-    struct glint_error error;
-
-    assert_non_null(s);
-    if (parse_text_with_line(s, 0, NULL, &error) != GLINT_OK)
-        fail_msg("%s", error.text);
-    assert_true(s->left_handed && s->has_shadows);
-    check_vector_is_near(s->camera.right, 1, 0, 0);
-    check_vector_is_near(s->camera.up, 0, 1, 0);
-    check_vector_is_near(s->camera.forward, 0, 0, 1);
-    assert_true(s->camera.fov_deg == 60);
-    check_vector_is_near(s->background_colour, .1, .2, .3);
-    assert_int_equal(s->n_lights, 2);
-    check_vector_is_near(s->light[0].at, 0, .6, -.8);
-    assert_string_equal(s->light[1].name, "lamp");
-    assert_int_equal(s->n_materials, 3);
-    assert_true(s->material[0].power == 20 && s->material[1].power == 32);
-    assert_int_equal(s->material[1].texture, 0);
-    assert_true(s->material[2].pass == .9 && s->material[2].index == 1.5);
-    assert_int_equal(s->n_objects, 4);
-    check_vector_is_near(s->object[2].normal, 0, 1, 0);
-    assert_true(s->object[2].catcher == .6 && s->object[2].material == -1);
-    assert_int_equal(s->flare, GLINT_DESCRIBED_FLARE_HIGHLIGHTS);
-    assert_int_equal(s->n_highlights, 3);
-    assert_string_equal(s->warning, "");
-    glint_description_free(s);
-    free(s);
+    if (parse_text_with_line(0, NULL) != GLINT_OK)
+        fail_msg("%s", fault.text);
+    assert_true(scene.left_handed && scene.has_shadows);
+    check_vector_is_near(scene.camera.right, 1, 0, 0);
+    check_vector_is_near(scene.camera.up, 0, 1, 0);
+    check_vector_is_near(scene.camera.forward, 0, 0, 1);
+    assert_true(scene.camera.fov_deg == 60);
+    check_vector_is_near(scene.background_colour, .1, .2, .3);
+    assert_int_equal(scene.n_lights, 2);
+    check_vector_is_near(scene.light[0].at, 0, .6, -.8);
+    assert_string_equal(scene.light[1].name, "lamp");
+    assert_int_equal(scene.n_materials, 3);
+    assert_true(scene.material[0].power == 20 && scene.material[1].power == 32);
+    assert_int_equal(scene.material[1].texture, 0);
+    assert_true(scene.material[2].pass == .9 && scene.material[2].index == 1.5);
+    assert_int_equal(scene.n_objects, 4);
+    check_vector_is_near(scene.object[2].normal, 0, 1, 0);
+    assert_true(scene.object[2].catcher == .6 &&
+                scene.object[2].material == -1);
+    assert_int_equal(scene.flare, GLINT_DESCRIBED_FLARE_HIGHLIGHTS);
+    assert_int_equal(scene.n_highlights, 3);
+    assert_string_equal(scene.warning, "");
 }
 
 /* Checks that a quad becomes two triangles, scaled by 1/2, and that the name
  * "oak" in the mesh file refers to the material "oak" of the scene. */
 TEST(quad_becomes_two_scaled_triangles)
 {
-    struct glint_description *s = malloc(sizeof *s);
     const struct glint_described_object *o;
-    struct glint_error error;
 
-    assert_non_null(s);
-    assert_ok(parse_text_with_line(s, 0, NULL, &error));
-    o = &s->object[3];
+    assert_ok(parse_text_with_line(0, NULL));
+    o = &scene.object[3];
     assert_int_equal(o->first_triangle, 1);
     assert_int_equal(o->n_triangles, 3);
-    assert_true(o->shadow == .25 && s->object[0].shadow == 1);
+    assert_true(o->shadow == .25 && scene.object[0].shadow == 1);
     assert_true(fabs(o->turn[0] - sqrt(.5)) < 1e-12 &&
                 fabs(o->turn[2] - sqrt(.5)) < 1e-12);
-    check_vector_is_near(s->triangle[2].place[1], 1, 1, 0);
-    check_vector_is_near(s->triangle[2].place[2], 0, 1, 0);
-    assert_true(s->triangle[2].has_normals && s->triangle[2].has_uv);
-    check_vector_is_near(s->triangle[2].normal[0], 0, 0, -1);
-    assert_int_equal(s->triangle[2].material, 0);
-    assert_int_equal(s->triangle[3].material, 1);
-    assert_false(s->triangle[3].has_normals);
-    glint_description_free(s);
-    free(s);
+    check_vector_is_near(scene.triangle[2].place[1], 1, 1, 0);
+    check_vector_is_near(scene.triangle[2].place[2], 0, 1, 0);
+    assert_true(scene.triangle[2].has_normals && scene.triangle[2].has_uv);
+    check_vector_is_near(scene.triangle[2].normal[0], 0, 0, -1);
+    assert_int_equal(scene.triangle[2].material, 0);
+    assert_int_equal(scene.triangle[3].material, 1);
+    assert_false(scene.triangle[3].has_normals);
 }
 
 /* Checks that a texture of six columns is resampled to eight, the power of two
  * with the nearest ratio, and that its mean light is preserved. */
 TEST(texture_is_resampled_to_a_power_of_two)
 {
-    struct glint_description *s = malloc(sizeof *s);
-    struct glint_error error;
     const uint8_t *row;
 
-    assert_non_null(s);
-    assert_ok(parse_text_with_line(s, 0, NULL, &error));
-    assert_int_equal(s->texture[0].image.width, 8);
-    assert_int_equal(s->texture[0].image.height, 2);
-    row = s->texture[0].image.plane[0];
+    assert_ok(parse_text_with_line(0, NULL));
+    assert_int_equal(scene.texture[0].image.width, 8);
+    assert_int_equal(scene.texture[0].image.height, 2);
+    row = scene.texture[0].image.plane[0];
     assert_int_equal(row[3 * 1], 0);
     /* code 156 is a third of the light of white */
     assert_int_equal(row[3 * 2], 156);
     assert_int_equal(row[3 * 3], 255);
-    glint_description_free(s);
-    free(s);
 }
 
 static const struct mistake {
@@ -256,8 +243,7 @@ static const struct mistake {
      "4:7: a light must be a sun or a lamp, not 'bulb'"},
     {5, "light lamp at 0 3 -2 color 8 7 6",
      "5:22: light lamp accepts at, colour, radius and on, not 'color'; did you "
-     "mean "
-     "'colour'?"},
+     "mean 'colour'?"},
     {5, "light lamp at 0 3 -2 at 8 7 6", "5:22: a second 'at'"},
     {5, "light lamp at 0 3 2e6 colour 8 7 6",
      "5:19: at must be -1000000 .. 1000000, not 2e+06"},
@@ -345,46 +331,32 @@ static const struct mistake {
 
 TEST(rejects_wrong_lines)
 {
-    struct glint_description *s = malloc(sizeof *s);
-
-    assert_non_null(s);
     for (size_t i = 0; i < sizeof mistakes / sizeof *mistakes; i++) {
         const struct mistake *m = &mistakes[i];
-        struct glint_error error;
         char wanted[200];
 
         snprintf(wanted, sizeof wanted, "x.scene:%s", m->error);
-        assert_int_not_equal(parse_text_with_line(s, m->line, m->text, &error),
-                             GLINT_OK);
-        if (strncmp(error.text, wanted, strlen(wanted)) != 0)
-            fail_msg("'%s': %s", m->text, error.text);
+        assert_int_not_equal(parse_text_with_line(m->line, m->text), GLINT_OK);
+        if (strncmp(fault.text, wanted, strlen(wanted)) != 0)
+            fail_msg("'%s': %s", m->text, fault.text);
     }
-    free(s);
 }
 
 /* Checks that the same numbers with the other handedness give the mirrored
  * scene: the x axis of the camera is reversed. */
 TEST(handedness_mirrors_the_camera)
 {
-    struct glint_description *s = malloc(sizeof *s);
-    struct glint_error error;
-
-    assert_non_null(s);
-    assert_ok(parse_text_with_line(s, 1, "hand right", &error));
-    check_vector_is_near(s->camera.right, -1, 0, 0);
-    check_vector_is_near(s->camera.up, 0, 1, 0);
-    glint_description_free(s);
+    assert_ok(parse_text_with_line(1, "hand right"));
+    check_vector_is_near(scene.camera.right, -1, 0, 0);
+    check_vector_is_near(scene.camera.up, 0, 1, 0);
     assert_ok(parse_text_with_line(
-        s, 2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0", &error));
-    check_vector_is_near(s->camera.at, 2, 1, 0);
+        2, "camera orbit 0 1 0 distance 2 yaw 90 pitch 0"));
+    check_vector_is_near(scene.camera.at, 2, 1, 0);
     /* here x points right and z away from the viewer */
-    check_vector_is_near(s->camera.right, 0, 0, 1);
-    glint_description_free(s);
-    assert_ok(parse_text_with_line(s, 2, "camera corners", &error));
-    check_vector_is_near(s->camera.forward, 0, 0, 1);
-    check_vector_is_near(s->camera.right, 1, 0, 0);
-    glint_description_free(s);
-    free(s);
+    check_vector_is_near(scene.camera.right, 0, 0, 1);
+    assert_ok(parse_text_with_line(2, "camera corners"));
+    check_vector_is_near(scene.camera.forward, 0, 0, 1);
+    check_vector_is_near(scene.camera.right, 1, 0, 0);
 }
 
 static const struct mesh_text {
@@ -423,29 +395,26 @@ static const struct mesh_text {
 
 TEST(parses_or_rejects_mesh_texts)
 {
-    struct glint_mesh *mesh = malloc(sizeof *mesh);
+    static struct glint_mesh mesh;
 
-    assert_non_null(mesh);
     for (size_t i = 0; i < sizeof mesh_texts / sizeof *mesh_texts; i++) {
         const struct mesh_text *m = &mesh_texts[i];
-        struct glint_error error = {""};
         char wanted[200];
         const enum glint_status status =
-            glint_mesh_read(mesh, m->text, strlen(m->text), "m.obj", &error);
+            glint_mesh_read(&mesh, m->text, strlen(m->text), "m.obj", &fault);
 
         if (m->n) {
             if (status != GLINT_OK)
-                fail_msg("'%s': %s", m->text, error.text);
-            assert_int_equal(mesh->n_triangles, m->n);
-            free(mesh->triangle);
+                fail_msg("'%s': %s", m->text, fault.text);
+            assert_int_equal(mesh.n_triangles, m->n);
+            free(mesh.triangle);
             continue;
         }
         assert_int_equal(status, GLINT_E_LENS);
         snprintf(wanted, sizeof wanted, "m.obj:%s", m->error);
-        if (strncmp(error.text, wanted, strlen(wanted)) != 0)
-            fail_msg("'%s': %s", m->text, error.text);
+        if (strncmp(fault.text, wanted, strlen(wanted)) != 0)
+            fail_msg("'%s': %s", m->text, fault.text);
     }
-    free(mesh);
 }
 
 /* Checks that a sun of given 'white' lights a surface to that value, whatever
@@ -455,21 +424,16 @@ TEST(white_of_a_sun_does_not_depend_on_its_radius)
     static const char *const text[] = {
         "light sun direction 0 1 0 white 1 .5 .25",
         "light sun direction 0 1 0 white 1 .5 .25 radius 5"};
-    struct glint_description *s = malloc(sizeof *s);
-    struct glint_error error;
 
-    assert_non_null(s);
     for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
         double sine;
 
-        assert_ok(parse_text_with_line(s, 4, text[i], &error));
-        sine = sin(s->light[0].radius_deg * GLINT_PI / 180);
+        assert_ok(parse_text_with_line(4, text[i]));
+        sine = sin(scene.light[0].radius_deg * GLINT_PI / 180);
         for (int c = 0; c < 3; c++)
-            assert_true(fabs(s->light[0].colour[c] * sine * sine -
+            assert_true(fabs(scene.light[0].colour[c] * sine * sine -
                              1. / (1 << c)) < 1e-12);
-        glint_description_free(s);
     }
-    free(s);
 }
 
 /* Checks that the parser warns of a sun too faint for any code or far above
@@ -488,15 +452,15 @@ TEST(warns_of_invisible_settings)
         {4, "light sun direction 0 1 0 white 9 9 9 radius 5", ""},
         {4, "light sun direction 0 1 0 white 11 9 9", "surface to 11 times"},
         {7, "material red phong .1 .2 .1", "0.4; the surface absorbs"}};
-    struct glint_description *s = malloc(sizeof *s);
-    struct glint_error error;
 
-    assert_non_null(s);
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        assert_ok(parse_text_with_line(s, odd[i].line, odd[i].text, &error));
-        assert_int_equal(!s->warning[0], !odd[i].warning[0]);
-        assert_non_null(strstr(s->warning, odd[i].warning));
-        glint_description_free(s);
+        assert_ok(parse_text_with_line(odd[i].line, odd[i].text));
+        assert_int_equal(!scene.warning[0], !odd[i].warning[0]);
+        assert_non_null(strstr(scene.warning, odd[i].warning));
     }
-    free(s);
+}
+
+TEST_CLOSE
+{
+    glint_description_free(&scene);
 }

@@ -73,9 +73,9 @@ static const struct {
 };
 
 static struct glint_prescription lens;
+static struct glint_error error;
 
-static enum glint_status parse_lens_of_medium(const char *medium,
-                                              struct glint_error *error)
+static enum glint_status parse_lens_of_medium(const char *medium)
 {
     char text[400];
 
@@ -83,7 +83,8 @@ static enum glint_status parse_lens_of_medium(const char *medium,
              "name t\nf-number 8\nfilm 36 24\nstop 5 9\n"
              "surface 60 5 10 %s\nsurface -60 90 10 air\n",
              medium);
-    return glint_prescription_parse(&lens, text, strlen(text), "t.lens", error);
+    return glint_prescription_parse(&lens, text, strlen(text), "t.lens",
+                                    &error);
 }
 
 /* Checks that GOT differs from WANT, a printed refractive index, by at most
@@ -95,10 +96,8 @@ static void check_index_is_near(double got, double want)
 
 TEST(indices_match_the_printed_ones)
 {
-    struct glint_error error = {""};
-
     for (size_t i = 0; i < sizeof printed / sizeof *printed; i++) {
-        if (parse_lens_of_medium(printed[i].name, &error) != GLINT_OK)
+        if (parse_lens_of_medium(printed[i].name) != GLINT_OK)
             fail_msg("%s", error.text);
         check_index_is_near(lens.surface[0].nd, printed[i].nd);
         check_index_is_near(glint_surface_index(&lens.surface[0], 587.5618),
@@ -116,13 +115,11 @@ TEST(indices_match_the_printed_ones)
 
 TEST(dispersions_match_the_printed_ones)
 {
-    struct glint_error error = {""};
-
     for (size_t i = 0; i < sizeof printed_vd / sizeof *printed_vd; i++) {
         const double nd = printed_vd[i].nd;
         double apart;
 
-        if (parse_lens_of_medium(printed_vd[i].name, &error) != GLINT_OK)
+        if (parse_lens_of_medium(printed_vd[i].name) != GLINT_OK)
             fail_msg("%s", error.text);
         check_index_is_near(glint_surface_index(&lens.surface[0], 587.5618),
                             nd);
@@ -137,7 +134,6 @@ TEST(dispersions_match_the_printed_ones)
  * glass; misprinted coefficients would give others. */
 TEST(all_rows_are_glasses)
 {
-    struct glint_error error = {""};
     const struct glint_glass *glass;
     int n = 0;
 
@@ -148,7 +144,7 @@ TEST(all_rows_are_glasses)
                          glass);
         assert_ptr_equal(glint_glass_near(glass->name, strlen(glass->name)),
                          glass);
-        assert_ok(parse_lens_of_medium(glass->name, &error));
+        assert_ok(parse_lens_of_medium(glass->name));
         assert_true(lens.surface[0].nd > 1.4 && lens.surface[0].nd < 2.1);
         assert_true(lens.surface[0].vd > 17 && lens.surface[0].vd < 96);
         for (int nm = 365; nm <= 1010; nm += 15) {
@@ -166,10 +162,9 @@ TEST(all_rows_are_glasses)
  * Cauchy's formula, whose two terms nd and Vd determine. */
 TEST(violet_dispersion_is_not_that_of_two_terms)
 {
-    struct glint_error error = {""};
     double by_numbers;
 
-    assert_ok(parse_lens_of_medium("N-SF11", &error));
+    assert_ok(parse_lens_of_medium("N-SF11"));
     by_numbers = glint_index(lens.surface[0].nd, lens.surface[0].vd, 404.66);
     assert_true(glint_surface_index(&lens.surface[0], 404.66) - by_numbers >
                 4e-3);
@@ -188,12 +183,10 @@ TEST(misspelt_names_get_a_suggestion)
     static const char own[] =
         "name t\nf-number 8\nfilm 36 24\nstop 5 9\n"
         "glass N-BK7 1.6 50\nsurface 60 5 10 N-BK7\nsurface -60 90 10 air\n";
-    struct glint_error error;
 
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         error.text[0] = '\0';
-        assert_int_equal(parse_lens_of_medium(cases[i].wrong, &error),
-                         GLINT_E_LENS);
+        assert_int_equal(parse_lens_of_medium(cases[i].wrong), GLINT_E_LENS);
         assert_non_null(strstr(error.text, "t.lens:5:17: no glass"));
         assert_non_null(strstr(error.text, cases[i].meant));
     }
@@ -207,11 +200,10 @@ TEST(misspelt_names_get_a_suggestion)
 TEST(glasses_of_equal_nd_and_vd_have_distinct_keys)
 {
     struct glint_bake_options options;
-    struct glint_error error = {""};
     uint64_t key;
 
     glint_bake_defaults(&options);
-    assert_ok(parse_lens_of_medium("N-SK16", &error));
+    assert_ok(parse_lens_of_medium("N-SK16"));
     key = glint_bake_key(&lens, &options);
     memset(lens.surface[0].sellmeier, 0, sizeof lens.surface[0].sellmeier);
     assert_true(glint_bake_key(&lens, &options) != key);

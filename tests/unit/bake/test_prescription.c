@@ -164,9 +164,7 @@ TEST(parses_coating_lines)
                             (const double[]){1.38, 0, 1.38, 1.38});
     /* Surface 1 is cemented in this table, so it has no coating. */
     expect_surface_coatings(
-        7,
-        "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating "
-        "500 1.4",
+        7, "surface -50 3 12 1.7 30\nsurface -90 3 12 air\ncoating 500 1.4",
         (const double[]){500, 0, 500, 500}, (const double[]){1.4, 0, 1.4, 1.4});
     expect_surface_coatings(7,
                             "surface -50 3 12 1.7 30 coating none\n"
@@ -215,14 +213,11 @@ static const struct {
     {1, "", "11:1: the line 'name' is missing"},
     {1, "name", "1:5: name is missing"},
     {1, "name Tiny",
-     "1:6: a name may only contain a-z, 0-9 and -, and must not begin "
-     "with -"},
+     "1:6: a name may only contain a-z, 0-9 and -, and must not begin with -"},
     {1, "name -a",
-     "1:6: a name may only contain a-z, 0-9 and -, and must not begin "
-     "with -"},
+     "1:6: a name may only contain a-z, 0-9 and -, and must not begin with -"},
     {1, "name ../a",
-     "1:6: a name may only contain a-z, 0-9 and -, and must not begin "
-     "with -"},
+     "1:6: a name may only contain a-z, 0-9 and -, and must not begin with -"},
     {1, "name a b", "1:8: 'b' is one value too many for name"},
     {1,
      "name aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa",
@@ -243,8 +238,8 @@ static const struct {
     {3, "f-number 8\nf-number 8",
      "4:1: a second f-number; the first is on line 3"},
     {3, "f-number 1.5",
-     "3:10: f/1.5 needs a stop of 11.42 mm radius, but its "
-     "semi-diameter is 8 mm"},
+     "3:10: f/1.5 needs a stop of 11.42 mm radius, but its semi-diameter is 8 "
+     "mm"},
     {4, "", "11:1: the line 'film' is missing"},
     {4, "film 36", "4:8: film height is missing"},
     {4, "film 0 24", "4:6: film width must be 0.1 .. 1000, not 0"},
@@ -262,11 +257,10 @@ static const struct {
     {3, "f-number 8#", "3:10: f-number '8#' is not a number"},
     {3, "f-number 1e400", "3:10: f-number '1e400' is too large or too small"},
     {3, "f-number 1e99999999999999999999",
-     "3:10: f-number '1e99999999999999999999' is too large or too "
-     "small"},
+     "3:10: f-number '1e99999999999999999999' is too large or too small"},
     {3, "f-number 80000000000000000000000000000000000000000",
-     "3:10: f-number '8000000000000000000000000000...' is too large or "
-     "too small"},
+     "3:10: f-number '8000000000000000000000000000...' is too large or too "
+     "small"},
     /* mistakes in glasses */
     {5, "glass", "5:6: glass name is missing"},
     {5, "glass N-BK7", "5:12: index is missing"},
@@ -274,8 +268,7 @@ static const struct {
     {5, "glass N-BK7 0.9 60", "5:13: index must be 1.01 .. 4, not 0.9"},
     {5, "glass N-BK7 1.5 5", "5:17: Abbe number must be 10 .. 150, not 5"},
     {5, "glass 7N 1.5 60",
-     "5:7: glass name must be a letter and at most 22 letters, digits "
-     "and -"},
+     "5:7: glass name must be a letter and at most 22 letters, digits and -"},
     {5, "glass air 1.5 60", "5:7: glass of this name is already defined"},
     {5, "glass N-BK7 1.5 60\nglass N-BK7 1.6 50",
      "6:7: glass of this name is already defined"},
@@ -331,9 +324,7 @@ static const struct {
      "7:25: a cemented surface has no coating"},
     {7, "surface -50 3 12 1.7 30 coating 550\nsurface -50 2 12 air",
      "7:25: a cemented surface has no coating"},
-    {10, "surface -80 40 10 1.5 60",
-     "10:19: the last medium must be "
-     "air"},
+    {10, "surface -80 40 10 1.5 60", "10:19: the last medium must be air"},
     /* mistakes in the stop */
     {8, "", "11:1: the line 'stop' is missing"},
     {8, "stop 5 8\nstop 5 8", "9:1: a second stop; the first is on line 8"},
@@ -342,25 +333,20 @@ static const struct {
     {8, "stop 5 8 9", "8:10: unexpected '9'; expected circle"},
     /* mistakes that are detected only in the complete lens */
     {6, "surface 50 2.3406 12 N-BK7",
-     "6:12: element overlaps the next one by 0.02006 mm at 10.8 mm from "
-     "the axis"},
+     "6:12: element overlaps the next one by 0.02006 mm at 10.8 mm from the "
+     "axis"},
     {6, "surface 50 2.3 12 N-BK7",
-     "6:12: element overlaps the next one by 0.06066 mm at 10.8 mm from "
-     "the axis"},
+     "6:12: element overlaps the next one by 0.06066 mm at 10.8 mm from the "
+     "axis"},
     {7, "surface -50 0 12 air\nsurface -40 3 12 1.6 40\nsurface -50 3 12 air",
-     "7:13: element overlaps the next one by 0.3053 mm at 10.8 mm from "
-     "the "
+     "7:13: element overlaps the next one by 0.3053 mm at 10.8 mm from the "
      "axis"},
     {8, "surface 20 0.5 9 1.7 30\nsurface 15 1 9 air\nstop 5 8",
-     "9:12: element overlaps the next one by 0.841 mm at 7.2 mm from "
-     "the "
-     "axis"},
+     "9:12: element overlaps the next one by 0.841 mm at 7.2 mm from the axis"},
     {10, "surface 80 0 10 air",
-     "10:12: the sensor must lie behind the "
-     "last element"},
+     "10:12: the sensor must lie behind the last element"},
     {10, "surface 80 0.6 10 air",
-     "10:12: the sensor must lie behind "
-     "the last element"},
+     "10:12: the sensor must lie behind the last element"},
     {2, "focal-length 40",
      "2:14: focal-length is 38.1194 mm, not the stated 40 mm"},
     {2, "back-focal-length 40 # mm",
@@ -404,10 +390,9 @@ TEST(warns_of_small_overlaps)
     assert_ok(parse_copy_of_text(
         text,
         compose_table_with_line(text, 6, "surface 50 2.3517 12 N-BK7", "\n")));
-    assert_string_equal(error.text,
-                        "x.lens:6:12: surface 0 and surface 1 overlap by "
-                        "0.008964 mm at 10.8 mm from the axis; drawn as they "
-                        "are");
+    assert_string_equal(
+        error.text, "x.lens:6:12: surface 0 and surface 1 overlap by 0.008964 "
+                    "mm at 10.8 mm from the axis; drawn as they are");
 }
 
 TEST(rejects_invalid_bytes)
@@ -494,17 +479,16 @@ TEST(rejects_lenses_without_power)
                              "7:1: the lens has no refractive power");
     expect_error_of_elements("stop 1 20\nsurface -50 3 9 1.5 60\n"
                              "surface 50 9 9 air\n",
-                             "7:1: the lens has no focus behind it: "
-                             "focal length -49.505 mm, back focal length "
-                             "-50.495 mm");
+                             "7:1: the lens has no focus behind it: focal "
+                             "length -49.505 mm, back focal length -50.495 mm");
     /* The stop lies in the focus of a thick plano-convex rod of length R n / (n
      * - 1), so its image is at infinity; two relay lenses image it. */
-    expect_error_of_elements("surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
-                             "stop 100 5\n"
-                             "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
-                             "surface 50 3 9 1.5 60\nsurface -50 100 9 air\n",
-                             "6:10: the stop lies in the focal plane of "
-                             "the surfaces before it");
+    expect_error_of_elements(
+        "surface 20 60 9 1.5 60\nsurface flat 0 9 air\n"
+        "stop 100 5\n"
+        "surface 50 3 9 1.5 60\nsurface -50 200 9 air\n"
+        "surface 50 3 9 1.5 60\nsurface -50 100 9 air\n",
+        "6:10: the stop lies in the focal plane of the surfaces before it");
 }
 
 /* Checks that focal lengths stated in a table may deviate from the computed
@@ -521,8 +505,7 @@ TEST(checks_stated_focal_lengths)
     assert_true(lens.check_back_mm == 29.41);
     expect_parse_error(
         text, compose_table_with_line(text, 2, "focal-length 38.08", "\n"),
-        "2:14: focal-length is 38.1194 mm, not the stated "
-        "38.08 mm");
+        "2:14: focal-length is 38.1194 mm, not the stated 38.08 mm");
 }
 
 /* Checks that error texts contain the cause, however long the file name is. */
@@ -573,9 +556,8 @@ TEST(sets_the_f_number)
     assert_near(optics.stop_radius_mm, 2.0 * 2.4868, 1e-4);
     assert_int_equal(glint_prescription_set_f_number(&lens, 2.0, &error),
                      GLINT_E_ARGUMENT);
-    assert_string_equal(error.text,
-                        "f/2 needs a stop of 19.89 mm radius; heliar-tronnier "
-                        "opens to 11.6 mm, f/3.44");
+    assert_string_equal(error.text, "f/2 needs a stop of 19.89 mm radius; "
+                                    "heliar-tronnier opens to 11.6 mm, f/3.44");
     assert_int_equal(
         glint_prescription_set_f_number(&lens, (double)NAN, &error),
         GLINT_E_ARGUMENT);

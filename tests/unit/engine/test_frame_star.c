@@ -233,10 +233,9 @@ TEST(camera_noise_does_not_make_stars_flicker)
             most = fmax(most, power);
             last = power;
         }
-        print_message("%g px in noise of %g codes: steps of %.2f %%, %.2f %% "
-                      "in all\n",
-                      radius[k % 3], night.sigma, 100 * step,
-                      100 * (most / least - 1));
+        print_message(
+            "%g px in noise of %g codes: steps of %.2f %%, %.2f %% in all\n",
+            radius[k % 3], night.sigma, 100 * step, 100 * (most / least - 1));
         assert_true(k < 6 ? step < 0.02 && most < 1.07 * least
                           : step < 0.06 && most < 1.25 * least);
         night_close_tracker(&night);

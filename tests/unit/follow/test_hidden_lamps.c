@@ -156,10 +156,9 @@ TEST(merging_lamps_keep_their_energy)
         assert_in_range(n_last, 1, 2);
         memcpy(last, night.track, (size_t)n_last * sizeof *last);
     }
-    print_message("merged: energy %.2f to %.2f of both, steps of %.2f, "
-                  "%.1f px at most\n",
-                  least / both, energy.most / both, energy.largest / both,
-                  jump);
+    print_message(
+        "merged: energy %.2f to %.2f of both, steps of %.2f, %.1f px at most\n",
+        least / both, energy.most / both, energy.largest / both, jump);
     assert_in_range(n_merged, 20, 60);
     assert_true(energy.largest < 0.15 * both);
     assert_true(least > 0.8 * both && energy.most < 1.2 * both);

@@ -155,8 +155,8 @@ TEST(static_lamps_stay_in_place_in_noise)
             percent[k] = 100 * compute_deviation(&power[i][k]) /
                          compute_mean(&power[i][k]);
         }
-        print_message("radius %2.0f, light %.2f: %.3f px -> %.3f px; "
-                      "%.2f %% -> %.2f %%\n",
+        print_message("radius %2.0f, light %.2f: %.3f px -> %.3f px; %.2f %% "
+                      "-> %.2f %%\n",
                       lamp[i].radius, lamp[i].light, px[0], px[1], percent[0],
                       percent[1]);
         assert_true(px[1] < 0.25 && px[1] < px[0]);
@@ -837,10 +837,9 @@ TEST(power_of_a_clipped_lamp_is_steady_in_noise)
                      : 0);
             star = compute_star_power_of_track(night.track);
         }
-        print_message("%g px: steps of %.1f %%, %.0f %% in all, %.1f %% of "
-                      "its star\n",
-                      lamp.radius, 100 * step, 100 * (most / least - 1),
-                      100 * star_step);
+        print_message(
+            "%g px: steps of %.1f %%, %.0f %% in all, %.1f %% of its star\n",
+            lamp.radius, 100 * step, 100 * (most / least - 1), 100 * star_step);
         assert_true(step < 0.1 && most < 1.35 * least && star_step < 0.1);
         lamp.light /= 3;
         for (int i = 0; i < 25; i++)

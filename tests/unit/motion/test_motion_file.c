@@ -107,8 +107,7 @@ TEST(poses_match_the_simulated_track)
         assert_int_equal(f.intensity[3][0], 0);
         assert_int_equal(f.intensity[3][1], k % 256);
     }
-    print_message("  off by %.1e at most, turned by %.1e; %.1f bytes a "
-                  "frame\n",
+    print_message("  off by %.1e at most, turned by %.1e; %.1f bytes a frame\n",
                   at, turn, (double)baked.bytes / FRAMES);
     assert_true(at < 0x1p-24 && turn < 2e-4);
     free(baked.data);

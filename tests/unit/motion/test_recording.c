@@ -105,9 +105,9 @@ TEST(rejects_invalid_recordings)
                    "frame 1: food 0 has no 'y'");
     bake_must_fail(RUN("{\"foods\": [{\"x\":1,\"y\":0,\"z\":0}]}"),
                    "fewer than three food items, too few");
-    bake_must_fail(RUN(FRAME
-                       ", {\"foods\": [{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,"
-                       "\"y\":1,\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
+    bake_must_fail(RUN(FRAME ", {\"foods\": "
+                             "[{\"x\":1,\"y\":0,\"z\":0},{\"x\":1,\"y\":1,"
+                             "\"z\":0},{\"x\":1,\"y\":0,\"z\":1}]}"),
                    "the number of food items differs");
     bake_must_fail(RUN("{\"frame_num\": 4, \"foods\": " FOODS(
                        "2") "}, {\"frame_num\": 6, \"foods\": " FOODS("2") "}"),
@@ -132,10 +132,9 @@ TEST(rejects_invalid_recordings)
                    "the angle of view");
     bake_must_fail("{\"structure\": {\"size\": 1}}",
                    "the structure has no 'angleofview'");
-    bake_must_fail(
-        "{\"structure\": {\"angleofview\": 1, \"size\": 1, \"sensors\": "
-        "[{\"theta\": 1}]}}",
-        "a sensor has no 'phi'");
+    bake_must_fail("{\"structure\": {\"angleofview\": 1, \"size\": 1, "
+                   "\"sensors\": [{\"theta\": 1}]}}",
+                   "a sensor has no 'phi'");
     bake_must_fail("{\"a\": [1, 2}", "'}' does not match the opening '['");
     bake_must_fail("{\"a\": \"b\nc\"}", "a string must end on its line");
     bake_must_fail("{\"a\" 1}", "expected ':'");
@@ -174,9 +173,9 @@ TEST(accepts_deviations_of_syntax)
     static const char text[] =
         "\n{\"made by\": \"a \\\" ] tool, }\", \"notes\": [1, {\"x\": [[], "
         "{},]},],\n"
-        "\"frames\": [{\"foods\": " FOODS("2") ", \"more\": {\"a\": [1, "
-                                               "2 , ] , } ,},\n" FRAME
-                                               " ,\n],\n" BODY_0 ",\n}\n";
+        "\"frames\": [{\"foods\": " FOODS(
+            "2") ", \"more\": {\"a\": [1, 2 , ] , } ,},\n" FRAME
+                 " ,\n],\n" BODY_0 ",\n}\n";
     struct baked whole, bits;
 
     assert_ok(bake_recording_text(text, 1 << 20, &whole));

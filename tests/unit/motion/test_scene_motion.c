@@ -292,10 +292,9 @@ TEST(row_d9_camera_is_placed_in_a_sensor)
     moving_draw_frame(d);
     assert_true(hash_image(d) == outside);
     moving_close_scene(d);
-    d = moving_open_scene(
-        "camera sensor 2\nlight sun direction .3 .8 .6 colour 5e4 5e4 "
-        "5e4\n" RUN,
-        5, 4);
+    d = moving_open_scene("camera sensor 2\nlight sun direction .3 .8 .6 "
+                          "colour 5e4 5e4 5e4\n" RUN,
+                          5, 4);
     glint_scene_show_kind(d->frame.scene, GLINT_KIND_SHELLS, 0);
     moving_draw_frame(d);
     assert_true(fabs(compute_mean_column_of_red(d, &n) - (WIDTH - 1) / 2.) <

@@ -414,10 +414,9 @@ TEST(rejects_paths_that_cannot_be_written)
     char name[300], text[300];
     struct glint_output out;
 
-    check_path_is_rejected(
-        "/nowhere/x.ppm",
-        "/nowhere/x.ppm: cannot create a temporary file in its "
-        "folder '/nowhere': No such file or directory");
+    check_path_is_rejected("/nowhere/x.ppm",
+                           "/nowhere/x.ppm: cannot create a temporary file in "
+                           "its folder '/nowhere': No such file or directory");
     check_path_is_rejected("", ": No such file or directory");
     snprintf(text, sizeof text, "%s: Is a directory", scratch_dir);
     check_path_is_rejected(scratch_dir, text);
@@ -428,9 +427,9 @@ TEST(rejects_paths_that_cannot_be_written)
     assert_int_equal(glint_output_open(&out, name, GLINT_OUTPUT_BINARY, &error),
                      GLINT_E_OUTPUT);
     assert_memory_equal(error.text, "...000", 6);
-    assert_non_null(strstr(error.text,
-                           "1/x?.ppm: cannot create a temporary file in its "
-                           "folder '...000000"));
+    assert_non_null(strstr(
+        error.text,
+        "1/x?.ppm: cannot create a temporary file in its folder '...000000"));
     assert_non_null(strstr(error.text, "': No such file or directory"));
 }
 

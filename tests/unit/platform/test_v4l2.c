@@ -124,10 +124,9 @@ TEST(rejects_unsupported_formats)
     struct glint_v4l2_config wish = any_camera;
 
     camera.mode[0].fourcc = camera.now.fourcc = V4L2_PIX_FMT_H264;
-    must_refuse_to_open(
-        NULL, GLINT_E_UNSUPPORTED,
-        FAKE_PATH ": delivers pixel format H264, which glint does not support; "
-                  "--list-formats");
+    must_refuse_to_open(NULL, GLINT_E_UNSUPPORTED,
+                        FAKE_PATH ": delivers pixel format H264, which glint "
+                                  "does not support; --list-formats");
     must_reset_camera();
     wish.fourcc = V4L2_PIX_FMT_NV12;
     must_refuse_to_open(
@@ -658,6 +657,5 @@ TEST(message_names_the_first_failed_request)
     fake_camera_fail_request(VIDIOC_REQBUFS, EBUSY, -1);
     must_refuse_to_open(
         NULL, GLINT_E_DEVICE,
-        "VIDIOC_REQBUFS: Device or resource busy; another program is "
-        "using it");
+        "VIDIOC_REQBUFS: Device or resource busy; another program is using it");
 }

@@ -246,10 +246,9 @@ TEST(extreme_light_powers_match_the_reference)
 /* Checks objects behind, around and across the camera. */
 TEST(objects_behind_the_camera_match_the_reference)
 {
-    static const char head[] =
-        "light lamp at 0 3 1 colour 6 6 6\nlight lamp at 1 1 9 colour 50 50 "
-        "50\n"
-        "material m phong .1 .7 .2 power 8\n";
+    static const char head[] = "light lamp at 0 3 1 colour 6 6 6\nlight lamp "
+                               "at 1 1 9 colour 50 50 50\n"
+                               "material m phong .1 .7 .2 power 8\n";
     static const char *const things[] = {
         "sphere s at 0 0 3 radius 1 material m\n",
         "sphere s at 0 0 0 radius 1 material m\n",

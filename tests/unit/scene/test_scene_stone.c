@@ -149,14 +149,14 @@ TEST(image_equals_the_reference)
         {"balls", STAGE BALLS, NULL},
         {"balls under a sky", STAGE "environment sky turn 30\n" BALLS, NULL},
         {"balls, left",
-         "hand left\n" STAGE_LEFT "sphere a at -.6 .5 0 radius .5 turn 0 0 1 "
-         "20 material f\nsphere b at .6 .5 0 radius .5 material c\n",
+         "hand left\n" STAGE_LEFT
+         "sphere a at -.6 .5 0 radius .5 turn 0 0 1 20 material f\nsphere b at "
+         ".6 .5 0 radius .5 material c\n",
          NULL},
         {"mirrors all at the rim", BRIGHT(.7) BRIGHT_BALL, NULL},
         {"cube",
-         STAGE "mesh m cube.obj scale .5 at 0 .5 0 turn 0 1 0 30 "
-               "material c\nplane p at 0 0 0 normal 0 1 0 material "
-               "grey\n",
+         STAGE "mesh m cube.obj scale .5 at 0 .5 0 turn 0 1 0 30 material "
+               "c\nplane p at 0 0 0 normal 0 1 0 material grey\n",
          cube_text},
         {"on a catcher",
          STAGE "sphere b at 0 .5 0 radius .5 material f\n"
@@ -203,8 +203,8 @@ TEST(seams)
         struct drawn d;
 
         snprintf(text, sizeof text,
-                 STAGE "sphere s at 0 .5 0 radius .9 turn 0 1 0 %d material "
-                       "%c\n",
+                 STAGE
+                 "sphere s at 0 .5 0 radius .9 turn 0 1 0 %d material %c\n",
                  90 * (k % 4), model[k / 4]);
         open_scene_text(&d, text, &one_sample, &tool);
         draw_translucent_scene(&d, k % 4 ? light : first);
@@ -227,10 +227,10 @@ TEST(stretch)
         char mesh[200];
         double db;
 
-        snprintf(mesh, sizeof mesh,
-                 "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n%s"
-                 "f 1/1 2/2 3/3 4/4\n",
-                 places[i]);
+        snprintf(
+            mesh, sizeof mesh,
+            "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\n%sf 1/1 2/2 3/3 4/4\n",
+            places[i]);
         mesh_text = mesh;
         db = drawn_psnr_to_reference(
             STAGE "mesh m quad.obj at 0 .2 0 material c\n"
@@ -384,13 +384,12 @@ TEST(light_maps_are_counted_once)
     struct glint_scene_part object[2], all;
     struct drawn d;
 
-    open_scene_text(
-        &d,
-        "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 3 3 9 colour "
-        "9 9 9\nmaterial m translucent c.glint\nmaterial g phong .1 .7 "
-        ".2\nsphere s at 0 0 0 radius .5 material m\n"
-        "sphere t at .8 0 0 radius .2 material g\n",
-        &one_sample, &tool);
+    open_scene_text(&d,
+                    "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 3 3 9 "
+                    "colour 9 9 9\nmaterial m translucent c.glint\nmaterial g "
+                    "phong .1 .7 .2\nsphere s at 0 0 0 radius .5 material m\n"
+                    "sphere t at .8 0 0 radius .2 material g\n",
+                    &one_sample, &tool);
     draw_from_rotated_camera(&d, 0, light);
     glint_scene_account(d.frame.scene, object, &all, seen);
     assert_int_equal(object[0].count[GLINT_SCENE_TEXELS],
@@ -430,13 +429,13 @@ TEST(albedo_0_and_1)
         albedo = k % 2;
         kernel = k % 3 ? 63 : 1;
         side = 32 << k % 3;
-        snprintf(text, sizeof text,
-                 "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 0 0 40 "
-                 "colour %.9g "
-                 "%.9g %.9g\nmaterial m translucent %s.glint fresnel off\n"
-                 "sphere s at 0 0 0 radius 1 material m\n",
-                 fmin(1600 * power, 1e9), fmin(1600 * power, 1e9),
-                 fmin(1600 * power, 1e9), model[k / 8]);
+        snprintf(
+            text, sizeof text,
+            "camera fov 30 at 0 0 4 toward 0 0 0\nlight lamp at 0 0 40 colour "
+            "%.9g %.9g %.9g\nmaterial m translucent %s.glint fresnel off\n"
+            "sphere s at 0 0 0 radius 1 material m\n",
+            fmin(1600 * power, 1e9), fmin(1600 * power, 1e9),
+            fmin(1600 * power, 1e9), model[k / 8]);
         open_scene_text(&d, text, &one_sample, &tool);
         draw_translucent_scene(&d, light);
         if (albedo == 0) {

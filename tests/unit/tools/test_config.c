@@ -121,8 +121,8 @@ TEST(applies_entries_in_order)
         BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
               "light = 1,2\nlight = 3,4\nlens=other\n"
               "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
-        "lens=heliar tronnier;light=1,2;light=3,4;lens=other;"
-        "dither=(none);grid=8;");
+        "lens=heliar "
+        "tronnier;light=1,2;light=3,4;lens=other;dither=(none);grid=8;");
     expect_applied_options(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
                            "threads=2;quiet=(none);");
     expect_applied_options(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
@@ -268,9 +268,8 @@ TEST(skips_unknown_sections)
 
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", BYTES(text), &error));
-    expect_stderr_message(
-        "glint live: x.ini:4: the section [camra] is unknown, but "
-        "its lines are used\n");
+    expect_stderr_message("glint live: x.ini:4: the section [camra] is "
+                          "unknown, but its lines are used\n");
     assert_string_equal(command.log, "lens=a;grid=5;light=1,2;lens=b;lens=c;");
     config_free(&config);
     config = make_empty_config();

@@ -121,9 +121,8 @@ TEST(rejects_wrong_commands)
     expect_parse_error(
         "-1 stop",
         "f:1:1: a frame must be a whole number from 0 to 1000000000, not '-1'");
-    expect_parse_error("1.5 stop",
-                       "f:1:1: a frame must be a whole number from 0 to "
-                       "1000000000, not '1.5'");
+    expect_parse_error("1.5 stop", "f:1:1: a frame must be a whole number from "
+                                   "0 to 1000000000, not '1.5'");
     expect_parse_error("7 ", "f:1:3: a command must follow the frame number");
     expect_parse_error("show a23456789012345678901234567890123",
                        "f:1:6: a name has at most 31 letters");

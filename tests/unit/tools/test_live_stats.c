@@ -144,10 +144,9 @@ TEST(prints_json)
         live_stats_write_json(&stats, 6000000, false, text),
         "{\"t\":1.000,\"fps\":2.00,\"frames\":2,\"drops\":2,\"late\":1,"
         "\"corrupt\":4,\"latency_ms_p50\":12.35,\"latency_ms_p99\":20.05,"
-        "\"ms\":{\"convert\":0.150,\"find\":1.300,\"plan\":0.400,"
-        "\"bin\":4.001,\"draw\":5.002,\"show\":0.300},\"lights\":3,"
-        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.375,"
-        "\"reused\":1}");
+        "\"ms\":{\"convert\":0.150,\"find\":1.300,\"plan\":0.400,\"bin\":4.001,"
+        "\"draw\":5.002,\"show\":0.300},\"lights\":3,\"ghosts\":39,\"bytes\":"
+        "3000,\"quality\":0.375,\"reused\":1}");
 }
 
 /* Checks that the statistics of the last second restart each second, while
@@ -164,18 +163,16 @@ TEST(statistics_restart_each_second)
         live_stats_write_json(&stats, 6500250, false, text),
         "{\"t\":1.500,\"fps\":2.00,\"frames\":1,\"drops\":0,\"late\":1,"
         "\"corrupt\":0,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
-        "\"ms\":{\"convert\":0.200,\"find\":1.400,\"plan\":0.500,"
-        "\"bin\":4.002,\"draw\":5.003,\"show\":0.000},\"lights\":2,"
-        "\"ghosts\":26,\"bytes\":3000,\"quality\":0.250,"
-        "\"reused\":1}");
+        "\"ms\":{\"convert\":0.200,\"find\":1.400,\"plan\":0.500,\"bin\":4.002,"
+        "\"draw\":5.003,\"show\":0.000},\"lights\":2,\"ghosts\":26,\"bytes\":"
+        "3000,\"quality\":0.250,\"reused\":1}");
     assert_string_equal(
         live_stats_write_json(&stats, 9000000, true, text),
         "{\"t\":4.000,\"fps\":0.75,\"frames\":3,\"drops\":2,\"late\":2,"
         "\"corrupt\":4,\"latency_ms_p50\":20.05,\"latency_ms_p99\":20.05,"
-        "\"ms\":{\"convert\":0.167,\"find\":1.333,\"plan\":0.433,"
-        "\"bin\":4.001,\"draw\":5.002,\"show\":0.200},\"lights\":3,"
-        "\"ghosts\":39,\"bytes\":3000,\"quality\":0.333,"
-        "\"reused\":2,\"total\":true}");
+        "\"ms\":{\"convert\":0.167,\"find\":1.333,\"plan\":0.433,\"bin\":4.001,"
+        "\"draw\":5.002,\"show\":0.200},\"lights\":3,\"ghosts\":39,\"bytes\":"
+        "3000,\"quality\":0.333,\"reused\":2,\"total\":true}");
 }
 
 TEST(prints_no_frames)
@@ -185,23 +182,21 @@ TEST(prints_no_frames)
     assert_string_equal(
         live_stats_write_json(&stats, 7, true, text),
         "{\"t\":0.000,\"fps\":0.00,\"frames\":0,\"drops\":0,\"late\":0,"
-        "\"corrupt\":4,\"latency_ms_p50\":null,\"latency_ms_p99\":null,"
-        "\"ms\":{\"convert\":null,\"find\":null,\"plan\":null,\"bin\":null,"
-        "\"draw\":null,\"show\":null},\"lights\":0,\"ghosts\":0,\"bytes\":0,"
-        "\"quality\":null,\"reused\":0,\"total\":true}");
+        "\"corrupt\":4,\"latency_ms_p50\":null,\"latency_ms_p99\":null,\"ms\":{"
+        "\"convert\":null,\"find\":null,\"plan\":null,\"bin\":null,\"draw\":"
+        "null,\"show\":null},\"lights\":0,\"ghosts\":0,\"bytes\":0,\"quality\":"
+        "null,\"reused\":0,\"total\":true}");
     assert_string_equal(
         live_stats_write_line(&stats, 1000007, true, text),
-        "\r0.0 fps  0 dropped 0 late 4 corrupt  0 lights 0 ghosts"
-        "\033[K");
+        "\r0.0 fps  0 dropped 0 late 4 corrupt  0 lights 0 ghosts\033[K");
 }
 
 TEST(prints_a_line)
 {
     add_recorded_frames();
-    assert_string_equal(
-        live_stats_write_line(&stats, 6000000, true, text),
-        "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 corrupt"
-        "  3 lights 39 ghosts  q 0\033[K");
+    assert_string_equal(live_stats_write_line(&stats, 6000000, true, text),
+                        "\r2.0 fps  12.3 ms, p99 20.1  2 dropped 1 late 4 "
+                        "corrupt  3 lights 39 ghosts  q 0\033[K");
     live_stats_begin_second(&stats, 6000000);
     live_stats_add_frame(&stats, &frames[1]);
     assert_string_equal(
