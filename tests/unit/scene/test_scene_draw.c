@@ -13,6 +13,7 @@
 #include "support/test.h"
 
 static struct glint_scene_stats stats;
+static struct glint_scene_config cfg;
 
 enum {
     UNIT = 1 << 16,
@@ -24,13 +25,15 @@ enum {
 
 static struct scene_file file;
 
-static struct glint_scene_config make_scene_config(void)
+static void set_default_config(void)
 {
-    struct glint_scene_config cfg;
-
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
     cfg.parts = scene_parts;
-    return cfg;
+}
+
+static struct glint_scene *begin_scene(void)
+{
+    return scene_init_renderer(&file, &cfg, &stats);
 }
 
 /* Adds a closed mesh, a bumpy ball, around the origin. */
@@ -92,6 +95,12 @@ static void make_scene_of_all_objects(void)
     scene_add_lamp(&file, lamp, 4 * UNIT);
 }
 
+TEST_BEFORE
+{
+    set_default_config();
+    make_scene_of_all_objects();
+}
+
 static void fill_image_with_pattern(uint8_t *px, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -100,7 +109,7 @@ static void fill_image_with_pattern(uint8_t *px, size_t n)
 
 /* --------------------------------------------------- scheduling and format */
 
-static void draw_scene(struct glint_scene_config cfg,
+static void draw_scene(struct glint_scene_config config,
                        enum glint_pixel_format format, int workers,
                        uint32_t order, uint8_t *px)
 {
@@ -109,8 +118,8 @@ static void draw_scene(struct glint_scene_config cfg,
 
     fill_image_with_pattern(px, BYTES);
     init_shuffled_workers(&shuffle, workers, order);
-    cfg.workers = &shuffle.workers;
-    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
+    config.workers = &shuffle.workers;
+    glint_scene_draw(scene_init_renderer(&file, &config, &stats), &image);
     assert_int_equal(stats.objects, 4);
     assert_int_equal(stats.dropped_objects, 0);
 }
@@ -119,15 +128,14 @@ TEST(image_does_not_depend_on_job_order)
 {
     static uint8_t px[2][BYTES];
 
-    make_scene_of_all_objects();
     for (int format = GLINT_RGB24; format <= GLINT_RGB565; format++) {
         static const int samples[4] = {4, 16, 8, 1};
-        struct glint_scene_config cfg = make_scene_config();
         const size_t bytes =
             glint_image_bytes((enum glint_pixel_format)format, WIDTH, HEIGHT);
         uint8_t before[64];
         int changed = 0;
 
+        set_default_config();
         cfg.edge_samples = samples[format % 4];
         cfg.half_shading = format & 1;
 
@@ -153,14 +161,12 @@ TEST(invisible_objects_change_nothing)
 {
     static uint8_t px[BYTES], before[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_I420, WIDTH, HEIGHT);
-    const struct glint_scene_config cfg = make_scene_config();
 
     fill_image_with_pattern(px, BYTES);
     fill_image_with_pattern(before, BYTES);
-    make_scene_of_all_objects();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = 1;
-    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
+    glint_scene_draw(begin_scene(), &image);
     assert_memory_equal(px, before, BYTES);
     assert_int_equal(stats.objects, 0);
     make_scene_of_all_objects();
@@ -168,20 +174,20 @@ TEST(invisible_objects_change_nothing)
     file.header.camera.axis_q30[0][0] = -ONE_Q30;
     file.header.camera.axis_q30[2][2] = -ONE_Q30;
     file.object[2].hidden = 1;
-    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
+    glint_scene_draw(begin_scene(), &image);
     assert_memory_equal(px, before, BYTES);
     /* a shadow catcher in a scene without shadows changes nothing */
     make_scene_of_all_objects();
     for (int i = 0; i < 4; i++)
         file.object[i].hidden = i != 2;
     file.object[2].catcher_q15 = 20000;
-    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
+    glint_scene_draw(begin_scene(), &image);
     assert_memory_equal(px, before, BYTES);
     /* an object that casts a shadow on the catcher darkens the image */
     make_scene_of_all_objects();
     file.object[2].catcher_q15 = 32768;
     file.object[0].hidden = file.object[1].hidden = 1;
-    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
+    glint_scene_draw(begin_scene(), &image);
     assert_memory_not_equal(px, before, BYTES);
 }
 
@@ -191,7 +197,6 @@ TEST(ball_covers_its_disc)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    struct glint_scene_config cfg;
     struct glint_scene *s;
     int64_t sum = 0;
 
@@ -199,7 +204,7 @@ TEST(ball_covers_its_disc)
     scene_add_material(&file, "m");
     scene_add_sphere(&file, "ball", 0, 0, 0, 100 * UNIT, 40 * UNIT);
     glint_scene_defaults(&cfg, WIDTH, HEIGHT);
-    s = scene_init_renderer(&file, &cfg, &stats);
+    s = begin_scene();
     memset(px, 0, sizeof px);
     glint_scene_draw(s, &image);
     for (int i = 0; i < s->cover_across * s->cover_down; i++)
@@ -217,7 +222,6 @@ TEST(memory_stays_within_its_limits)
 {
     static const int32_t toward_q30[3] = {0, 0, -(1 << 30)};
     struct glint_workers two = {.n = 2};
-    struct glint_scene_config cfg;
     struct glint_scene_model model;
     size_t bytes;
 
@@ -246,7 +250,6 @@ TEST(closed_mesh_has_no_leaks)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    struct glint_scene_config cfg = make_scene_config();
     uint32_t seed = 1;
 
     cfg.max_refs = 1 << 18;
@@ -262,7 +265,7 @@ TEST(closed_mesh_has_no_leaks)
             file.header.camera.at[k] =
                 (int32_t)((rng_unit(&seed) - .5) * .8 * size * UNIT);
         file.header.camera.tan_x_q24 = 1 << (20 + rng_int_below(&seed, 8));
-        s = scene_init_renderer(&file, &cfg, &stats);
+        s = begin_scene();
         assert_int_equal(stats.dropped_objects, 0);
         memset(px, 255, sizeof px);
         glint_scene_draw(s, &image);
@@ -273,12 +276,10 @@ TEST(closed_mesh_has_no_leaks)
 
 TEST(sample_shows_the_first_object)
 {
-    const struct glint_scene_config cfg = make_scene_config();
     const struct glint_scene *s;
     int n = 0, other = 0;
 
-    make_scene_of_all_objects();
-    s = scene_init_renderer(&file, &cfg, &stats);
+    s = begin_scene();
     for (int y = 0; y < HEIGHT; y += 32)
         for (int x = 0; x < WIDTH; x += 32) {
             const struct glint_box tile = {x, y,
@@ -317,12 +318,11 @@ static void draw_scene_linear(int edge_samples, int half, int32_t *px_q20)
 {
     struct glint_image image =
         glint_image_over(px_q20, GLINT_LINEAR_Q20, WIDTH, HEIGHT);
-    struct glint_scene_config cfg = make_scene_config();
 
     cfg.edge_samples = edge_samples;
     cfg.half_shading = half;
     memset(px_q20, 0, sizeof *px_q20 * 3 * WIDTH * HEIGHT);
-    glint_scene_draw(scene_init_renderer(&file, &cfg, &stats), &image);
+    glint_scene_draw(begin_scene(), &image);
 }
 
 /* Returns the root mean square difference between A and B, 1 = display
@@ -345,7 +345,6 @@ TEST(more_samples_come_closer)
     double last = 1;
     int changed = 0;
 
-    make_scene_of_all_objects();
     draw_scene_linear(16, 0, all);
     for (int n = 1; n <= 8; n *= n == 1 ? 4 : 2) {
         double off;
@@ -379,17 +378,15 @@ TEST(more_samples_come_closer)
 
 TEST(exact_capacity_is_sufficient)
 {
-    struct glint_scene_config cfg = make_scene_config();
-    const struct glint_scene_model model =
-        (make_scene_of_all_objects(), scene_open_model(&file));
+    const struct glint_scene_model model = scene_open_model(&file);
 
-    scene_init_renderer(&file, &cfg, &stats);
+    begin_scene();
     assert_true(stats.need_refs == stats.refs && stats.refs > 0);
     cfg.max_refs = stats.need_refs;
-    scene_init_renderer(&file, &cfg, &stats);
+    begin_scene();
     assert_int_equal(stats.dropped_objects, 0);
     cfg.max_refs--;
-    scene_init_renderer(&file, &cfg, &stats);
+    begin_scene();
     assert_int_equal(stats.dropped_objects, 1);
     assert_true(stats.refs == 0 && stats.need_refs == cfg.max_refs + 1);
     cfg.parts.bounces = NULL;
@@ -407,7 +404,6 @@ TEST(exact_capacity_is_sufficient)
 
 TEST(changed_poses_equal_a_new_scene)
 {
-    const struct glint_scene_config cfg = make_scene_config();
     const int32_t at[4] = {UNIT, 0, 9 * UNIT}, far[3] = {GLINT_SCENE_SPAN - 9};
     const int32_t turn[4] = {ONE_Q30 / 5 * 3, 0, ONE_Q30 / 5 * 4, 0};
     const int32_t axes[3][3] = {{ONE_Q30}, {0, ONE_Q30}, {0, 0, -ONE_Q30}};
@@ -415,8 +411,7 @@ TEST(changed_poses_equal_a_new_scene)
     struct glint_scene *s;
     int32_t x[3] = {1 << 20, 0, 0}, to[3];
 
-    make_scene_of_all_objects();
-    s = scene_init_renderer(&file, &cfg, &stats);
+    s = begin_scene();
     assert_ok(glint_scene_set_pose(s, 0, at, turn));
     assert_int_equal(glint_scene_set_pose(s, 0, far, turn), GLINT_E_ARGUMENT);
     assert_int_equal(glint_scene_set_pose(s, 4, at, turn), GLINT_E_ARGUMENT);
@@ -458,13 +453,12 @@ TEST(shadow_grid_equals_brute_force)
     int n = 0, other = 0, partly = 0, dark = 0;
 
     for (int points = 1; points <= 16; points *= 4) {
-        struct glint_scene_config cfg = make_scene_config();
         struct glint_scene *s;
 
         cfg.shadow_points = points;
         make_scene_of_all_objects();
         file.object[2].catcher_q15 = points == 4 ? 20000 : 0;
-        s = scene_init_renderer(&file, &cfg, &stats);
+        s = begin_scene();
         assert_true(s->lit[0].shadow && s->lit[0].shadow->is_ready);
         assert_null(s->lit[1].shadow);
         for (int i = 0; i < 20000; i++) {
@@ -494,16 +488,14 @@ TEST(shadow_grid_equals_brute_force)
  * points, also where a single test finds that no object can hide the lamp. */
 TEST(lamp_is_as_visible_as_its_points)
 {
-    struct glint_scene_config cfg = make_scene_config();
     uint32_t seed = 1;
     int lit = 0, partly = 0;
 
-    make_scene_of_all_objects();
     file.object[2].catcher_q15 = 20000;
     file.light[1].radius = UNIT;
     for (cfg.shadow_points = 4; cfg.shadow_points <= 16;
          cfg.shadow_points *= 4) {
-        const struct glint_scene *s = scene_init_renderer(&file, &cfg, &stats);
+        const struct glint_scene *s = begin_scene();
         const int n = cfg.shadow_points;
 
         for (int i = 0; i < 20000; i++) {
@@ -543,7 +535,6 @@ TEST(flat_mesh_shadows_a_lamp)
     for (int axis = 0; axis < 3; axis++)
         for (int side = -1; side <= 1; side += 2) {
             const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            const struct glint_scene_config cfg = make_scene_config();
             struct glint_met_surface surface = {.object = 0};
             int32_t at[4][3], lamp[3] = {0, 0, 0};
             struct glint_scene *s;
@@ -562,7 +553,7 @@ TEST(flat_mesh_shadows_a_lamp)
                                             NULL, NULL, 4, t, 2));
             lamp[axis] = 3 * side * UNIT;
             scene_add_lamp(&file, lamp, UNIT);
-            s = scene_init_renderer(&file, &cfg, &stats);
+            s = begin_scene();
             surface.place[axis] = -side * UNIT;
             surface.place[u] = UNIT / 3;
             surface.face_q30[axis] = side < 0 ? -ONE_Q30 : ONE_Q30;
@@ -582,7 +573,6 @@ TEST(confined_shading_equals_full_shading)
     struct glint_image image = {
         .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
     const struct glint_box all = {0, 0, WIDTH, HEIGHT};
-    const struct glint_scene_config cfg = make_scene_config();
     uint32_t seed = 1;
     int less = 0, flat = 0;
 
@@ -596,7 +586,7 @@ TEST(confined_shading_equals_full_shading)
         for (int k = 0; k < 4; k += k == 1 ? 2 : 1)
             for (int j = 0; j < 3; j++)
                 file.object[k].at[j] += rng_int_below(&seed, UNIT) - UNIT / 3;
-        s = scene_init_renderer(&file, &cfg, &stats);
+        s = begin_scene();
         for (int k = 0; k < 2; k++) {
             fill_image_with_pattern(px[k], BYTES);
             glint_image_place(&image, px[k]);
@@ -631,7 +621,6 @@ static void set_sun_direction(double x, double y)
  * against those seen through a pinhole, in double precision. */
 TEST(lights_for_the_lens_match_double_precision)
 {
-    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     uint32_t seed = 1;
 
@@ -647,9 +636,7 @@ TEST(lights_for_the_lens_match_double_precision)
         file.light[1].at[0] = (int32_t)(x * 8 * UNIT);
         file.light[1].at[1] = (int32_t)(y * 8 * UNIT);
         file.light[1].at[2] = 8 * UNIT;
-        assert_int_equal(
-            glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp),
-            2);
+        assert_int_equal(glint_scene_lights(begin_scene(), lamp), 2);
         power = 3.14159265358979 * f * f / pow(cosine, 3);
         for (int k = 0; k < 2; k++) {
             assert_int_equal(lamp[k].share, 16);
@@ -665,8 +652,7 @@ TEST(lights_for_the_lens_match_double_precision)
     }
     make_scene_of_all_objects();
     file.header.flare = 0;
-    assert_int_equal(
-        glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp), 0);
+    assert_int_equal(glint_scene_lights(begin_scene(), lamp), 0);
 }
 
 /* Checks that scene and flare agree on the direction of a light: the flare's
@@ -679,7 +665,6 @@ TEST(lens_and_scene_agree_on_directions)
     const double f =
         glint_real_value(lens.header->focal_mm) *
         glint_real_value(glint_flare_pixels_per_mm(&lens, WIDTH, HEIGHT));
-    struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     uint32_t seed = 1;
 
@@ -696,9 +681,7 @@ TEST(lens_and_scene_agree_on_directions)
         for (int k = 0; k < 4; k++)
             file.object[k].hidden = 1;
         set_sun_direction(x, y);
-        assert_int_equal(
-            glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp),
-            1);
+        assert_int_equal(glint_scene_lights(begin_scene(), lamp), 1);
         light = glint_light_from_pixel(&lens, WIDTH, HEIGHT, lamp[0].x_q8,
                                        lamp[0].y_q8);
         tangent = (double)light.sine_q30 / light.cosine_q30;
@@ -712,11 +695,9 @@ TEST(lens_and_scene_agree_on_directions)
  * the sun sets behind a ball. */
 TEST(setting_sun_is_occluded_gradually)
 {
-    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene_lamp lamp[GLINT_SCENE_MAX_LIGHTS];
     int last = 16, levels = 0;
 
-    make_scene_of_all_objects();
     file.header.n_lights = 1;
     for (int k = 1; k < 4; k++)
         file.object[k].hidden = 1;
@@ -724,9 +705,7 @@ TEST(setting_sun_is_occluded_gradually)
         int share;
 
         set_sun_direction(-2 / 7. + .3 - i * .005, 0);
-        assert_int_equal(
-            glint_scene_lights(scene_init_renderer(&file, &cfg, &stats), lamp),
-            1);
+        assert_int_equal(glint_scene_lights(begin_scene(), lamp), 1);
         share = lamp[0].share;
         assert_true(share <= last);
         levels += share < last;
@@ -739,12 +718,10 @@ TEST(lamps_are_dimmed_by_coverage)
 {
     static uint8_t px[BYTES];
     struct glint_image image = glint_image_over(px, GLINT_RGB24, WIDTH, HEIGHT);
-    const struct glint_scene_config cfg = make_scene_config();
     struct glint_scene *s;
 
-    make_scene_of_all_objects();
     file.object[2].hidden = 1;
-    s = scene_init_renderer(&file, &cfg, &stats);
+    s = begin_scene();
     glint_scene_draw(s, &image);
     /* The first position is in the middle of the mesh, the second one in a
      * corner of the image. */
@@ -757,8 +734,7 @@ TEST(lamps_are_dimmed_by_coverage)
 
 static int64_t sum_scene_coverage(const struct glint_image *image)
 {
-    const struct glint_scene_config cfg = make_scene_config();
-    struct glint_scene *s = scene_init_renderer(&file, &cfg, &stats);
+    struct glint_scene *s = begin_scene();
     int64_t sum = 0;
 
     memset(image->plane[0], 128, WIDTH * HEIGHT * 3);
@@ -777,7 +753,6 @@ TEST(shadows_hide_no_lamps)
     int64_t cover;
     int n_dark = 0;
 
-    make_scene_of_all_objects();
     file.header.n_lights = 1;
     set_sun_direction(0, 20);
     file.object[1].hidden = file.object[2].hidden = file.object[3].hidden = 1;
@@ -800,10 +775,8 @@ TEST(catcher_has_no_material)
     static uint8_t px[2][BYTES];
     int64_t shaded[2];
 
-    make_scene_of_all_objects();
     file.object[2].catcher_q15 = 32768;
     for (int k = 0; k < 2; k++) {
-        struct glint_scene_config cfg = make_scene_config();
         static struct glint_scene_part objects[SCENE_PARTS], all;
 
         file.object[2].material = k ? 1 : 0;
