@@ -8,6 +8,14 @@
 #include "support/canvas.h"
 #include "support/rng.h"
 
+void night_close_tracker(struct night *night)
+{
+    free(night->image.plane[0]);
+    for (int i = 0; i < 3; i++)
+        free(night->mem[i]);
+    memset(night, 0, sizeof *night);
+}
+
 void night_init_parameters(struct night *night, int width, int height)
 {
     memset(night, 0, sizeof *night);
@@ -42,14 +50,6 @@ int night_open_tracker(struct night *n)
                                   bytes[0]) == GLINT_OK &&
            glint_lamp_tracker_init(&n->tracks, &n->cfg, n->mem[1], bytes[1]) ==
                GLINT_OK;
-}
-
-void night_close_tracker(struct night *night)
-{
-    free(night->image.plane[0]);
-    free(night->mem[0]);
-    free(night->mem[1]);
-    free(night->mem[2]);
 }
 
 static double compute_lamp_light(const struct night *night,

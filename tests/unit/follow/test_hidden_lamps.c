@@ -11,9 +11,20 @@ enum { FPS30 = 33333 };
 
 static struct night night;
 
+static void init_night(int width, int height)
+{
+    night_close_tracker(&night);
+    night_init_parameters(&night, width, height);
+}
+
+TEST_CLOSE
+{
+    night_close_tracker(&night);
+}
+
 static void open_night_without_noise(int width, int height, double sigma)
 {
-    night_init_parameters(&night, width, height);
+    init_night(width, height);
     night.sigma = sigma;
     assert_true(night_open_tracker(&night));
 }
@@ -83,7 +94,6 @@ static void move_lamp_behind_pole(int n_lamps)
                       raw.largest / raw.most, tracked.largest / tracked.most);
         assert_int_equal(night.n_tracks, n_lamps);
         assert_true(tracked.largest < 0.25 * tracked.most);
-        night_close_tracker(&night);
     }
 }
 
@@ -118,7 +128,6 @@ TEST(white_level_is_remembered_and_decays)
         frame++;
     }
     assert_in_range(frame, 58, 62);
-    night_close_tracker(&night);
 }
 
 /* Moves two lamps together until the finder merges them, and apart again.
@@ -131,7 +140,7 @@ TEST(merging_lamps_keep_their_energy)
     struct glint_lamp_track last[8];
     int n_last = 0, n_merged = 0;
 
-    night_init_parameters(&night, 640, 200);
+    init_night(640, 200);
     night.sigma = 2;
     night.lights.merge_q15 = 32768 * 30 / 640;
     assert_true(night_open_tracker(&night));
@@ -163,5 +172,4 @@ TEST(merging_lamps_keep_their_energy)
     assert_true(energy.largest < 0.15 * both);
     assert_true(least > 0.8 * both && energy.most < 1.2 * both);
     assert_true(jump < 5);
-    night_close_tracker(&night);
 }

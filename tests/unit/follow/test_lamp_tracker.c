@@ -12,9 +12,20 @@ enum { FPS30 = 33333, FPS60 = 16667, FULL = 32768 };
 
 static struct night night;
 
+static void init_night(int width, int height)
+{
+    night_close_tracker(&night);
+    night_init_parameters(&night, width, height);
+}
+
+TEST_CLOSE
+{
+    night_close_tracker(&night);
+}
+
 static void open_night_tracker(int width, int height, double sigma)
 {
-    night_init_parameters(&night, width, height);
+    init_night(width, height);
     night.sigma = sigma;
     assert_true(night_open_tracker(&night));
 }
@@ -166,7 +177,6 @@ TEST(static_lamps_stay_in_place_in_noise)
                   100 * compute_deviation(&total[0]) / compute_mean(&total[0]),
                   100 * compute_deviation(&total[1]) / compute_mean(&total[1]));
     assert_true(compute_deviation(&total[1]) < 0.01 * compute_mean(&total[1]));
-    night_close_tracker(&night);
 }
 
 /* Returns the RMS change per frame, degrees, of the axis of the track of a tube
@@ -175,7 +185,7 @@ static double measure_axis_rotation_deg(double degrees)
 {
     struct moments turn = {0, 0, 0};
 
-    night_init_parameters(&night, 320, 200);
+    init_night(320, 200);
     assert_true(night_open_tracker(&night));
     for (int frame = 0; frame < 300; frame++) {
         const double angle =
@@ -204,7 +214,6 @@ static double measure_axis_rotation_deg(double degrees)
         if (frame >= 30)
             add_value_to_moments(&turn, remainder(off, 180));
     }
-    night_close_tracker(&night);
     return compute_deviation(&turn);
 }
 
@@ -225,7 +234,7 @@ static double measure_motion_of_dim_lamp_px(int every, uint32_t seed)
 {
     double furthest = 0;
 
-    night_init_parameters(&night, 320, 200);
+    init_night(320, 200);
     night.seed = seed;
     night.lights.judge = 0;
     night.lights.white_code = 43;
@@ -247,7 +256,6 @@ static double measure_motion_of_dim_lamp_px(int every, uint32_t seed)
         furthest =
             fmax(furthest, hypot(t->x_q8 / 256.0 - 154, t->y_q8 / 256.0 - 104));
     }
-    night_close_tracker(&night);
     return furthest;
 }
 
@@ -274,7 +282,7 @@ TEST(faint_spots_keep_a_track)
     uint32_t id = 0;
     int n_faint = 0;
 
-    night_init_parameters(&night, 320, 200);
+    init_night(320, 200);
     night.lights.white_code = 255;
     assert_true(night_open_tracker(&night));
     for (int frame = 0; frame < 100; frame++) {
@@ -291,7 +299,6 @@ TEST(faint_spots_keep_a_track)
         assert_int_equal(find_only_track()->id, id);
     }
     assert_true(n_faint > 30);
-    night_close_tracker(&night);
 }
 
 /* Checks that a spot (lamp found in one frame) that is faint from the start
@@ -326,7 +333,6 @@ TEST(faint_spots_begin_no_track)
     glint_lamp_tracker_step(night.tracks, spot, 1, FPS30, night.track,
                             NIGHT_MAX);
     assert_int_equal(night.track[0].state, GLINT_LAMP_RISING);
-    night_close_tracker(&night);
 }
 
 /* -------------------------------------------- convergence to a still image */
@@ -396,7 +402,6 @@ TEST(tracks_converge_exactly_to_a_still)
             slowest = fmax(slowest, (n_frames - n_settled + 1) * (us * 1e-6));
         assert_true(n_settled > 0);
         assert_true(night.n_tracks > 0);
-        night_close_tracker(&night);
     }
     print_message("settled after %.3f s at most, from 30 to 1000 a second\n",
                   slowest);
@@ -436,7 +441,6 @@ TEST(moving_lamp_does_not_lag)
                       speed, k < 9 ? "" : " in noise", compute_mean(&lag),
                       most);
         assert_true(most < 0.5);
-        night_close_tracker(&night);
     }
 }
 
@@ -459,7 +463,6 @@ TEST(shaken_lamp_does_not_lag)
         }
         print_message("shaken%s: off by %.3f px\n", k ? " in noise" : "", most);
         assert_true(most < 1);
-        night_close_tracker(&night);
     }
 }
 
@@ -476,7 +479,6 @@ TEST(starting_lamp_is_followed_at_once)
             night_draw_and_track(&night, &lamp, 1, FPS30);
             assert_true(fabs(find_only_track()->x_q8 / 256.0 - lamp.x) < 0.5);
         }
-        night_close_tracker(&night);
     }
 }
 
@@ -488,7 +490,7 @@ static double measure_lag_in_pan_px(double radius, double speed, int first,
 {
     double furthest = 0;
 
-    night_init_parameters(&night, speed < 10 ? 320 : (int)(32 * speed), 120);
+    init_night(speed < 10 ? 320 : (int)(32 * speed), 120);
     night.sigma = 2;
     assert_true(night_open_tracker(&night));
     for (int frame = 0; frame < 20; frame++) {
@@ -505,7 +507,6 @@ static double measure_lag_in_pan_px(double radius, double speed, int first,
                                         t->y_q8 - night.spot[0].y_q8) /
                                       256);
     }
-    night_close_tracker(&night);
     return furthest;
 }
 
@@ -536,7 +537,7 @@ static double measure_lag_at_entry_px(double radius, double speed)
     double furthest = 0;
     int n = 0;
 
-    night_init_parameters(&night, (int)fmax(320, 16 * speed), 120);
+    init_night((int)fmax(320, 16 * speed), 120);
     night.sigma = 2;
     assert_true(night_open_tracker(&night));
     for (int frame = 0; n < 8; frame++) {
@@ -554,7 +555,6 @@ static double measure_lag_at_entry_px(double radius, double speed)
                                256);
         n++;
     }
-    night_close_tracker(&night);
     return furthest;
 }
 
@@ -604,7 +604,6 @@ TEST(returning_lamp_gets_a_new_track)
             assert_int_equal(night.track[night_find_track(&night, 225, 100)].id,
                              3);
         }
-        night_close_tracker(&night);
     }
 }
 
@@ -630,7 +629,6 @@ TEST(passing_lamps_keep_their_ids)
         }
     }
     assert_true(id[0] != id[1]);
-    night_close_tracker(&night);
 }
 
 /* Checks a fast lamp that leaves to the right: its track continues off-screen
@@ -664,7 +662,6 @@ TEST(leaving_lamp_continues_and_fades)
     /* the twelfth step of the fade reaches 0 */
     assert_int_equal(n_leaving, 11);
     assert_true(n_outside >= 8);
-    night_close_tracker(&night);
 }
 
 /* ---------------------------------------------------------- rise, fade, cut */
@@ -677,7 +674,7 @@ static double measure_level_after_switching_on(int32_t us, int32_t elapsed_us,
     const struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 120, 5, 3}};
     double level;
 
-    night_init_parameters(&night, 320, 200);
+    init_night(320, 200);
     night.cfg.attack_ms = attack_ms;
     assert_true(night_open_tracker(&night));
     night_draw_and_track(&night, lamp, 1, elapsed_us);
@@ -689,7 +686,6 @@ static double measure_level_after_switching_on(int32_t us, int32_t elapsed_us,
     }
     assert_int_equal(night.n_tracks, 2);
     level = night.track[night_find_track(&night, 200, 120)].level_q15 / 32768.0;
-    night_close_tracker(&night);
     return level;
 }
 
@@ -744,7 +740,6 @@ TEST(cut_restarts_in_one_frame)
             }
         }
     }
-    night_close_tracker(&night);
 }
 
 /* Checks that three lamps vanishing or appearing together are treated as a cut
@@ -769,7 +764,6 @@ TEST(cut_to_a_dark_scene_is_detected)
             assert_int_equal(night.track[i].level_q15 == FULL, n == 3);
             assert_int_equal(night.track[i].id > (unsigned)n, n == 3);
         }
-        night_close_tracker(&night);
     }
 }
 
@@ -789,7 +783,6 @@ TEST(single_changes_are_not_cuts)
                              FPS30);
         assert_int_equal(glint_lamp_tracker_was_cut(night.tracks), frame == 0);
     }
-    night_close_tracker(&night);
 }
 
 /* ----------------------------------------------- clipped and limited lamps */
@@ -845,7 +838,6 @@ TEST(power_of_a_clipped_lamp_is_steady_in_noise)
         for (int i = 0; i < 25; i++)
             night_draw_and_track(&night, &lamp, 1, 40000);
         assert_true(night_track_power(night.track) < 0.6 * last);
-        night_close_tracker(&night);
     }
 }
 
@@ -858,7 +850,7 @@ TEST(limited_lamps_do_not_flicker)
     int turns = 0, n = 0;
     uint32_t last = 0;
 
-    night_init_parameters(&night, 320, 200);
+    init_night(320, 200);
     night.sigma = 3;
     night.cfg.max_shown = 4;
     assert_true(night_open_tracker(&night));
@@ -884,7 +876,6 @@ TEST(limited_lamps_do_not_flicker)
     assert_true(night.track[n].level_q15 > 30000);
     night_draw_and_track(&night, lamp, 10, FPS30);
     assert_int_equal(night.n_tracks, 4);
-    night_close_tracker(&night);
 }
 
 /* Checks that if there are more lights than tracks, the five brightest are
@@ -893,7 +884,7 @@ TEST(brightest_lights_get_tracks)
 {
     static struct glint_spot spot[NIGHT_MAX];
 
-    night_init_parameters(&night, 640, 480);
+    init_night(640, 480);
     night.cfg.max_tracks = night.cfg.max_shown = 8;
     assert_true(night_open_tracker(&night));
     for (int i = 0; i < 100; i++)
@@ -909,5 +900,4 @@ TEST(brightest_lights_get_tracks)
         for (int i = 0; i < 5; i++)
             assert_true(night.track[i].flux_q16 >= 97 << 16);
     }
-    night_close_tracker(&night);
 }
