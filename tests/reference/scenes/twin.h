@@ -16,8 +16,8 @@
  * lights that are not occluded. It starts one mirrored ray, and one transmitted
  * ray, which passes through at most eight surfaces. Hits of these rays get the
  * same light, but start no mirrored rays. twin_around.c adds environment light.
- * Triangles are intersected by [Moller97] in a tree of bounding boxes, spheres
- * and planes by their equations. A ray skips the object that it starts from, or
+ * Rays are intersected with all triangles by [Moller97], with spheres and
+ * planes by their equations. A ray skips the object that it starts from, or
  * only the triangle if the object is a mesh.
  */
 #ifndef GLINT_TOOLS_SCENES_TWIN_H
@@ -28,7 +28,6 @@
 #include "glint/scene/translucent_bake.h"
 #include "glint/workers.h"
 
-struct twin_node;
 struct twin_map;
 
 /* The texels of a texture, in linear light. */
@@ -51,11 +50,6 @@ struct twin {
     double pixel_tan;
     struct glint_environment around;
     struct twin_texels texels[GLINT_DESCRIPTION_MAX_TEXTURES];
-    /* Trees of bounding boxes over the triangles of each object, one after the
-     * other. */
-    struct twin_node *node;
-    int *root;  /* root node of each object; -1: it has no triangles */
-    int *order; /* triangle indices in the order of the leaves of the trees */
     /* [n_objects]: light maps of translucent objects; NULL: the scene has no
      * translucent object */
     struct twin_map *map;
@@ -161,11 +155,5 @@ void reference_render_image(const struct twin *twin,
                             const struct twin_view *view,
                             struct glint_workers *workers,
                             struct twin_pixel *pixels);
-
-/* twin_tree.c: trees of bounding boxes. */
-enum glint_status reference_build_tree(struct twin *twin);
-bool reference_intersect_mesh(const struct twin *twin, int object,
-                              const struct twin_ray *local, double most,
-                              struct twin_hit *hit);
 
 #endif

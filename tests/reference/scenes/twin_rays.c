@@ -123,6 +123,42 @@ void reference_complete_triangle_hit(const struct twin *twin,
     hit->material = t->material;
 }
 
+/* Finds the intersection of RAY with triangle I nearer than hit->t, by
+ * [Moller97]. The point is V0 + u (V1 - V0) + v (V2 - V0), where V0, V1 and V2
+ * are the corners. */
+static bool intersect_triangle(const struct twin *twin, int i,
+                               const struct twin_ray *ray, struct twin_hit *hit)
+{
+    const struct glint_described_triangle *tri = &twin->scene->triangle[i];
+    double a[3], b[3], p[3], q[3], s[3], det, u, v, t;
+
+    vec_add_scaled(tri->place[1], -1, tri->place[0], a);
+    vec_add_scaled(tri->place[2], -1, tri->place[0], b);
+    vec_cross(ray->toward, b, p);
+    det = vec_dot(a, p);
+    vec_add_scaled(ray->from, -1, tri->place[0], s);
+    vec_cross(s, a, q);
+    u = vec_dot(s, p);
+    v = vec_dot(ray->toward, q);
+    t = vec_dot(b, q);
+    if (det < 0) {
+        u = -u;
+        v = -v;
+        t = -t;
+    }
+    /* if the ray lies in the triangle's plane, or the triangle has no area,
+     * det, u, v and t are 0 */
+    if (!(fabs(det) > 0) || u < 0 || v < 0 || u + v > fabs(det) || t <= 0 ||
+        t >= hit->t * fabs(det))
+        return false;
+    hit->t = t / fabs(det);
+    hit->triangle = i;
+    hit->inside = det < 0;
+    hit->uv[0] = u / fabs(det);
+    hit->uv[1] = v / fabs(det);
+    return true;
+}
+
 static bool intersect_mesh_object(const struct twin *twin, int object,
                                   const struct twin_ray *ray, double most,
                                   struct twin_hit *hit)
@@ -130,6 +166,7 @@ static bool intersect_mesh_object(const struct twin *twin, int object,
     const struct glint_described_object *o = &twin->scene->object[object];
     struct twin_ray local = *ray;
     double away[3];
+    bool found = false;
 
     vec_add_scaled(ray->from, -1, o->at, away);
     vec_rotate(o->turn, -1, away, local.from);
@@ -141,7 +178,12 @@ static bool intersect_mesh_object(const struct twin *twin, int object,
     } else {
         local.skip_triangle = -1;
     }
-    if (!reference_intersect_mesh(twin, object, &local, most, hit))
+    hit->t = most;
+    for (int i = 0; i < o->n_triangles; i++)
+        if (o->first_triangle + i != local.skip_triangle)
+            found |=
+                intersect_triangle(twin, o->first_triangle + i, &local, hit);
+    if (!found)
         return false;
     vec_add_scaled(ray->from, hit->t, ray->toward, hit->place);
     reference_complete_triangle_hit(twin, o, hit);
@@ -156,7 +198,7 @@ bool reference_intersect_object(const struct twin *twin, int object,
 {
     const struct glint_description *s = twin->scene;
     const struct glint_described_object *o = &s->object[object];
-    const bool is_mesh = twin->root[object] >= 0;
+    const bool is_mesh = o->n_triangles > 0;
 
     *hit = (struct twin_hit){
         .object = object, .triangle = -1, .material = o->material};
