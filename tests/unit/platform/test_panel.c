@@ -13,6 +13,18 @@ static struct glint_panel panel;
 static const struct glint_pixel_layout xrgb8888 = {
     4, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
 
+/* Opens PANEL with WIDTH x HEIGHT pixels for images of IMAGE_WIDTH x
+ * IMAGE_HEIGHT. */
+static void open_panel(int width, int height, struct glint_pixel_layout layout,
+                       int image_width, int image_height,
+                       enum glint_panel_fit fit)
+{
+    const struct glint_panel_config cfg = {width,       height,       layout,
+                                           image_width, image_height, fit};
+
+    assert_ok(glint_panel_open(&panel, &cfg, &error));
+}
+
 /* ------------------------------------------------------------ YCbCr to RGB */
 
 /* Coefficients of the standards for YCbCr to RGB, full range, 6 digits: Cr to
@@ -188,21 +200,18 @@ TEST(writes_every_pixel_layout)
     static uint8_t bars[] = {255, 0,   0,   0, 255, 0, 0,   0,   255,
                              255, 255, 255, 0, 0,   0, 128, 128, 128};
     struct glint_image image = glint_image_over(bars, GLINT_RGB24, 6, 1);
-    struct glint_panel_config cfg = {
-        .width = 6, .height = 1, .image_width = 6, .image_height = 1};
 
     for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
+        const int bytes = layouts[i].layout.bytes;
         uint8_t mem[28];
 
-        cfg.layout = layouts[i].layout;
-        assert_ok(glint_panel_open(&panel, &cfg, &error));
+        open_panel(6, 1, layouts[i].layout, 6, 1, GLINT_PANEL_FIT);
         memset(mem, 0xa5, sizeof mem);
-        glint_panel_draw(&panel, &image, mem, 6 * cfg.layout.bytes);
+        glint_panel_draw(&panel, &image, mem, 6 * bytes);
         expect_panel_words(&layouts[i], mem);
-        glint_panel_clear(&panel, mem, 6 * cfg.layout.bytes);
-        assert_int_equal(
-            read_panel_word(mem + 5 * cfg.layout.bytes, cfg.layout.bytes),
-            layouts[i].word[4]);
+        glint_panel_clear(&panel, mem, 6 * bytes);
+        assert_int_equal(read_panel_word(mem + 5 * bytes, bytes),
+                         layouts[i].word[4]);
         glint_panel_close(&panel);
     }
 }
@@ -212,19 +221,15 @@ TEST(writes_every_pixel_layout)
 TEST(writes_565_there_and_back)
 {
     static uint8_t codes[2 * 65536], mem[2 * 65536];
-    const struct glint_panel_config cfg = {
-        .width = 256,
-        .height = 256,
-        .layout = {2, {11, 5}, {5, 6}, {0, 5}, {0, 0}},
-        .image_width = 256,
-        .image_height = 256};
+    const struct glint_pixel_layout rgb565 = {
+        2, {11, 5}, {5, 6}, {0, 5}, {0, 0}};
     struct glint_image image = glint_image_over(codes, GLINT_RGB565, 256, 256);
 
     for (int i = 0; i < 65536; i++) {
         codes[2 * i] = (uint8_t)(i & 255);
         codes[2 * i + 1] = (uint8_t)(i >> 8);
     }
-    assert_ok(glint_panel_open(&panel, &cfg, &error));
+    open_panel(256, 256, rgb565, 256, 256, GLINT_PANEL_FIT);
     glint_panel_draw(&panel, &image, mem, 512);
     assert_memory_equal(mem, codes, sizeof mem);
     glint_panel_close(&panel);
@@ -420,12 +425,6 @@ static void expect_panel_pixel(const struct glint_image *im, int from_x,
 static void check_drawing_of_format(enum glint_pixel_format format, int width,
                                     int height, int pad, int panel_width)
 {
-    const struct glint_panel_config cfg = {.width = panel_width,
-                                           .height = height,
-                                           .layout = xrgb8888,
-                                           .image_width = width,
-                                           .image_height = height,
-                                           .fit = GLINT_PANEL_CENTRE};
     const int stride = 4 * panel_width;
     uint8_t *const mem = malloc((size_t)(stride * height));
     struct glint_image image;
@@ -433,7 +432,8 @@ static void check_drawing_of_format(enum glint_pixel_format format, int width,
         make_random_picture(&image, format, width, height, pad);
 
     assert_non_null(mem);
-    assert_ok(glint_panel_open(&panel, &cfg, &error));
+    open_panel(panel_width, height, xrgb8888, width, height,
+               GLINT_PANEL_CENTRE);
     glint_panel_clear(&panel, mem, stride);
     glint_panel_draw(&panel, &image, mem, stride);
     for (int y = 0; y < panel.shown.height; y++)
@@ -469,44 +469,35 @@ TEST(draws_every_format)
 
 /* ---------------------------------------------------- scaling and position */
 
-static void expect_image_area_on_panel(int panel_width, int panel_height,
-                                       int width, int height,
-                                       enum glint_panel_fit fit, int x, int y,
-                                       int shown_width, int shown_height)
-{
-    const struct glint_panel_config cfg = {.width = panel_width,
-                                           .height = panel_height,
-                                           .layout = xrgb8888,
-                                           .image_width = width,
-                                           .image_height = height,
-                                           .fit = fit};
-    struct glint_panel p;
-
-    assert_ok(glint_panel_open(&p, &cfg, &error));
-    assert_int_equal(p.shown.x, x);
-    assert_int_equal(p.shown.y, y);
-    assert_int_equal(p.shown.width, shown_width);
-    assert_int_equal(p.shown.height, shown_height);
-    glint_panel_close(&p);
-}
-
 TEST(image_areas_fit_the_panel)
 {
-    expect_image_area_on_panel(640, 480, 640, 480, GLINT_PANEL_FIT, 0, 0, 640,
-                               480);
-    expect_image_area_on_panel(480, 320, 640, 360, GLINT_PANEL_FIT, 0, 25, 480,
-                               270);
-    expect_image_area_on_panel(800, 480, 640, 480, GLINT_PANEL_FIT, 80, 0, 640,
-                               480);
-    expect_image_area_on_panel(1366, 768, 640, 480, GLINT_PANEL_FIT, 171, 0,
-                               1024, 768);
-    expect_image_area_on_panel(320, 240, 1, 8192, GLINT_PANEL_FIT, 159, 0, 1,
-                               240);
-    expect_image_area_on_panel(1, 240, 8192, 1, GLINT_PANEL_FIT, 0, 119, 1, 1);
-    expect_image_area_on_panel(800, 480, 640, 360, GLINT_PANEL_CENTRE, 80, 60,
-                               640, 360);
-    expect_image_area_on_panel(480, 320, 640, 360, GLINT_PANEL_CENTRE, 0, 0,
-                               480, 320);
+    static const struct {
+        int panel[2], image[2];
+        enum glint_panel_fit fit;
+        struct {
+            int x, y, width, height;
+        } shown;
+    } rows[] = {
+        {{640, 480}, {640, 480}, GLINT_PANEL_FIT, {0, 0, 640, 480}},
+        {{480, 320}, {640, 360}, GLINT_PANEL_FIT, {0, 25, 480, 270}},
+        {{800, 480}, {640, 480}, GLINT_PANEL_FIT, {80, 0, 640, 480}},
+        {{1366, 768}, {640, 480}, GLINT_PANEL_FIT, {171, 0, 1024, 768}},
+        {{320, 240}, {1, 8192}, GLINT_PANEL_FIT, {159, 0, 1, 240}},
+        {{1, 240}, {8192, 1}, GLINT_PANEL_FIT, {0, 119, 1, 1}},
+        {{800, 480}, {640, 360}, GLINT_PANEL_CENTRE, {80, 60, 640, 360}},
+        {{480, 320}, {640, 360}, GLINT_PANEL_CENTRE, {0, 0, 480, 320}},
+    };
+
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        open_panel(rows[i].panel[0], rows[i].panel[1], xrgb8888,
+                   rows[i].image[0], rows[i].image[1], rows[i].fit);
+        if (memcmp(&panel.shown, &rows[i].shown, sizeof panel.shown) != 0)
+            fail_msg("%d x %d on %d x %d: at %d, %d, %d x %d", rows[i].image[0],
+                     rows[i].image[1], rows[i].panel[0], rows[i].panel[1],
+                     panel.shown.x, panel.shown.y, panel.shown.width,
+                     panel.shown.height);
+        glint_panel_close(&panel);
+    }
 }
 
 /* Draws the grey ramp 0 .. 8 and stores the code of each panel pixel in SHOWN.
@@ -515,18 +506,16 @@ static void draw_and_read_grey_ramp(uint8_t *shown, bool down, int panel_width,
                                     int panel_height, int bytes)
 {
     static uint8_t ramp[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
-    const struct glint_panel_config cfg = {
-        .width = panel_width,
-        .height = panel_height,
-        .layout = {bytes, {0, 8}, {8, 4}, {12, 4}, {0, 0}},
-        .image_width = down ? 3 : 9,
-        .image_height = down ? 3 : 1};
+    const int width = down ? 3 : 9, height = down ? 3 : 1;
     struct glint_image image =
-        glint_image_over(ramp, GLINT_GREY, cfg.image_width, cfg.image_height);
+        glint_image_over(ramp, GLINT_GREY, width, height);
     const int stride = bytes * panel_width;
     uint8_t mem[4 * 256];
 
-    assert_ok(glint_panel_open(&panel, &cfg, &error));
+    open_panel(
+        panel_width, panel_height,
+        (struct glint_pixel_layout){bytes, {0, 8}, {8, 4}, {12, 4}, {0, 0}},
+        width, height, GLINT_PANEL_FIT);
     memset(mem, 99, sizeof mem);
     glint_panel_draw(&panel, &image, mem, stride);
     for (int i = 0; i < panel_width * panel_height; i++)
@@ -560,19 +549,14 @@ TEST(scales_by_nearest_pixel)
 TEST(writes_only_inside_the_image_area)
 {
     enum { STRIDE = 53, ROWS = 12 };
-    const struct glint_panel_config cfg = {
-        .width = 16,
-        .height = ROWS,
-        .layout = {3, {16, 8}, {8, 8}, {0, 8}, {0, 0}},
-        .image_width = 5,
-        .image_height = 3,
-        .fit = GLINT_PANEL_CENTRE};
+    const struct glint_pixel_layout rgb888 = {
+        3, {16, 8}, {8, 8}, {0, 8}, {0, 0}};
     uint8_t codes[15], mem[STRIDE * ROWS];
     struct glint_image image = glint_image_over(codes, GLINT_GREY, 5, 3);
 
     memset(codes, 77, sizeof codes);
     memset(mem, 200, sizeof mem);
-    assert_ok(glint_panel_open(&panel, &cfg, &error));
+    open_panel(16, ROWS, rgb888, 5, 3, GLINT_PANEL_CENTRE);
     glint_panel_draw(&panel, &image, mem, STRIDE);
     for (int i = 0; i < STRIDE * ROWS; i++) {
         const int x = i % STRIDE / 3, y = i / STRIDE;
