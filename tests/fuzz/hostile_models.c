@@ -64,7 +64,6 @@ int main(int argc, char **argv)
 
         hostile_make_scene(&scene, (enum hostile_family)family, number, baked);
         written = write_model_file(&scene.model, argv[2], family, number);
-        free(scene.model.data);
         if (!written)
             return 1;
     }

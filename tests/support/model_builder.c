@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/model_builder.h"
 
+#include "support/memory.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,7 +70,7 @@ void model_begin_header(struct model_image *m, enum glint_basis basis,
     h.direct_flux[0] = model_real_from_double(400);
     h.direct_flux[1] = model_real_from_double(-3);
     h.n_surfaces = 4;
-    m->data = calloc(1, MODEL_ROOM);
+    m->data = test_free_later(calloc(1, MODEL_ROOM));
     m->bytes = 0;
     if (!m->data)
         abort();

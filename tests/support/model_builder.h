@@ -4,7 +4,6 @@
  *
  *     struct model_image m = model_make_three_ghosts();
  *     glint_lens_open(&lens, m.data, m.bytes, &reason);
- *     free(m.data);
  *
  * Tables are written one after the other, and none is shared. After a change,
  * model_seal_checksum() updates size and checksum.

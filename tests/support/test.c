@@ -20,6 +20,7 @@ void test_run_with_fixtures(void (*test)(void))
     test();
     if (test_after)
         test_after();
+    test_free_memory();
 }
 
 static int set_up_test_group(void **state)

@@ -25,6 +25,8 @@
 
 #include <cmocka.h>
 
+#include "support/memory.h"
+
 #define TEST(name)                                            \
     static void test_##name(void);                            \
     static void run_##name(void **state)                      \

@@ -8,6 +8,7 @@
 
 #include "flare/by_edges.h"
 #include "glint/kernels.h"
+#include "support/memory.h"
 #include "support/rng.h"
 
 enum { POWERS = 10, SURFACES = 64, PAIRS = SURFACES * (SURFACES - 1) / 2 };
@@ -469,9 +470,7 @@ static void edit_all_systems(struct model_image *m,
     struct glint_model_system *s;
 
     m->bytes = baked->header->bytes;
-    m->data = malloc(m->bytes);
-    if (!m->data)
-        abort();
+    m->data = test_free_later(malloc(m->bytes));
     memcpy(m->data, baked->header, m->bytes);
     h = model_header_of(m);
     s = address_in_model(m, h->system_at);

@@ -7,7 +7,6 @@
  *
  *     hostile_make_scene(&scene, HOSTILE_FOLDS, 3, &baked);
  *     glint_lens_open(&lens, scene.model.data, scene.model.bytes, &reason);
- *     free(scene.model.data);
  */
 #ifndef GLINT_TESTS_HOSTILE_H
 #define GLINT_TESTS_HOSTILE_H

@@ -40,19 +40,19 @@ static enum glint_status bake_scene_text(struct baked *b, const char *text,
 {
     const struct glint_description_files files = {
         &mesh, scene_read_mesh_text, make_texture_picture, NULL, NULL, NULL};
-    struct glint_description *scene = malloc(sizeof *scene);
+    static struct glint_description scene;
     enum glint_status status;
     const char *reason = "";
 
-    assert_non_null(scene);
-    status = glint_description_parse(scene, text, strlen(text), "t.scene",
+    status = glint_description_parse(&scene, text, strlen(text), "t.scene",
                                      &files, error);
     if (status != GLINT_OK)
         fail_msg("%s", error->text);
-    status = glint_scene_bake(scene, "a shop!", UINT64_C(0x123456789), &b->data,
-                              &b->bytes, &b->report, error);
-    glint_description_free(scene);
-    free(scene);
+    status = glint_scene_bake(&scene, "a shop!", UINT64_C(0x123456789),
+                              &b->data, &b->bytes, &b->report, error);
+    glint_description_free(&scene);
+    if (status == GLINT_OK)
+        test_free_later(b->data);
     if (status == GLINT_OK &&
         glint_scene_open(&b->model, b->data, b->bytes, &reason) != GLINT_OK)
         fail_msg("%s", reason);
@@ -142,7 +142,6 @@ TEST(right_handed_scene_is_mirrored)
                         0x1p30);
     assert_int_equal(b.model.object[2].catcher_q15, 16384);
     assert_int_equal(glint_scene_find(&b.model, "t"), 3);
-    free(b.data);
 }
 
 /* Checks that refractive index 1 is baked as no refraction, and that the index
@@ -165,8 +164,6 @@ TEST(a12_index_1_is_not_refracted)
     assert_memory_equal(b[0].data, b[1].data, b[0].bytes);
     assert_int_equal(b[0].model.material->index_q16, 1 << 16);
     assert_int_equal(b[2].model.material->index_q16, 65602);
-    for (int i = 0; i < 3; i++)
-        free(b[i].data);
 }
 
 /* Checks that for both handednesses the corners of baked triangles are
@@ -200,7 +197,6 @@ TEST(both_handednesses_give_the_same_mesh)
         check_scaled_vector(v + 3 * t->vertex[2], !left, left, left ? 1 : -1,
                             unit);
         assert_true(t->material == GLINT_SCENE_NONE);
-        free(b.data);
     }
 }
 
@@ -237,7 +233,6 @@ TEST(textures_have_averaged_mipmaps)
     /* the bake swaps the second and third corner of each triangle */
     assert_int_equal(uv[2 * tri->vertex[2]], 1 << 15);
     assert_int_equal(uv[2 * tri->vertex[1] + 1], 1 << 15);
-    free(b.data);
 }
 
 /* Writes a bumpy sheet of N x N quads as an OBJ file, with one repeated corner
@@ -322,7 +317,6 @@ TEST(vertices_are_stored_once)
     assert_int_equal(b.report.triangles, 2 * N * N);
     assert_true(m->cells[0] * m->cells[1] * m->cells[2] >= N * N / 4);
     check_triangle_lists_of_cells(&b);
-    free(b.data);
 }
 
 /* Checks a triangle with a vertex 10 steps inside or outside the side of a grid
@@ -341,10 +335,8 @@ TEST(triangles_are_listed_in_all_cells_they_touch)
         sprintf(end, "v -1 0 0\nf -1 1 2\n");
         bake_valid_scene_text(&b, text);
         sprintf(end, "v %.17g 0 0\nf -1 1 2\n", -1 + k * b.report.step);
-        free(b.data);
         bake_valid_scene_text(&b, text);
         check_triangle_lists_of_cells(&b);
-        free(b.data);
     }
 }
 
@@ -375,8 +367,6 @@ TEST(extreme_scenes_can_be_opened)
         bake_valid_scene_text(&b, texts[i]);
         assert_int_equal(a.bytes, b.bytes);
         assert_memory_equal(a.data, b.data, b.bytes);
-        free(a.data);
-        free(b.data);
     }
     assert_int_equal(
         bake_scene_text(&a,

@@ -125,6 +125,7 @@ static void bake_panorama(struct baked *b,
                                &b->data, &b->bytes, &b->report,
                                &error) != GLINT_OK)
         fail_msg("%s", error.text);
+    test_free_later(b->data);
     if (glint_environment_open(&b->environment, b->data, b->bytes, &reason) !=
         GLINT_OK)
         fail_msg("%s", reason);
@@ -165,7 +166,6 @@ TEST(uniform_light_stays_uniform)
         assert_true(
             fabs(decode_rgb9e5(&b.environment, b.environment.irradiance[i], 1) -
                  6.25) < 6.25 * .003);
-    free(b.data);
 }
 
 static double compute_linear_light(const double d[3])
@@ -205,7 +205,6 @@ TEST(irradiance_matches_closed_form)
                                      want -
                                  1));
         }
-        free(b.data);
     }
     print_message("irradiance: off by %.3f %% at most\n", 100 * worst);
     assert_true(worst < .006);
@@ -259,7 +258,6 @@ TEST(levels_equal_sums_over_all_texels)
     print_message("blur: off by %.3f %% at most\n", 100 * worst);
     assert_true(worst < .004);
     glint_sphere_free(&s);
-    free(b.data);
 }
 
 /* Checks the numbers of texels of a map of side 256. The side of a Gaussian
@@ -303,7 +301,6 @@ TEST(mipmap_levels_average_light)
                         .004);
         }
     }
-    free(b.data);
 }
 
 /* -------------------------------------------------------- extracted lights */
@@ -362,12 +359,10 @@ TEST(disc_light_is_extracted)
     assert_true(fabs(b.report.light_share -
                      (power * 4000 * solid) /
                          (power * 4000 * solid + 4 * GLINT_PI)) < .002);
-    free(b.data);
     o.max_lights = 0;
     bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 2000);
-    free(b.data);
 }
 
 static double compute_bright_window_light(const double d[3])
@@ -386,7 +381,6 @@ TEST(wide_and_touching_lights_lose_no_light)
     bake_panorama(&b, &o);
     assert_int_equal(b.environment.header->n_lights, 0);
     assert_true(b.report.residual_largest > 250);
-    free(b.data);
 }
 
 /* -------------------------------------------------- samples and cube maps */
@@ -408,7 +402,6 @@ TEST(clamps_invalid_samples)
     bake_panorama(&b, &o);
     assert_true(b.report.negative == 2 && b.report.not_finite == 3);
     assert_true(b.report.largest < 12.6 * .9 && b.report.mean > 6);
-    free(b.data);
     narrow.width = 100;
     assert_int_equal(glint_environment_bake(&narrow, &o, "x", 0, &b.data,
                                             &b.bytes, &b.report, &error),
@@ -426,7 +419,6 @@ TEST(clamps_invalid_samples)
     memset(picture, 0, sizeof picture); /* a black picture is valid */
     bake_panorama(&b, &o);
     assert_true(decode_texel(&b.environment, 2, 3, 0) == 0);
-    free(b.data);
 }
 
 /* Checks that the six faces of a cube map, each of a different light, appear in
@@ -537,7 +529,6 @@ TEST(rejects_damaged_files)
     check_damaged_file_is_rejected(&b, h->light_at, 0, "unit vector");
     check_damaged_file_is_rejected(&b, h->light_at + 12, 1u << 30, "too large");
     check_damaged_file_is_rejected(&b, h->light_at + 16, 5, "normalised");
-    free(b.data);
 }
 
 /* ------------------------------------------------------------------- texts */

@@ -28,7 +28,6 @@ struct fixture {
     struct glint_flare_frame rays;
     struct glint_flare_config cfg;
     struct glint_flare_stats stats;
-    void *mem;
     struct glint_flare *flare;
 };
 
@@ -58,17 +57,10 @@ static void plan_and_bin_edges(struct fixture *f)
 {
     const size_t bytes = glint_flare_bytes(&f->cfg);
 
-    free(f->mem);
-    assert_int_equal(posix_memalign(&f->mem, 64, bytes), 0);
-    assert_ok(glint_flare_init(&f->flare, &f->cfg, f->mem, bytes));
+    assert_ok(
+        glint_flare_init(&f->flare, &f->cfg, test_allocate(bytes), bytes));
     glint_flare_plan(f->flare, &f->rays, f->light, f->n_lights);
     glint_flare_bin(f->flare, &f->stats);
-}
-
-static void free_model_and_flare(struct fixture *f)
-{
-    free(f->mem);
-    free(f->m.data);
 }
 
 /* Returns the address of the coefficient of term TERM of output KIND of
@@ -163,7 +155,6 @@ TEST(counts_drawn_and_closed_bundles)
                      3 * WAVES);
     f.light[1].sine_q30 = 1 << 26;
     assert_bundle_outcome(&f, GLINT_OUTCOME_DRAWN, (3 * 2 - 1) * WAVES);
-    free_model_and_flare(&f);
 }
 
 TEST(counts_bundles_of_other_ghosts)
@@ -173,7 +164,6 @@ TEST(counts_bundles_of_other_ghosts)
     open_model_with_beams(&f, 2);
     f.rays.only_ghost = 2;
     assert_bundle_outcome(&f, GLINT_OUTCOME_OTHER, 2 * 2 * WAVES);
-    free_model_and_flare(&f);
 }
 
 TEST(counts_lights_outside_the_model)
@@ -186,7 +176,6 @@ TEST(counts_lights_outside_the_model)
         ((struct glint_model_header *)f.m.data)->sine_hi_q30 = 1 << 28;
         assert_bundle_outcome(&f, GLINT_OUTCOME_BEYOND, (i + 1) * 3 * WAVES);
     }
-    free_model_and_flare(&f);
 }
 
 TEST(counts_bundles_without_light)
@@ -199,7 +188,6 @@ TEST(counts_bundles_without_light)
     assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2);
     f.light[0].power = real_of(0, 0);
     assert_bundle_outcome(&f, GLINT_OUTCOME_DARK, 2 + 4);
-    free_model_and_flare(&f);
 }
 
 TEST(counts_bundles_blocked_by_barrels)
@@ -212,7 +200,6 @@ TEST(counts_bundles_blocked_by_barrels)
     *address_of_coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
     *address_of_coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
     assert_bundle_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
-    free_model_and_flare(&f);
 }
 
 /* Moves ghost 0 to the right of the image, which is 2.5 mm wide. Its outcome
@@ -232,7 +219,6 @@ TEST(counts_bundles_outside_the_image)
     *address_of_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) =
         402653184; /* 1.5 mm */
     assert_bundle_outcome(&f, GLINT_OUTCOME_DRAWN, WAVES);
-    free_model_and_flare(&f);
 }
 
 /* Checks that ray bundles fainter than FAINTEST are counted as faint, with one
@@ -245,7 +231,6 @@ TEST(counts_faint_bundles)
         open_model_with_beams(&f, n);
         f.rays.faintest = real_of(1, 60);
         assert_bundle_outcome(&f, GLINT_OUTCOME_FAINT, n * 2 * WAVES);
-        free_model_and_flare(&f);
     }
 }
 
@@ -275,7 +260,6 @@ TEST(counts_bundles_without_memory)
         assert_sums_equal_totals(&f);
         assert_true(sum_bundle_statistics(&f).of[GLINT_OUTCOME_NO_ROOM] > 0);
     }
-    free_model_and_flare(&f);
 }
 
 static void draw_flare_image(struct fixture *f, int32_t *px_q20)
@@ -320,7 +304,6 @@ TEST(images_of_parts_add_up)
     glint_flare_keep(f.flare, -1, -1, -1);
     draw_flare_image(&f, part);
     assert_memory_equal(part, whole, sizeof whole);
-    free_model_and_flare(&f);
 }
 
 TEST(statistics_do_not_change_the_image)
@@ -335,7 +318,6 @@ TEST(statistics_do_not_change_the_image)
     sum_bundle_statistics(&f);
     draw_flare_image(&f, after);
     assert_memory_equal(before, after, sizeof before);
-    free_model_and_flare(&f);
 }
 
 /* Checks the number of polynomial terms evaluated for ghost 0: sensor x 3, or 2
@@ -356,7 +338,6 @@ TEST(counts_polynomial_terms)
         assert_int_equal(a.barrels, 1);
         assert_int_equal(a.terms, 2 + off + 2 + 1 + 2 + 1 + 2);
     }
-    free_model_and_flare(&f);
 }
 
 /* Checks the number of rows that edges cross against a count that tests each
@@ -385,7 +366,6 @@ TEST(counts_rows_of_edges)
             }
     assert_true(want > 1000);
     assert_int_equal(got, want);
-    free_model_and_flare(&f);
 }
 
 /* Returns the light in the middle WIDTH x HEIGHT pixels of an image that is
@@ -460,7 +440,6 @@ static void check_outside_ghost_adds_no_light(int small_stop)
             assert_true(sum_light_in_middle(px_q20, WIDE, HIGH) == 0);
         }
     assert_true(n_outside > 20 && n_drawn > 20);
-    free_model_and_flare(&f);
 }
 
 TEST(outside_bundles_add_no_light)

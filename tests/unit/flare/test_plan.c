@@ -97,7 +97,6 @@ static void allocate_and_init_flare(struct fixture *f)
 static void free_model_and_images(struct fixture *f)
 {
     free(f->mem);
-    free(f->m.data);
 }
 
 static struct fixture fx;

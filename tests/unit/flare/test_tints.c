@@ -25,9 +25,8 @@ struct fixture {
 
 static struct fixture *open_model_with_tints(void)
 {
-    struct fixture *f = calloc(1, sizeof *f);
+    struct fixture *f = test_free_later(calloc(1, sizeof *f));
 
-    assert_non_null(f);
     f->m = model_make_three_ghosts();
     f->lens = model_open_image(&f->m);
     assert_true(f->lens.header->n_ghosts <= GHOSTS);
@@ -44,29 +43,20 @@ static struct fixture *open_model_with_tints(void)
     return f;
 }
 
-static void free_model_with_tints(struct fixture *f)
-{
-    free(f->m.data);
-    free(f);
-}
-
 static void draw_tinted_ghosts(struct fixture *f)
 {
     struct glint_image image = {
         .format = GLINT_LINEAR_Q20, .width = WIDTH, .height = HEIGHT};
     const size_t bytes = glint_flare_bytes(&f->cfg);
     struct glint_flare *flare;
-    void *mem;
 
     memset(f->px_q20, 0, sizeof f->px_q20);
     memset(f->sum, 0, sizeof f->sum);
     glint_image_place(&image, f->px_q20);
-    assert_int_equal(posix_memalign(&mem, 64, bytes), 0);
-    assert_ok(glint_flare_init(&flare, &f->cfg, mem, bytes));
+    assert_ok(glint_flare_init(&flare, &f->cfg, test_allocate(bytes), bytes));
     glint_flare_plan(flare, &f->rays, &f->light, 1);
     glint_flare_bin(flare, &f->stats);
     glint_flare_draw(flare, &image);
-    free(mem);
     for (int i = 0; i < SAMPLES; i++)
         f->sum[i % 3] += f->px_q20[i] * 0x1p-20;
 }
@@ -87,7 +77,6 @@ TEST(gains_of_1_change_no_bit)
     f->rays.tints = f->tint;
     draw_tinted_ghosts(f);
     assert_memory_equal(plain, f->px_q20, sizeof plain);
-    free_model_with_tints(f);
 }
 
 TEST(gain_and_tint_scale_the_light)
@@ -104,7 +93,6 @@ TEST(gain_and_tint_scale_the_light)
     assert_relatively_near(f->sum[0], 1.5 * plain[0]);
     assert_relatively_near(f->sum[1], 6 * plain[1]);
     assert_true(f->sum[2] == 0);
-    free_model_with_tints(f);
 }
 
 /* Draws each ghost with all others muted. Checks that the sum of their light is
@@ -133,7 +121,6 @@ TEST(muted_ghosts_add_no_light)
     draw_tinted_ghosts(f);
     assert_int_equal(f->stats.bundles, 0);
     assert_true(f->sum[0] == 0);
-    free_model_with_tints(f);
 }
 
 /* Checks a ghost whose light is below one code: a gain makes it visible. */
@@ -150,5 +137,4 @@ TEST(gain_makes_a_faint_ghost_visible)
         f->tint[i].gain = real_of(1, 40);
     draw_tinted_ghosts(f);
     assert_true(f->stats.bundles > 0);
-    free_model_with_tints(f);
 }

@@ -232,7 +232,6 @@ TEST(window_contains_all_passing_rays)
 
         for (double opening = 1; opening > 0.01; opening *= 0.93)
             check_window_contains_rays(&shape[k], &lens, opening);
-        free(m.data);
     }
 }
 
@@ -248,7 +247,6 @@ TEST(box_with_both_halves_does_not_overflow)
 
         for (double opening = 1; opening > 0.01; opening *= 0.8)
             check_window_contains_rays(&whole_shape[k], &lens, opening);
-        free(m.data);
     }
 }
 
@@ -279,7 +277,6 @@ TEST(window_moves_smoothly_with_the_stop)
     }
     print_message("sides step by %.4f of the stop at most\n", worst);
     assert_true(worst < 0.01);
-    free(m.data);
 }
 
 TEST(no_passing_ray_gives_no_window)
@@ -299,7 +296,6 @@ TEST(no_passing_ray_gives_no_window)
         glint_window_narrow_to_stop(&nodes, &t, (int32_t)(0.85 * ONE)), 1);
     glint_transfer_init(&t, &lens, 0, 0, MODEL_WAVE_LO_Q24);
     assert_int_equal(glint_window_narrow_to_stop(&nodes, &t, 1 << 20), 0);
-    free(m.data);
 }
 
 /* Checks that the window of an annular pupil has a lower and an upper end. */
@@ -320,5 +316,4 @@ TEST(annular_box_has_two_window_ends)
     low = ldexp(glint_transfer_v(&t, 0, 8), -30);
     high = ldexp(glint_transfer_v(&t, 8, 8), -30);
     assert_true(low > 0.7 && low < 0.76 && high > 0.83 && high < 0.89);
-    free(m.data);
 }

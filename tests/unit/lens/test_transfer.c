@@ -59,7 +59,6 @@ TEST(rays_match_hand_computation)
     assert_int_equal(out.at[GLINT_OUT_SENSOR_X], 201326592);  /* 0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_SENSOR_Y], -201326592); /* -0.75 mm */
     assert_int_equal(out.at[GLINT_OUT_ENERGY], 3 << 27);
-    free(m.data);
 }
 
 /* Checks how energies are decoded. The file stores a root of the energy as a
@@ -95,7 +94,6 @@ TEST(energies_are_decoded_from_roots)
             assert_int_equal(evaluate_ray(&t, 0, 0).at[GLINT_OUT_ENERGY],
                              sign < 0 ? 0 : (1 << 29) >> (1 << roots));
             assert_int_equal(t.exponent[GLINT_OUT_ENERGY], scale[roots]);
-            free(m.data);
         }
 }
 
@@ -152,8 +150,6 @@ TEST(int16_coefficients_give_the_same_rays)
             if (t[0].outputs >> i & 1)
                 assert_int_equal(a.at[i], b.at[i]);
     }
-    free(wide.data);
-    free(m.data);
 }
 
 TEST(uses_the_system_of_angle_and_wavelength)
@@ -190,7 +186,6 @@ TEST(uses_the_system_of_angle_and_wavelength)
     assert_int_equal(t.box[1], 3 << 20);
     assert_int_equal(t.box[2], 3 << 20);
     assert_int_equal(t.box_exponent, -20);
-    free(m.data);
 }
 
 /* Checks a pupil box whose half width is (s - 1/32)^2 - 1/2048: positive at all
@@ -218,7 +213,6 @@ TEST(half_width_below_0_is_clamped)
     assert_int_equal(t.box[2], 3 << 20);
     assert_int_equal(glint_transfer_init(&t, &lens, 0, ONE / 8, 1), 1);
     assert_int_equal(t.box[1], (ONE >> 11) - (ONE >> 12));
-    free(m.data);
 }
 
 /* Sets the coefficients of the first system to random values with the largest
@@ -271,7 +265,6 @@ TEST(extreme_coefficients_stay_in_range)
             assert_in_range((int64_t)out.at[kind] + 2 * (int64_t)ONE,
                             (uint64_t)ONE - 8, 3 * (uint64_t)ONE + 8);
     }
-    free(m.data);
 }
 
 /* ------------------------------------------------------- grids of vertices */
@@ -329,7 +322,6 @@ TEST(grid_covers_the_pupil_box)
         assert_int_equal(turned[k].stop_y_q16, v[k].stop_x_q16);
         assert_int_equal(turned[k].energy_q16, v[k].energy_q16);
     }
-    free(m.data);
 }
 
 /* Checks an annular grid: its rows lie between the inner rim and the edge of
@@ -363,7 +355,6 @@ TEST(annular_grid_rows_leave_the_hole_out)
                 assert_int_equal(v->stop_y_q16, same->stop_y_q16);
             }
         }
-    free(m.data);
 }
 
 TEST(positions_out_of_range_are_invalid)
@@ -385,5 +376,4 @@ TEST(positions_out_of_range_are_invalid)
         glint_transfer_grid(&t, &place, 1, v);
         assert_true((v[3].energy_q16 < 0) == (e >= -10));
     }
-    free(m.data);
 }

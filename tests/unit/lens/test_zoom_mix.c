@@ -122,8 +122,6 @@ static void interpolate_barrels(const struct barrel *a, uint32_t n_a,
         open_model_of_system(&at[1], 0.25, 0.5, head[1], b, n_b);
 
     interpolate_models(&first, &second, part);
-    free(at[0].data);
-    free(at[1].data);
 }
 
 static double evaluate_output(int kind, double u, double v)
@@ -243,8 +241,6 @@ static void interpolate_stops(const struct stop *ours,
         interpolate_models(&one, &none, 1 - part);
     else
         interpolate_models(&none, &one, part);
-    free(at[0].data);
-    free(at[1].data);
 }
 
 static void check_clipped_fraction(struct stop ours, struct stop theirs,
@@ -386,8 +382,6 @@ TEST(outputs_are_interpolated_across_moving_boxes)
                                       slope * 0.5 * (3 + part));
         }
     }
-    free(at[0].data);
-    free(at[1].data);
 }
 
 /* Checks that the first barrel aperture is the circle of 4 mm at (U, V), the
@@ -415,8 +409,6 @@ TEST(barrels_move_with_their_box)
     interpolate_models(&first, &second, 0.5);
     assert_true(mixed.outputs >> GLINT_OUT_BARREL_0 & 1);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
-    free(at[0].data);
-    free(at[1].data);
 }
 
 /* Checks that barrel apertures of equal shape in the pupil are matched even if
@@ -438,8 +430,6 @@ TEST(barrels_match_by_shape_in_the_pupil)
     }
     interpolate_models(&a, &c, 0.5);
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
-    for (int k = 0; k < 3; k++)
-        free(at[k].data);
 }
 
 /* Writes a model with one barrel aperture to M and opens it. Its pupil box BOX
@@ -490,8 +480,6 @@ TEST(narrow_boxes_evaluate_barrels_inside)
 
     interpolate_models(&first, &second, 0.5);
     assert_false(mixed.outputs >> (GLINT_OUT_BARREL_0 + 1) & 1);
-    free(at[0].data);
-    free(at[1].data);
 }
 
 /* ---------------------------------------------------- visibility of ghosts */
@@ -594,12 +582,6 @@ static void open_zoom_of_positions(struct model_image at[MOST_POSITIONS],
         fail_msg("%s", reason);
 }
 
-static void free_position_models(const struct model_image *at, int n)
-{
-    for (int k = 0; k < n; k++)
-        free(at[k].data);
-}
-
 /* Checks that a ghost without polynomials at one zoom position (a dark ghost)
  * fades out towards that position. */
 TEST(dark_ghosts_fade)
@@ -619,7 +601,6 @@ TEST(dark_ghosts_fade)
 
     open_zoom_of_positions(at, both, 2);
     SHOWS(sights);
-    free_position_models(at, 2);
 }
 
 /* Checks that a ghost is extrapolated towards a zoom position at which it is
@@ -642,7 +623,6 @@ TEST(ghosts_are_extrapolated_into_the_dark)
 
     open_zoom_of_positions(at, all, 3);
     SHOWS(sights);
-    free_position_models(at, 3);
 }
 
 /* Checks that a ghost is extrapolated by at most the distance between the two
@@ -668,7 +648,6 @@ TEST(unsafe_ghosts_are_not_extrapolated)
 
         open_zoom_of_positions(at, all[t], 3);
         check_interpolated_ghosts(&half[t], 1);
-        free_position_models(at, 3);
     }
 }
 
@@ -696,7 +675,6 @@ TEST(extrapolated_sums_stay_in_range)
                 sum += llabs((long long)mixed.table[kind][y][x]);
         assert_true(!(mixed.outputs >> kind & 1) || sum < ONE);
     }
-    free_position_models(at, 3);
 }
 
 /* Checks two zoom positions that divide a pupil differently: the pupil parts of
@@ -719,7 +697,6 @@ TEST(parts_are_interpolated_with_their_ghost)
     assert_int_equal(zoom.header.n_ghosts, 4);
     assert_int_equal(zoom.header.n_parts, 2);
     SHOWS(sights);
-    free_position_models(at, 2);
 }
 
 static double interpolate_linearly(double a, double b)
@@ -777,5 +754,4 @@ TEST(lens_numbers_are_interpolated)
         assert_true(glint_real_value(z->stopped_flux[1][i]) ==
                     -(i + 30) * interpolate_linearly(96, 1));
     }
-    free_position_models(at, 2);
 }

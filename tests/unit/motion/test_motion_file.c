@@ -63,6 +63,7 @@ static void bake_track(struct baked *baked, int n_frames, int reset_every,
     assert_ok(glint_motion_baker_finish(baker, "a track", 1, &baked->data,
                                         &baked->bytes, &report, &error));
     glint_motion_baker_close(baker);
+    test_free_later(baked->data);
     assert_ok(
         glint_motion_open(&baked->motion, baked->data, baked->bytes, &reason));
 }
@@ -110,7 +111,6 @@ TEST(poses_match_the_simulated_track)
     print_message("  off by %.1e at most, turned by %.1e; %.1f bytes a frame\n",
                   at, turn, (double)baked.bytes / FRAMES);
     assert_true(at < 0x1p-24 && turn < 2e-4);
-    free(baked.data);
 }
 
 /* Checks that a frame read by blocks equals the frame read from memory, and
@@ -144,7 +144,6 @@ TEST(any_frame_needs_few_blocks)
     }
     assert_int_equal(glint_motion_frame(&streamed, FRAMES, &f),
                      GLINT_E_ARGUMENT);
-    free(baked.data);
 }
 
 /* Checks that a changed byte is detected: when the file is opened in memory, or
@@ -189,7 +188,6 @@ TEST(detects_any_changed_byte)
                          GLINT_E_FORMAT);
         assert_non_null(reason);
     }
-    free(baked.data);
 }
 
 /* Checks a motion that is read by blocks. A name with control characters must
@@ -240,7 +238,6 @@ TEST(rejects_invalid_blocks)
                      GLINT_E_FORMAT);
     assert_string_equal(reason[0], "the name has a control character");
     assert_string_equal(reason[1], reason[0]);
-    free(baked.data);
 }
 
 /* Checks a file with random words and a valid checksum: it must be rejected, or
@@ -277,7 +274,6 @@ TEST(random_words_are_rejected_or_readable)
     print_message("  %d of 3000 open\n", opened);
     assert_true(opened > 10 && opened < 2500);
     free(copy);
-    free(baked.data);
 }
 
 /* Checks that tracks scaled by 1e-6 to 1e4 keep their relative precision, as
@@ -303,6 +299,5 @@ TEST(unit_adapts_to_the_size)
         print_message("  size 1e%d: 2^%d steps, off by %.1e of it\n", power,
                       baked.motion.header.unit_log2, worst);
         assert_true(worst < 1e-6);
-        free(baked.data);
     }
 }

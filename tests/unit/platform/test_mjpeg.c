@@ -44,9 +44,8 @@ struct bytes {
 
 static struct bytes allocate_copy_of_bytes(const void *data, size_t n)
 {
-    const struct bytes b = {malloc(n ? n : 1), n};
+    const struct bytes b = {test_free_later(malloc(n ? n : 1)), n};
 
-    assert_non_null(b.data);
     memcpy(b.data, data, n);
     return b;
 }
@@ -141,13 +140,11 @@ static size_t find_jpeg_segment(const struct bytes *b, int marker, size_t at)
 static void replace_bytes(struct bytes *b, size_t at, size_t cut,
                           const void *insert, size_t n)
 {
-    uint8_t *const data = malloc(b->n - cut + n);
+    uint8_t *const data = test_free_later(malloc(b->n - cut + n));
 
-    assert_non_null(data);
     memcpy(data, b->data, at);
     memcpy(data + at, insert, n);
     memcpy(data + at + n, b->data + at + cut, b->n - at - cut);
-    free(b->data);
     b->data = data;
     b->n += n - cut;
 }
@@ -266,7 +263,6 @@ static void check_decoding_of_coding(const struct coding *c,
     assert_int_equal(image.format, format);
     expect_decoded_planes(&image, c);
     expect_libjpeg_scanlines(&image, &b);
-    free(b.data);
     glint_mjpeg_close(d);
 }
 
@@ -329,7 +325,6 @@ TEST(decodes_a_frame_written_by_hand)
         for (int x = 0; x < 8; x++)
             assert_int_equal(image.plane[0][y * image.stride_bytes[0] + x],
                              178);
-    free(b.data);
     glint_mjpeg_close(d);
 }
 
@@ -353,8 +348,6 @@ TEST(missing_huffman_tables_are_the_standard_ones)
         /* frame B has no tables, so the tables of frame OTHER must not apply */
         decode_valid_frame(d, &b);
     expect_decoded_planes(&image, &y422);
-    free(other.data);
-    free(b.data);
     glint_mjpeg_close(d);
 }
 
@@ -368,8 +361,6 @@ TEST(tables_are_not_kept_between_frames)
     decode_valid_frame(d, &whole);
     expect_decoding_fails(d, &bare, GLINT_E_FORMAT, "Quantization table");
     decode_valid_frame(d, &whole);
-    free(whole.data);
-    free(bare.data);
     glint_mjpeg_close(d);
 }
 
@@ -417,7 +408,6 @@ TEST(decodes_deviations_of_cameras)
         b = (struct bytes){realloc(b.data, b.n), b.n};
         image = decode_valid_frame(d, &b);
         expect_decoded_planes(&image, &c);
-        free(b.data);
     }
     glint_mjpeg_close(d);
 }
@@ -441,8 +431,6 @@ TEST(frames_may_be_smaller_but_not_larger)
         expect_decoding_fails(d, &b[2], GLINT_E_UNSUPPORTED,
                               "frame of 64 x 49 pixels is larger than 64 x 48");
     }
-    for (int i = 0; i < 3; i++)
-        free(b[i].data);
     glint_mjpeg_close(d);
 }
 
@@ -484,7 +472,6 @@ check_coding_is_rejected(struct coding c,
     const struct bytes b = encode_jpeg_frame(&c, tune);
 
     expect_decoding_fails(d, &b, GLINT_E_UNSUPPORTED, text);
-    free(b.data);
     glint_mjpeg_close(d);
 }
 
@@ -527,7 +514,6 @@ TEST(rejects_other_depths_and_processes)
     /* The height is 0, as if a DNL marker followed that sets it. */
     b.data[frame + 6] = 0;
     expect_decoding_fails(d, &b, GLINT_E_FORMAT, "Empty JPEG image");
-    free(b.data);
     glint_mjpeg_close(d);
 }
 
@@ -565,16 +551,13 @@ static void check_every_truncation(struct coding c)
                                         : "");
         if (n == end - 1)
             assert_non_null(strstr(error.text, "cut off in row "));
-        free(b.data);
     }
     for (size_t n = end; n <= whole.n; n++) {
         const struct bytes b = allocate_copy_of_bytes(whole.data, n);
         const struct glint_image image = decode_valid_frame(d, &b);
 
         expect_decoded_planes(&image, &c);
-        free(b.data);
     }
-    free(whole.data);
     glint_mjpeg_close(d);
 }
 
@@ -627,7 +610,6 @@ TEST(damaged_frames_print_nothing)
         assert_true(status == GLINT_OK || status == GLINT_E_FORMAT ||
                     status == GLINT_E_UNSUPPORTED);
         n_refused += status != GLINT_OK;
-        free(b.data);
     }
     dup2(kept, STDERR_FILENO);
     close(kept);
@@ -638,7 +620,6 @@ TEST(damaged_frames_print_nothing)
     assert_in_range(n_refused, 300, 2999);
     image = decode_valid_frame(d, &whole);
     expect_decoded_planes(&image, &c);
-    free(whole.data);
     glint_mjpeg_close(d);
 }
 
@@ -664,7 +645,6 @@ TEST(rejects_random_bytes)
             assert_int_not_equal(
                 glint_mjpeg_decode(d, b.data, b.n, &image, &error), GLINT_OK);
         }
-        free(b.data);
     }
     glint_mjpeg_close(d);
 }
@@ -684,7 +664,6 @@ TEST(detects_a_missing_restart_interval)
     from = find_jpeg_segment(&b, 0xd1, 300);
     replace_bytes(&b, from, find_jpeg_segment(&b, 0xd2, from) - from, "", 0);
     expect_decoding_fails(d, &b, GLINT_E_FORMAT, "instead of RST1");
-    free(b.data);
     glint_mjpeg_close(d);
 }
 
@@ -708,7 +687,5 @@ TEST(decoding_does_not_grow_the_heap)
     assert_int_equal(late.uordblks, early.uordblks);
     assert_int_equal(late.arena, early.arena);
     assert_int_equal(late.hblkhd, early.hblkhd);
-    free(whole.data);
-    free(half.data);
     glint_mjpeg_close(d);
 }

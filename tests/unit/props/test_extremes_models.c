@@ -45,7 +45,6 @@ TEST(hostile_models_stay_within_their_bounds)
             hostile_make_scene(&scene, (enum hostile_family)family, number,
                                &stage.file.lens);
             n_failed += !hostile_draw_scene(&scene, &r);
-            free(scene.model.data);
             n_of[r.outcome]++;
             if (r.outcome == HOSTILE_REFUSED)
                 continue;

@@ -688,7 +688,6 @@ TEST(lens_and_scene_agree_on_directions)
         assert_true(fabs(f * (tangent * light.cos_q30 / ONE_Q30 - x)) < .01);
         assert_true(fabs(f * (tangent * light.sin_q30 / ONE_Q30 - y)) < .01);
     }
-    free(image.data);
 }
 
 /* Checks that the visible fraction of a sun falls to 0 in several steps while

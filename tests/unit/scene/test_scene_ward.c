@@ -45,6 +45,7 @@ static void bake_and_open_environment(struct map *m, int levels)
     o.max_lights = 0;
     assert_ok(glint_environment_bake(&image, &o, "x", 0, &m->data, &bytes,
                                      &report, &error));
+    test_free_later(m->data);
     assert_ok(glint_environment_open(&m->e, m->data, bytes, &reason));
 }
 
@@ -116,7 +117,6 @@ TEST(furnace_albedo_is_1)
             if (norm == GLINT_WARD_BOUNDED)
                 assert_true(fabs(got - stated[k]) < .01);
         }
-    free(m.data);
 }
 
 /* --------------------------------------------- lookups in double precision */
@@ -244,7 +244,6 @@ TEST(samples_approximate_the_sum_over_texels)
         ward_render_by_lookups(&m.e, &material, &o, got);
         least = fmin(least, ward_compute_psnr(want, got));
     }
-    free(m.data);
     print_message("reference: %.1f dB at least\n", least);
     assert_true(least >= 60);
 }
@@ -342,8 +341,6 @@ TEST(b1_b4_sampled_lobe_beats_uniform_directions)
                       alphas[a][1], by_gauss, by_mip);
         assert_true(by_gauss > by_mip);
     }
-    free(gauss.data);
-    free(mip.data);
 }
 
 /* Changes colours and alphas of materials that share one baked environment.
@@ -370,7 +367,6 @@ TEST(b2_materials_share_an_environment)
         differ = fmax(differ, fabs(wide[i][0] - white[i][0]));
     }
     assert_true(differ > .2);
-    free(m.data);
 }
 
 /* Checks that 8 samples are sufficient: they must reach 30 dB in display codes,
@@ -396,7 +392,6 @@ TEST(b8_eight_samples_are_sufficient)
                       db);
         assert_true(db >= 30);
     }
-    free(m.data);
 }
 
 /* Checks that images with more samples are closer to the sum over all
@@ -425,7 +420,6 @@ TEST(b6_more_samples_come_closer)
         assert_true(db > last + 1);
         last = db;
     }
-    free(m.data);
 }
 
 /* Checks that extreme environments (black, one texel of 1e9, scales of 1e-6 ..
@@ -441,11 +435,9 @@ TEST(extreme_environments_only_scale_the_image)
     ward_render_by_lookups(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] == 0 && got[i][2] == 0);
-    free(m.data);
     paint_environment_image(0);
     bake_and_open_environment(&m, GLINT_ENVIRONMENT_GAUSS);
     ward_render_by_lookups(&m.e, &material, &eight, one);
-    free(m.data);
     for (int power = -12; power <= 12; power += 6) {
         paint_environment_image(0);
         for (int i = 0; i < HEIGHT * WIDTH * 3; i++)
@@ -456,7 +448,6 @@ TEST(extreme_environments_only_scale_the_image)
             assert_true(
                 fabs(got[i][0] - fmin(ldexp(one[i][0], power), 1 << 15)) <=
                 0x1p-14 + fabs(got[i][0]) * 1e-3);
-        free(m.data);
     }
     memset(pixels, 0, sizeof pixels);
     pixels[HEIGHT / 2][WIDTH / 2][1] = 1e9f;
@@ -464,7 +455,6 @@ TEST(extreme_environments_only_scale_the_image)
     ward_render_by_lookups(&m.e, &material, &eight, got);
     for (int i = 0; i < WARD_PIXELS; i++)
         assert_true(got[i][0] == 0 && got[i][1] >= 0 && got[i][1] <= 1 << 15);
-    free(m.data);
 }
 
 /* Checks that an anisotropy ratio of 200 is clamped to 10, and that the call
@@ -485,7 +475,6 @@ TEST(b7_extreme_anisotropy_is_clamped)
     assert_memory_equal(&held, &plain, sizeof held);
     material = make_metal_material(.2, .001);
     assert_int_equal(glint_ward_prepare(&held, &m.e, &material, &eight), 1);
-    free(m.data);
 }
 
 /* Checks that any valid material, view and file give light in the allowed
@@ -525,5 +514,4 @@ TEST(any_valid_material_gives_light_in_range)
         }
     }
     assert_int_equal(most, 1 << 30);
-    free(m.data);
 }

@@ -200,7 +200,6 @@ static void draw_flare_and_triangle(struct glint_frame f, uint8_t *px)
     else
         draw_triangle_pass(&f, flare);
     free(mem);
-    free(m.data);
 }
 
 /* two images, as linear light (Q20) or as pixel codes at the same addresses */
