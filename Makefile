@@ -37,7 +37,7 @@
 #   make budget   what a frame costs on ARM, in instructions
 #   make figure NAME=accuracy   a table of tests/figures measured again; figures-quick: some rows compared
 #   make video-report  how steady the flare of a video is; VIDEOS="A.y4m ..."
-#   make trade    what accuracy costs: plots, pictures and a page (glint sweep)
+#   make trade    what accuracy costs: a table and plots (glint sweep)
 #   make debian   packages, in clean systems;  check-debian: tools/debian
 #   also: oiio assimp window inputs format golden-update fuzz-keep clean ward-sheet, and the tables that
 #         tools/measure/recipes lists, all by make figures
@@ -58,7 +58,7 @@ CORE      := base image kernels kernels/rays kernels/ward kernels/maps lens lamp
 ENGINE    := engine engine/options engine/frame engine/setup engine/star
 BAKE      := bake bake/table bake/scene bake/environment bake/motion bake/translucent bake/trace bake/regress bake/visible bake/fit bake/skew bake/exact
 PLATFORM  := posix formats video panel linux jpeg assimp sdl
-TOOLS     := measure measure/plots import synth glint $(addprefix glint/,help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions lens_pages explain render live)
+TOOLS     := measure import synth glint $(addprefix glint/,help options control lamp_files desk model ffmpeg overlay zooms stones scenes motions lens_pages explain render live)
 c_files = $(wildcard $(2:%=$(1)/%/*.c))
 objects = $(patsubst %.c,$(OUT)/%.o,$(filter-out $(absent),$(call c_files,$(1),$(2))))
 

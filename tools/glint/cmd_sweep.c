@@ -3,35 +3,30 @@
  * glint sweep: measures time and error of frames as functions of the quality
  * parameters, varied one by one and together.
  */
-#include <errno.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "measure/sweep.h"
 #include "options/command_line.h"
 #include "posix/output.h"
 
 static const char help[] =
-    "glint sweep [LENS]... -o FOLDER [options]\n"
+    "glint sweep [LENS]... -o FILE [options]\n"
     "\n"
     "Draws the same frames with each quality parameter varied separately, "
     "with\n"
     "several varied together, and along --quality, and compares each with the\n"
     "exact picture: time (as in glint bench, in rounds), memory, PSNR, SSIM, "
     "the\n"
-    "99th percentile of the differences in codes, and flux. FOLDER gets\n"
-    "  sweep.csv     all results, with version and machine\n"
-    "  front.svg     error against time, with the Pareto front\n"
-    "  dials.svg     the results of each parameter\n"
-    "  table.md      the named qualities\n"
-    "  index.html    plots, tables and pictures to compare, in one file\n"
-    "Exact pictures and models are cached, which makes a second run faster.\n"
+    "99th percentile of the differences in codes, and flux. FILE gets all\n"
+    "results as CSV, with version and machine; standard output gets a table\n"
+    "of the named qualities. Exact pictures and models are cached, which "
+    "makes\n"
+    "a second run faster.\n"
     "Without lenses: one of each type that comes with glint.\n"
     "\n"
-    "  -o, --output FOLDER\n"
+    "  -o, --output FILE\n"
     "  --size WxH[,...]    sizes for the parameters (default 1280x720; of the\n"
     "                      first lens also 640x360, with one light and 16)\n"
     "  --lights N[,...]    numbers of lights (default 1)\n"
@@ -49,7 +44,7 @@ static const char *const default_lenses[] = {
 enum { MAX_LIST = 8 };
 
 struct asked {
-    const char *folder;
+    const char *output;
     int n_sizes, size[MAX_LIST][2];
     int n_lights, lights[MAX_LIST];
     int n_angles;
@@ -101,36 +96,16 @@ static void add_requested_cases(struct sweep *s, const struct asked *a)
 
 /* ------------------------------------------------------------------ output */
 
-struct file {
-    const char *name;
-    void (*write)(const struct sweep *s, FILE *file);
-};
-
-static const struct file files[] = {{"sweep.csv", sweep_write_csv},
-                                    {"front.svg", sweep_write_front_svg},
-                                    {"dials.svg", sweep_write_dials_svg},
-                                    {"table.md", sweep_write_name_table},
-                                    {"index.html", sweep_write_page}};
-
-static int save_sweep_file(const struct sweep *s, const char *folder,
-                           const struct file *f)
+static int save_sweep(const struct sweep *s, const char *path)
 {
-    char *text = NULL, path[PATH_MAX];
+    char *text = NULL;
     size_t bytes = 0;
     FILE *file = glint_memory_file_open(&text, &bytes);
+    int code;
 
     if (file)
-        f->write(s, file);
-    snprintf(path, sizeof path, "%s/%s", folder, f->name);
-    return tool_save_text(s->tool, path, file, &text, &bytes);
-}
-
-static int save_all_sweep_files(const struct sweep *s, const char *folder)
-{
-    int code = EXIT_OK;
-
-    for (size_t i = 0; i < sizeof files / sizeof *files && code == EXIT_OK; i++)
-        code = save_sweep_file(s, folder, &files[i]);
+        sweep_write_csv(s, file);
+    code = tool_save_text(s->tool, path, file, &text, &bytes);
     if (code == EXIT_OK && s->tool->json)
         sweep_write_json(s, stdout);
     else if (code == EXIT_OK && !s->tool->quiet)
@@ -168,7 +143,6 @@ static int measure_sweep_cases(struct sweep *s)
 
 static int run_sweep(struct sweep *s, const struct asked *a)
 {
-    char path[PATH_MAX];
     int code;
 
     for (int i = 0; i < s->n_lenses; i++)
@@ -176,12 +150,7 @@ static int run_sweep(struct sweep *s, const struct asked *a)
             return tool_usage(
                 s->tool, "%s is a model: exact pictures need the lens table",
                 s->lens[i]);
-    if (mkdir(a->folder, 0777) != 0 && errno != EEXIST) {
-        fprintf(stderr, "glint sweep: %s: %s\n", a->folder, strerror(errno));
-        return EXIT_OUTPUT;
-    }
-    snprintf(path, sizeof path, "%s/%s", a->folder, files->name);
-    code = tool_check_output(s->tool, path);
+    code = tool_check_output(s->tool, a->output);
     if (code != EXIT_OK)
         return code;
     add_requested_cases(s, a);
@@ -191,7 +160,7 @@ static int run_sweep(struct sweep *s, const struct asked *a)
     if (code != EXIT_OK)
         return code;
     sweep_mark_fronts(s);
-    return save_all_sweep_files(s, a->folder);
+    return save_sweep(s, a->output);
 }
 
 static bool parse_image_sizes(const char *text, struct asked *a)
@@ -251,7 +220,7 @@ static int parse_option(struct sweep *s, struct asked *a, int c)
 {
     switch (c) {
     case 'o':
-        a->folder = optarg;
+        a->output = optarg;
         return 1;
     case 's':
         return parse_image_sizes(optarg, a);
@@ -282,8 +251,8 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         if (taken == -2 && (code = tool_apply_option(tool, c, optarg)) >= 0)
             return code;
     }
-    if (!a->folder)
-        return tool_usage(tool, "needs -o FOLDER");
+    if (!a->output)
+        return tool_usage(tool, "needs -o FILE");
     if (argc - optind > SWEEP_LENSES)
         return tool_usage(tool, "accepts at most %d lenses", SWEEP_LENSES);
     for (; optind < argc; optind++)
@@ -316,9 +285,6 @@ static void set_sweep_defaults(struct sweep *s, struct asked *a)
 
 static void close_sweep(struct sweep *s)
 {
-    for (int i = 0; i < s->n_pictures; i++)
-        free(s->picture[i].rgb);
-    free(s->picture);
     free(s->point);
     free(s);
 }
@@ -326,7 +292,7 @@ static void close_sweep(struct sweep *s)
 int cmd_sweep(int argc, char **argv)
 {
     struct tool tool = {.name = "sweep", .help = help, .help_end = help_end};
-    struct asked asked = {.folder = NULL};
+    struct asked asked = {.output = NULL};
     struct sweep *const s = calloc(1, sizeof *s);
     int code;
 
@@ -337,7 +303,7 @@ int cmd_sweep(int argc, char **argv)
     code = parse_options(&tool, argc, argv, s, &asked);
     if (code < 0)
         code = tool_start_threads(&tool);
-    if (code == EXIT_OK && tool.workers && asked.folder) {
+    if (code == EXIT_OK && tool.workers && asked.output) {
         set_sweep_defaults(s, &asked);
         code = run_sweep(s, &asked);
     }

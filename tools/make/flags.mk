@@ -121,10 +121,8 @@ $(OUT)/src/%_sse41.o $(OUT)/src/%_avx2.o: ANALYZER := -O0 -Wno-frame-larger-than
 $(OUT)/platform/formats/samples.o: ANALYZER += -Wno-analyzer-use-of-uninitialized-value
 # nor that what a frame points to is the frame's,
 $(OUT)/src/bake/exact/frame_rays.o: ANALYZER += -Wno-analyzer-malloc-leak
-# nor that systems in an array of the run's are the run's,
+# nor that systems in an array of the run's are the run's.
 $(OUT)/src/bake/bake.o: ANALYZER += -Wno-analyzer-malloc-leak
-# nor that a picture in an array of the sweep's is the sweep's.
-$(OUT)/tools/measure/sweep_measure.o: ANALYZER += -Wno-analyzer-malloc-leak
 TIDY = $(Q)clang-tidy --quiet $< -- $(CPPFLAGS) $(filter-out $(WARN),$(CFLAGS))
 else ifeq ($(CONFIG),qcheck)
 CPPFLAGS += -DGLINT_Q_CHECK

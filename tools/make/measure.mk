@@ -115,8 +115,9 @@ size: $(OUT)/libglint.a $(example_bins)
 	        $(EXAMPLES:%=build/$$t/examples/%) >&2 || exit 1; done
 	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/measure/size $(ARCH) aarch64 armv7 | tools/measure/write-figures size
 trade: all
-	@build/glint sweep -o build/trade $(TRADE)
-	@echo build/trade/index.html
+	@mkdir -p build/trade
+	@build/glint sweep -o build/trade/sweep.csv $(TRADE)
+	@tools/measure/plot-trade build/trade/sweep.csv >build/trade/trade.svg
 # MODELS="A.glint ...": these; VIDEOS="A.y4m ...": these, too
 reuse-table: MODELS = $(patsubst %,build/models/%.glint,double-gauss-angenieux canon-zoom-mid)
 reuse-table: all $(OUT)/reuse

@@ -80,13 +80,6 @@ struct sweep_case {
     int first, n;  /* the case's points are first .. first + n - 1 */
 };
 
-/* Reduced picture for the HTML page, sRGB codes, [height][width][3] */
-struct sweep_picture {
-    int of, point; /* indices of case and point; point -1: the exact picture */
-    int width, height;
-    uint8_t *rgb;
-};
-
 struct sweep {
     struct tool *tool;
     struct settings base;
@@ -96,8 +89,6 @@ struct sweep {
     int n_cases;
     struct sweep_point *point;
     int n_points;
-    struct sweep_picture *picture;
-    int n_pictures;
     /* number of timing rounds, 1 .. SWEEP_ROUNDS, and cells per side of the
      * exact picture's ray grid, 4 .. 1024, even */
     int rounds, grid;
@@ -115,44 +106,10 @@ enum glint_status sweep_plan_points(struct sweep *s);
 /* Measures all points of case C. Returns an exit code. */
 int sweep_measure_case(struct sweep *s, int c, struct tool_progress *progress);
 
-/* ------------------------------------------------------------------- fronts */
-
+/* Marks the points on the Pareto front of each case. */
 void sweep_mark_fronts(struct sweep *s);
 
-/* Sets FRONT[N] to the indices of the points on the Pareto front, by rising
- * cost, and returns their number. Points with NAN are ignored. */
-int sweep_find_front(const double *cost, const double *quality, int n,
-                     int *front);
-
-/* Results of a setting over all cases with combined parameters. cost: geometric
- * mean of its cost / cost of the default setting in the same case. psnr_db,
- * least_db: mean and min PSNR. flux_error: max absolute flux error. */
-struct sweep_mean {
-    const struct sweep_setting *set;
-    double cost, psnr_db, least_db, flux_error;
-    bool front;
-};
-
-/* Returns the means of all settings, by rising cost, or NULL if there is no
- * memory; the caller frees them. Sets *N to their number. Marks the Pareto
- * front among settings whose flux error is at most MAX_FLUX_ERROR. */
-struct sweep_mean *sweep_compute_means(const struct sweep *s, int *n);
-
-/* Sorts MEAN[N] by rising cost. */
-void sweep_sort_means(struct sweep_mean *mean, int n);
-
-/* Returns PSNR gain, dB: PSNR of MEAN[I] minus the best PSNR that --quality
- * reaches at 1.02 times the same cost (2 % is measurement noise). MEAN[N] must
- * be sorted by cost. PSNR is interpolated between neighbouring settings of
- * --quality that draw the same number of pixels. */
-double sweep_compute_gain_above_front(const struct sweep_mean *mean, int n,
-                                      int i);
-
 /* ------------------------------------------------------------------- output */
-
-/* Writes SET as text: --quality and the parameters that differ from the
- * default, such as "grid 32, quantum 2", or "default". */
-void sweep_describe_setting(const struct sweep_setting *set, char text[160]);
 
 /* Returns the index of the name of P's --quality value (such as "draft"), or -1
  * if that value has no name. */
@@ -160,12 +117,8 @@ int sweep_find_quality_name_index(const struct sweep_point *p);
 
 void sweep_write_csv(const struct sweep *s, FILE *file);
 void sweep_write_json(const struct sweep *s, FILE *file);
-void sweep_write_front_svg(const struct sweep *s, FILE *file);
-void sweep_write_dials_svg(const struct sweep *s, FILE *file);
-void sweep_write_page(const struct sweep *s, FILE *file);
 
-/* Prints a Markdown table of the named qualities. Also prints settings of a
- * single parameter that have a better PSNR than --quality at the same cost. */
+/* Prints a Markdown table of the named qualities. */
 void sweep_write_name_table(const struct sweep *s, FILE *file);
 
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Writes all points as CSV and JSON, and the named qualities as Markdown.
+ * Pareto fronts; writes all points as CSV and JSON, and the named qualities as
+ * Markdown.
  */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "measure/sweep.h"
@@ -16,93 +16,118 @@ static const char *const metrics[SWEEP_METRICS] = {
     "psnr_db", "ssim",     "p99",   "flux_error",  "ghosts",
     "bundles", "edges",    "tiles"};
 
-/* Prints a comma, and then X unless it is infinite or NAN. */
-static void print_csv_number(FILE *file, double x)
+/* ------------------------------------------------------------------- front */
+
+/* Returns whether P is measured and its flux error is at most
+ * MAX_FLUX_ERROR. */
+static bool is_candidate_of_front(const struct sweep_point *p)
 {
-    fputc(',', file);
-    if (isfinite(x))
-        fprintf(file, "%.7g", x);
+    return fabs(p->metric[SWEEP_FLUX_ERROR]) <= MAX_FLUX_ERROR &&
+           isfinite(p->metric[SWEEP_RATIO]) &&
+           isfinite(p->metric[SWEEP_PSNR_DB]);
+}
+
+static bool dominates_point(const struct sweep_point *a,
+                            const struct sweep_point *b)
+{
+    const double cheaper = b->metric[SWEEP_RATIO] - a->metric[SWEEP_RATIO];
+    const double better = a->metric[SWEEP_PSNR_DB] - b->metric[SWEEP_PSNR_DB];
+
+    return cheaper >= 0 && better >= 0 && cheaper + better > 0;
+}
+
+void sweep_mark_fronts(struct sweep *s)
+{
+    for (int i = 0; i < s->n_points; i++) {
+        struct sweep_point *const p = &s->point[i];
+        const struct sweep_case *const c = &s->scase[p->of];
+
+        p->front = is_candidate_of_front(p);
+        for (int k = c->first; k < c->first + c->n && p->front; k++)
+            p->front = !is_candidate_of_front(&s->point[k]) ||
+                       !dominates_point(&s->point[k], p);
+    }
+}
+
+/* ------------------------------------------------------------------ points */
+
+/* A column of the CSV file, and member of the JSON objects. text: NULL for a
+ * number. */
+struct field {
+    const char *name, *text;
+    double number;
+};
+
+enum { FIELDS = 8 + MAX_PARAMETERS + SWEEP_METRICS };
+
+/* Sets FIELD to all fields of P except whether it is on the front. Returns
+ * their number. */
+static int list_point_fields(const struct sweep *s, const struct sweep_point *p,
+                             struct field field[FIELDS])
+{
+    const struct sweep_setting *const set = &p->set;
+    const struct sweep_case *const c = &s->scase[p->of];
+    const struct field own[] = {
+        {"lens", s->lens[c->lens], 0},
+        {"width", NULL, c->width},
+        {"height", NULL, c->height},
+        {"lights", NULL, c->n_lamps},
+        {"angle", NULL, c->angle},
+        {"kind", kinds[set->kind], 0},
+        {"dial", set->alone >= 0 ? sweep_parameter[set->alone].name : "", 0},
+        {"quality", NULL, set->quality >= 0 ? set->quality : (double)NAN}};
+    int n = sizeof own / sizeof *own;
+
+    memcpy(field, own, sizeof own);
+    for (int d = 0; d < n_sweep_parameters; d++)
+        field[n++] =
+            (struct field){sweep_parameter[d].name, NULL, set->value[d]};
+    for (int k = 0; k < SWEEP_METRICS; k++)
+        field[n++] = (struct field){metrics[k], NULL, p->metric[k]};
+    return n;
 }
 
 void sweep_write_csv(const struct sweep *s, FILE *file)
 {
-    fputs("lens,width,height,lights,angle,kind,dial,quality", file);
-    for (int d = 0; d < n_sweep_parameters; d++)
-        fprintf(file, ",%s", sweep_parameter[d].name);
-    for (int k = 0; k < SWEEP_METRICS; k++)
-        fprintf(file, ",%s", metrics[k]);
-    fputs(",front,rounds,version,machine\n", file);
-    for (int i = 0; i < s->n_points; i++) {
-        const struct sweep_point *const p = &s->point[i];
-        const struct sweep_setting *const set = &p->set;
-        const struct sweep_case *const c = &s->scase[p->of];
+    struct field field[FIELDS];
 
-        fprintf(file, "%s,%d,%d,%d,%g,%s,%s", s->lens[c->lens], c->width,
-                c->height, c->n_lamps, c->angle, kinds[set->kind],
-                set->alone >= 0 ? sweep_parameter[set->alone].name : "");
-        print_csv_number(file, set->quality >= 0 ? set->quality : (double)NAN);
-        for (int d = 0; d < n_sweep_parameters; d++)
-            print_csv_number(file, set->value[d]);
-        for (int k = 0; k < SWEEP_METRICS; k++)
-            print_csv_number(file, p->metric[k]);
-        fprintf(file, ",%d,%d,%s,%s\n", p->front, s->rounds, GLINT_VERSION,
-                canvas_describe_machine());
+    for (int i = 0; i < s->n_points; i++) {
+        const int n = list_point_fields(s, &s->point[i], field);
+
+        for (int k = 0; k < n && i == 0; k++)
+            fprintf(file, "%s,", field[k].name);
+        fputs(i == 0 ? "front,rounds,version,machine\n" : "", file);
+        for (int k = 0; k < n; k++)
+            if (field[k].text)
+                fprintf(file, "%s,", field[k].text);
+            else if (isfinite(field[k].number))
+                fprintf(file, "%.7g,", field[k].number);
+            else
+                fputc(',', file);
+        fprintf(file, "%d,%d,%s,%s\n", s->point[i].front, s->rounds,
+                GLINT_VERSION, canvas_describe_machine());
     }
 }
 
 void sweep_write_json(const struct sweep *s, FILE *file)
 {
     struct json_writer json = {.to = file};
+    struct field field[FIELDS];
 
     json_write(&json, "{rounds: %d, version: %s, machine: %s, points: [",
                s->rounds, GLINT_VERSION, canvas_describe_machine());
     for (int i = 0; i < s->n_points; i++) {
-        const struct sweep_point *const p = &s->point[i];
-        const struct sweep_case *const c = &s->scase[p->of];
+        const int n = list_point_fields(s, &s->point[i], field);
 
-        json_write(&json,
-                   "\n{lens: %s, width: %d, height: %d, lights: %d, angle: %g, "
-                   "kind: %s, quality: %.7g",
-                   s->lens[c->lens], c->width, c->height, c->n_lamps, c->angle,
-                   kinds[p->set.kind],
-                   p->set.quality >= 0 ? p->set.quality : (double)NAN);
-        for (int d = 0; d < n_sweep_parameters; d++)
-            json_write(&json, "%s: %.7g", sweep_parameter[d].name,
-                       p->set.value[d]);
-        for (int k = 0; k < SWEEP_METRICS; k++)
-            json_write(&json, "%s: %.7g", metrics[k], p->metric[k]);
-        json_write(&json, "front: %c}", p->front);
+        json_write(&json, "\n{");
+        for (int k = 0; k < n; k++)
+            if (field[k].text)
+                json_write(&json, "%s: %s", field[k].name, field[k].text);
+            else
+                json_write(&json, "%s: %.7g", field[k].name, field[k].number);
+        json_write(&json, "front: %c}", s->point[i].front);
     }
     json_write(&json, "\n]}\n");
-}
-
-/* Prints the settings of a single parameter whose PSNR is at least 0.1 dB
- * better than that of --quality at the same cost. */
-static void print_settings_above_front(const struct sweep *s, FILE *file)
-{
-    int n, n_alone = 0, n_above = 0;
-    struct sweep_mean *const mean = sweep_compute_means(s, &n);
-
-    for (int i = 0; i < n; i++) {
-        const double above = sweep_compute_gain_above_front(mean, n, i);
-        char words[160];
-
-        if (mean[i].set->kind != SWEEP_ALONE ||
-            mean[i].flux_error > MAX_FLUX_ERROR)
-            continue;
-        n_alone++;
-        if (above < 0.1)
-            continue;
-        sweep_describe_setting(mean[i].set, words);
-        fprintf(file, "%s%s by %.1f dB",
-                n_above++ ? ", " : "\nAbove --quality: ", words, above);
-    }
-    if (n_alone > 0)
-        fprintf(file,
-                "%s%d of %d settings that vary one parameter are better than "
-                "--quality.\n",
-                n_above ? "; " : "\n", n_above, n_alone);
-    free(mean);
 }
 
 void sweep_write_name_table(const struct sweep *s, FILE *file)
@@ -130,5 +155,4 @@ void sweep_write_name_table(const struct sweep *s, FILE *file)
         }
         fputc('\n', file);
     }
-    print_settings_above_front(s, file);
 }

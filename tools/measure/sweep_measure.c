@@ -5,12 +5,11 @@
 
 #include "glint/measure.h"
 #include "measure/sweep.h"
-#include "options/timed_text.h"
 
 /* max time that is spent on a point, ms; further rounds skip the point */
 #define MAX_POINT_MS 4000.0
 
-enum { MAX_OPEN = 12, PICTURE_WIDTH = 320 };
+enum { MAX_OPEN = 12 };
 
 /* A lens opened with certain settings */
 struct sweep_lens {
@@ -226,50 +225,6 @@ static enum glint_status measure_flux_error(struct bay *b, struct run *r)
     return status;
 }
 
-/* Reduces CODES, with rows of STRIDE bytes, to TO, WIDTH x HEIGHT pixels, each
- * the mean of BY x BY pixels. */
-static void reduce_image_size(const uint8_t *codes, int stride, int by,
-                              uint8_t *to, int width, int height)
-{
-    for (int y = 0; y < height; y++)
-        for (int i = 0; i < 3 * width; i++) {
-            const int x = i / 3 * by * 3 + i % 3;
-            int sum = by * by / 2;
-
-            for (int k = 0; k < by * by; k++)
-                sum += codes[(y * by + k / by) * stride + x + k % by * 3];
-            to[y * 3 * width + i] = (uint8_t)(sum / (by * by));
-        }
-}
-
-/* Stores a reduced copy of CODES, the picture of POINT (-1: the exact picture),
- * for the page. Returns false if there is no memory. */
-static bool store_reduced_picture(struct bay *b, int point,
-                                  const uint8_t *codes)
-{
-    struct sweep *const s = b->s;
-    const int by =
-        b->c->width < 2 * PICTURE_WIDTH ? 1 : b->c->width / PICTURE_WIDTH;
-    struct sweep_picture *const all =
-        text_grow_array(s->picture, s->n_pictures, sizeof *all);
-    struct sweep_picture *p;
-
-    if (!all)
-        return false;
-    s->picture = all;
-    p = all + s->n_pictures;
-    *p = (struct sweep_picture){.of = (int)(b->c - s->scase),
-                                .point = point,
-                                .width = b->c->width / by,
-                                .height = b->c->height / by};
-    p->rgb = malloc(3 * (size_t)p->width * (size_t)p->height);
-    if (!p->rgb)
-        return false;
-    s->n_pictures++;
-    reduce_image_size(codes, 3 * b->c->width, by, p->rgb, p->width, p->height);
-    return true;
-}
-
 /* Measures the error of R's frame against EXACT_CODES. CODES is scratch memory
  * for R's codes. */
 static enum glint_status measure_error_of_run(struct bay *b, struct run *r,
@@ -287,9 +242,6 @@ static enum glint_status measure_error_of_run(struct bay *b, struct run *r,
     r->point->metric[SWEEP_PSNR_DB] = m.psnr_db;
     r->point->metric[SWEEP_SSIM] = m.ssim;
     r->point->metric[SWEEP_P99] = m.p99;
-    if (sweep_find_quality_name_index(r->point) >= 0 &&
-        !store_reduced_picture(b, (int)(r->point - b->s->point), codes))
-        return GLINT_E_MEMORY;
     return measure_flux_error(b, r);
 }
 
@@ -310,7 +262,7 @@ static enum glint_status measure_all_points(struct bay *b,
         const double exposure = glint_measure_exposure(&b->exact);
 
         exact_codes = glint_measure_encode(&b->exact, exposure);
-        if (!exact_codes || !store_reduced_picture(b, -1, exact_codes))
+        if (!exact_codes)
             status = GLINT_E_MEMORY;
         for (int i = 0; i < b->c->n && status == GLINT_OK; i++) {
             status = measure_error_of_run(b, &b->run[i], exact_codes, exposure,

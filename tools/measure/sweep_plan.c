@@ -211,22 +211,6 @@ enum glint_status sweep_plan_points(struct sweep *s)
     return status;
 }
 
-void sweep_describe_setting(const struct sweep_setting *set, char text[160])
-{
-    size_t used = 0;
-
-    text[0] = '\0';
-    if (set->quality >= 0)
-        used = (size_t)snprintf(text, 160, "quality %g", set->quality);
-    for (int d = 0; d < n_sweep_parameters && used < 160; d++)
-        if (set->value[d] != sweep_parameter[d].standard)
-            used += (size_t)snprintf(text + used, 160 - used, "%s%s %g",
-                                     used ? ", " : "", sweep_parameter[d].name,
-                                     set->value[d]);
-    if (!used)
-        snprintf(text, 160, "default");
-}
-
 int sweep_find_quality_name_index(const struct sweep_point *p)
 {
     const double at = p->set.quality * (GLINT_QUALITY_NAMES - 1);
