@@ -38,7 +38,8 @@ void scene_account_free(struct scene_account *account)
     account->seen = NULL;
 }
 
-int scene_count_covered_px(const struct scene_frame *frame)
+/* Returns the number of pixels that objects cover in the frame drawn last. */
+static int count_covered_px(const struct scene_frame *frame)
 {
     const int width = frame->cfg.width, height = frame->cfg.height;
     int64_t sum = 0;
@@ -101,7 +102,7 @@ void scene_account_write_json(struct json_writer *json,
         write_counts_json(json, &account);
         scene_account_free(&account);
     }
-    json_write(json, "covered_px: %d", scene_count_covered_px(frame));
+    json_write(json, "covered_px: %d", count_covered_px(frame));
     baked_scene_write_byte_counts(json, frame->model);
     json_write(json,
                "scene: %zu, arena: %zu, highlights: %zu, maps: %zu}, "

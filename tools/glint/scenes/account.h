@@ -27,9 +27,6 @@ enum glint_status scene_account_collect_costs(struct scene_account *account,
                                               const struct scene_frame *frame);
 void scene_account_free(struct scene_account *account);
 
-/* Returns the number of pixels that objects cover in the frame drawn last. */
-int scene_count_covered_px(const struct scene_frame *frame);
-
 /* Writes the statistics of the frame drawn last as members of a JSON object,
  * except those of lights. BYTES is the size of the baked scene. */
 void scene_account_write_json(struct json_writer *json,

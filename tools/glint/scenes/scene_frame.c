@@ -135,7 +135,8 @@ void scene_frame_close(struct scene_frame *frame)
     *frame = (struct scene_frame){.mem = NULL};
 }
 
-void scene_frame_prepare(struct scene_frame *frame)
+/* Calls POSE if needed and prepares a frame. */
+static void prepare_frame(struct scene_frame *frame)
 {
     if (frame->pose && frame->is_fresh)
         frame->pose(frame->pose_ctx, frame->scene);
@@ -149,7 +150,7 @@ enum glint_status scene_frame_draw_once(struct scene_frame *frame,
     const double start = tool_clock_s();
     double begun, spread;
 
-    scene_frame_prepare(frame);
+    prepare_frame(frame);
     if (frame->stats.dropped_objects > 0) {
         enum glint_status status;
 
@@ -157,7 +158,7 @@ enum glint_status scene_frame_draw_once(struct scene_frame *frame,
         status = allocate_scene_memory(frame);
         if (status != GLINT_OK)
             return status;
-        scene_frame_prepare(frame);
+        prepare_frame(frame);
     }
     begun = tool_clock_s();
     frame->map_texels = glint_scene_spread(frame->scene);

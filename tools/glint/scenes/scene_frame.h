@@ -78,9 +78,6 @@ int scene_frame_open(struct scene_frame *frame, const struct tool *tool,
                      const struct scene_dials *dials);
 void scene_frame_close(struct scene_frame *frame);
 
-/* Calls POSE if needed and prepares a frame. */
-void scene_frame_prepare(struct scene_frame *frame);
-
 /* Draw the scene onto IMAGE, which must have the width and height of the
  * parameters. Allocate more memory if there are more triangles in view than
  * before. scene_frame_draw() prints the reason of a failure and returns an exit
