@@ -66,7 +66,7 @@ $(hostile_models): $(OUT)/%: $(OUT)/tests/fuzz/%.o $(OUT)/libglint-tests.a $(ref
 	$(link)
 
 CHECK_PACKAGES := gcc libc6-dev binutils libcmocka-dev clang clang-format pkg-config \
-        libjpeg62-turbo-dev libpng-dev libjansson-dev libexpat1-dev
+        libjpeg62-turbo-dev libpng-dev libjansson-dev libexpat1-dev python3
 check:
 	@tools/make/deps "unit tests, lint" $(CHECK_PACKAGES)
 	@$(MAKE) --no-print-directory WERROR=-Werror run-check

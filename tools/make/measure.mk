@@ -1,16 +1,18 @@
 # What is looked at and what is measured. Tables go into the files of
 # tests/figures; all of them, for hours, but for fits, which write weights into
-# src: make figures. One of glint-measure: make figure NAME=accuracy, with
+# src: make figures. One of tools/measure/figure: make figure NAME=accuracy, with
 # ROWS="lens=heliar-tronnier" some of its rows.
 figures: all
 	@tools/measure/write-figures --targets | grep -v -e -fit | while read -r target; do \
 	        $(MAKE) --no-print-directory $$target || exit 1; done
 # Lenses of GLINT_LENSES may bake for longer than 30 s.
 figure: all $(OUT)/glint-measure
-	@GLINT_LENSES=tests/data/skew $(OUT)/glint-measure $(NAME) $(ROWS) | tools/measure/write-figures $(NAME)
+	@tools/make/deps "tables of figures" python3 >&2
+	@GLINT_LENSES=tests/data/skew MEASURE=$(OUT)/glint-measure tools/measure/figure $(NAME) $(ROWS) | tools/measure/write-figures $(NAME)
 # Some rows, a processor minute: fails where they are not the committed ones.
 figures-quick: $(OUT)/glint-measure
-	@$(OUT)/glint-measure --quick
+	@tools/make/deps "tables of figures" python3 >&2
+	@MEASURE=$(OUT)/glint-measure tools/measure/figure --quick
 video-report: $(OUT)/steady
 	@$(OUT)/steady --lens lenses/nikon-zoom-short.lens $(VIDEOS)
 occlusion-table: $(OUT)/occlusion
@@ -115,6 +117,7 @@ size: $(OUT)/libglint.a $(example_bins)
 	        $(EXAMPLES:%=build/$$t/examples/%) >&2 || exit 1; done
 	@OUT=$(OUT) EXAMPLES='$(EXAMPLES)' tools/measure/size $(ARCH) aarch64 armv7 | tools/measure/write-figures size
 trade: all
+	@tools/make/deps "plots" python3 >&2
 	@mkdir -p build/trade
 	@build/glint sweep -o build/trade/sweep.csv $(TRADE)
 	@tools/measure/plot-trade build/trade/sweep.csv >build/trade/trade.svg
