@@ -4,11 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "glint/measure.h"
-#include "formats/picture.h"
-#include "model/model_cache.h"
 
 /* ------------------------------------------------------------------ canvas */
 
@@ -128,10 +125,11 @@ enum glint_status canvas_compute_exposure(struct glint_engine *engine,
     return status;
 }
 
-static enum glint_status
-draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
-                 const struct settings *s, const struct glint_lamp *lamp,
-                 int n_lamps, int grid, struct glint_float_image *to)
+enum glint_status canvas_draw_exact(const struct tool *tool,
+                                    const struct opened_lens *lens,
+                                    const struct settings *s,
+                                    const struct glint_lamp *lamp, int n_lamps,
+                                    int grid, struct glint_float_image *to)
 {
     const size_t n = 3 * (size_t)to->width * (size_t)to->height;
     struct glint_setup *setup = malloc(sizeof *setup);
@@ -169,99 +167,6 @@ draw_exact_image(const struct tool *tool, const struct opened_lens *lens,
     glint_dirt_free(dirt);
     free(setup);
     free(rgb);
-    return status;
-}
-
-static uint64_t hash_bytes(uint64_t hash, const void *data, size_t bytes)
-{
-    const uint8_t *p = data;
-
-    for (size_t i = 0; i < bytes; i++)
-        hash = (hash ^ p[i]) * UINT64_C(0x100000001b3);
-    return hash;
-}
-
-/* Returns a hash of everything that determines the exact image, except the
- * ray tracer's code. */
-static uint64_t compute_cache_key(const struct opened_lens *lens,
-                                  const struct settings *s,
-                                  const struct glint_lamp *lamp, int n_lamps,
-                                  int grid, const struct glint_float_image *to)
-{
-    const int only_ghost = settings_get_selected_ghost(s);
-    const struct glint_view view =
-        opened_lens_compute_view(lens, s, to->width, to->height);
-    const struct glint_engine_camera camera = opened_lens_make_camera(lens, s);
-    const struct glint_iris *const i = &camera.iris;
-    struct glint_bake_options options;
-    uint64_t hash;
-
-    glint_bake_defaults(&options);
-    hash = glint_bake_key(&lens->table, &options);
-    hash = hash_bytes(hash, &to->width, sizeof to->width);
-    hash = hash_bytes(hash, &to->height, sizeof to->height);
-    hash = hash_bytes(hash, &view.sensor_width_mm, sizeof view.sensor_width_mm);
-    hash = hash_bytes(hash, &camera.n_blades, sizeof camera.n_blades);
-    hash = hash_bytes(hash, &camera.blade_rotation_deg,
-                      sizeof camera.blade_rotation_deg);
-    if (i->roundness > 0 || i->softness > 0 || i->dust > 0 || i->mask) {
-        const double iris[] = {i->roundness, i->softness, i->dust,
-                               i->dust_seed};
-
-        hash = hash_bytes(hash, iris, sizeof iris);
-        hash = i->mask
-                   ? hash_bytes(hash, i->mask,
-                                (size_t)i->mask_width * (size_t)i->mask_height)
-                   : hash;
-    }
-    hash = hash_bytes(hash, s->wavelength_nm,
-                      (size_t)s->n_wavelengths * sizeof *s->wavelength_nm);
-    hash = hash_bytes(hash, &only_ghost, sizeof only_ghost);
-    hash = hash_bytes(hash, &s->options.balance, sizeof s->options.balance);
-    hash = hash_bytes(hash, &grid, sizeof grid);
-    return hash_bytes(hash, lamp, (size_t)n_lamps * sizeof *lamp);
-}
-
-static bool load_cached_image(const char *path, struct glint_float_image *to)
-{
-    struct glint_float_image kept = {0, 0, NULL};
-    struct glint_error error = {""};
-    bool same;
-
-    if (access(path, R_OK) != 0 ||
-        glint_picture_load_float(path, &kept, &error) != GLINT_OK)
-        return false;
-    same = kept.width == to->width && kept.height == to->height;
-    if (same)
-        memcpy(to->rgb, kept.rgb,
-               3 * (size_t)to->width * (size_t)to->height * sizeof(float));
-    free(kept.rgb);
-    return same;
-}
-
-enum glint_status canvas_draw_exact(const struct tool *tool,
-                                    const struct opened_lens *lens,
-                                    const struct settings *settings,
-                                    const struct glint_lamp *lamp, int n_lamps,
-                                    int grid, struct glint_float_image *to)
-{
-    const uint64_t key =
-        compute_cache_key(lens, settings, lamp, n_lamps, grid, to);
-    struct glint_error error = {""};
-    char file[64], path[1024];
-    enum glint_status status;
-    bool kept;
-
-    snprintf(file, sizeof file, "exact-%08lx%08lx.pfm",
-             (unsigned long)(key >> 32), (unsigned long)(key & 0xffffffff));
-    kept = model_cache_make_path(path, sizeof path, file);
-    if (kept && load_cached_image(path, to))
-        return GLINT_OK;
-    status = draw_exact_image(tool, lens, settings, lamp, n_lamps, grid, to);
-    if (status == GLINT_OK && kept &&
-        glint_picture_save_float(path, to, &error) != GLINT_OK && !tool->quiet)
-        fprintf(stderr, "glint %s: the exact picture was not cached: %s\n",
-                tool->name, error.text);
     return status;
 }
 

@@ -57,11 +57,11 @@ enum glint_status canvas_compute_exposure(struct glint_engine *engine,
 
 /* Draws the flare of LAMP by exact rays in double precision to TO, whose pixels
  * the caller allocates. GRID: cells per side of the grid of rays. Lens, stop
- * and wavelengths are those of SETTINGS; LENS must be a table. Uses a cached
- * image if present. Returns GLINT_E_MEMORY on failure. */
+ * and wavelengths are those of SETTINGS; LENS must be a table. Returns
+ * GLINT_E_MEMORY on failure. */
 enum glint_status canvas_draw_exact(const struct tool *tool,
                                     const struct opened_lens *lens,
-                                    const struct settings *settings,
+                                    const struct settings *s,
                                     const struct glint_lamp *lamp, int n_lamps,
                                     int grid, struct glint_float_image *to);
 
