@@ -43,9 +43,7 @@ static const char help[] =
     "\n"
     "  -o, --output OUT    write a picture: tiles with flare shaded, ghosts\n"
     "                      outlined and numbered, a legend, and white boxes\n"
-    "                      around up to three rejected regions; with --scene "
-    "the\n"
-    "                      objects, coloured by their cost per pixel\n"
+    "                      around up to three rejected regions\n"
     "  --save-ghosts FILE  write the ghosts for --ghosts FILE of overlay, "
     "live\n"
     "                      and render\n"
@@ -101,10 +99,15 @@ static int check_options(struct tool *tool, const struct explain_command *c)
     if (c->drawing.line.show_lights)
         return tool_usage(tool, "--show lights applies to overlay and live "
                                 "only");
-    if (!c->drawing.line.settings.options.scene &&
-        strcmp(c->drawing.line.settings.options.lens, "none") == 0)
-        return tool_usage(tool, "--lens none without --scene leaves nothing to "
-                                "explain; add --scene FILE");
+    if (strcmp(c->drawing.line.settings.options.lens, "none") == 0) {
+        if (!c->drawing.line.settings.options.scene)
+            return tool_usage(tool,
+                              "--lens none without --scene leaves nothing to "
+                              "explain; add --scene FILE");
+        if (c->output)
+            return tool_usage(tool, "-o shows the flare of a lens; remove "
+                                    "--lens none");
+    }
     if (!c->input && !c->drawing.line.settings.options.scene &&
         c->drawing.line.n_hand == 0 && c->drawing.line.n_at == 0 &&
         !c->drawing.line.settings.options.lights)
@@ -217,19 +220,14 @@ static enum glint_status draw_linear_flare(struct explain_command *c)
 
 /* ------------------------------------------------------------------ result */
 
-/* Saves the marked image: of SCENE, or of the flare if SCENE is NULL. Returns
- * an exit code. */
 static int save_picture(struct tool *tool, const struct explain_command *c,
                         struct glint_explain *e,
-                        const struct explain_title *title,
-                        const struct explained_scene *scene)
+                        const struct explain_title *title)
 {
     struct glint_error error = {""};
     struct glint_image marked = {.plane = {NULL}};
     struct glint_spot spot;
-    enum glint_status status =
-        scene ? explain_scene_draw_marks(scene, &c->image, &marked)
-              : explain_draw_marks(e, title, &c->image, &marked);
+    enum glint_status status = explain_draw_marks(e, title, &c->image, &marked);
 
     for (int i = 0;
          status == GLINT_OK && drawing_get_candidate(&c->drawing, i, &spot);
@@ -259,7 +257,6 @@ static int print_scene_explanation(struct tool *tool,
 {
     struct json_writer json = {.to = stdout};
     struct explained_scene scene;
-    int code = EXIT_OK;
     const enum glint_status status =
         explained_scene_open(&scene, &c->drawing, flare);
 
@@ -273,10 +270,8 @@ static int print_scene_explanation(struct tool *tool,
         explain_scene_print_tables(&scene);
         printf(flare ? "\n" : "");
     }
-    if (c->output)
-        code = save_picture(tool, c, NULL, NULL, &scene);
     explained_scene_close(&scene);
-    return code;
+    return EXIT_OK;
 }
 
 /* Measures the ghosts and lights of the last picture, which takes seconds with
@@ -336,8 +331,8 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
             stdout); /* writes the report before messages on standard error */
         overlay_print_no_lamp_found(drawing, false, stderr);
     }
-    if (code == EXIT_OK && c->output && !drawing->files.scene.is_open)
-        code = save_picture(tool, c, &e, &title, NULL);
+    if (code == EXIT_OK && c->output)
+        code = save_picture(tool, c, &e, &title);
     if (code == EXIT_OK && c->ghosts)
         code = save_ghosts(tool, c, &e);
     glint_explain_close(&e);

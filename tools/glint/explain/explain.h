@@ -34,9 +34,4 @@ enum glint_status explain_draw_marks(struct glint_explain *explain,
                                      const struct glint_image *picture,
                                      struct glint_image *marked);
 
-/* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE above
- * LEGEND black rows. Returns GLINT_E_MEMORY on failure. */
-enum glint_status explain_copy_picture(const struct glint_image *picture,
-                                       int legend, struct glint_image *marked);
-
 #endif

@@ -256,8 +256,10 @@ static void draw_legend_entry(const struct marking *m, int k, int ghost)
 
 /* ----------------------------------------------------------------- picture */
 
-enum glint_status explain_copy_picture(const struct glint_image *picture,
-                                       int legend, struct glint_image *marked)
+/* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE above
+ * LEGEND black rows. Returns GLINT_E_MEMORY on failure. */
+static enum glint_status copy_picture(const struct glint_image *picture,
+                                      int legend, struct glint_image *marked)
 {
     const size_t row = 3 * (size_t)picture->width;
     uint8_t *mem;
@@ -288,8 +290,8 @@ enum glint_status explain_draw_marks(struct glint_explain *e,
     enum glint_status status;
     int ghosts[GLINT_MAX_GHOSTS], n = 0;
 
-    status = explain_copy_picture(
-        picture, (8 * count_legend_rows(&m, t) + 3) * m.scale, marked);
+    status = copy_picture(picture, (8 * count_legend_rows(&m, t) + 3) * m.scale,
+                          marked);
     if (status != GLINT_OK)
         return status;
     glint_explain_sort(e, ghosts);

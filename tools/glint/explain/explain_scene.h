@@ -28,11 +28,4 @@ void explain_scene_print_tables(const struct explained_scene *scene);
 void explain_scene_write_json(struct json_writer *json,
                               const struct explained_scene *scene);
 
-/* Sets MARKED to a new picture, whose plane[0] the caller frees: PICTURE with
- * objects outlined in the colour of their cost per pixel, above a legend.
- * Returns GLINT_E_MEMORY on failure. */
-enum glint_status explain_scene_draw_marks(const struct explained_scene *scene,
-                                           const struct glint_image *picture,
-                                           struct glint_image *marked);
-
 #endif

@@ -80,7 +80,7 @@ static const struct {
     {NULL, "matrix", "auto, 601 or 709"},
     {NULL, "picture", "codes or linear"},
     {NULL, "range", "auto, full or limited"},
-    {NULL, "repeat", "a whole number, 1 to 1000; 1 to 100 with --scene"},
+    {NULL, "repeat", "a whole number, 1 to 1000"},
     {NULL, "seed", "a whole number, 0 to 2147483647"},
     {NULL, "size", "WxH in pixels, each 1 to 32768"},
     {NULL, "skip", "frames, from 0"},

@@ -16,16 +16,18 @@ enum glint_status scene_account_collect_costs(struct scene_account *account,
 {
     const size_t n = frame->model->header->n_objects;
     const size_t px = (size_t)frame->cfg.width * (size_t)frame->cfg.height;
+    /* finds which object covers another */
+    int16_t *const seen = malloc(px * sizeof *seen);
 
     *account = (struct scene_account){
-        .objects = malloc((n + 1) * sizeof *account->objects),
-        .seen = malloc(px * sizeof *account->seen)};
-    if (!account->objects || !account->seen) {
+        .objects = malloc((n + 1) * sizeof *account->objects)};
+    if (!account->objects || !seen) {
+        free(seen);
         scene_account_free(account);
         return GLINT_E_MEMORY;
     }
-    glint_scene_account(frame->scene, account->objects, &account->all,
-                        account->seen);
+    glint_scene_account(frame->scene, account->objects, &account->all, seen);
+    free(seen);
     glint_scene_account_layers(frame->scene, account->layer);
     return GLINT_OK;
 }
@@ -33,9 +35,7 @@ enum glint_status scene_account_collect_costs(struct scene_account *account,
 void scene_account_free(struct scene_account *account)
 {
     free(account->objects);
-    free(account->seen);
     account->objects = NULL;
-    account->seen = NULL;
 }
 
 /* Returns the number of pixels that objects cover in the frame drawn last. */

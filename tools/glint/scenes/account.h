@@ -17,7 +17,6 @@ struct scene_account {
     /* cost of each object, [n_objects], owned */
     struct glint_scene_part *objects;
     struct glint_scene_part all;
-    int16_t *seen; /* [height][width]: index of the visible object, or -1 */
     struct glint_scene_layered layer[GLINT_KINDS];
 };
 
