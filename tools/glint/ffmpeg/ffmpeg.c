@@ -264,34 +264,25 @@ static enum glint_status start_program(struct child *child,
 }
 
 /* Starts the program ARGV[0], found in $PATH, with the arguments ARGV, which
- * end with NULL. Errors: GLINT_E_UNSUPPORTED if the program is not installed,
- * GLINT_E_MEMORY if the system has no free process or descriptor, GLINT_E_IO if
- * the program cannot be executed. */
+ * end with NULL. WORDS: NULL, or a list that ends with NULL; then standard
+ * error is a file, which child_forward_messages() copies to glint's standard
+ * error, and CHILD->heard is set if the file contains one of WORDS. Errors:
+ * GLINT_E_UNSUPPORTED if the program is not installed, GLINT_E_MEMORY if the
+ * system has no free process or descriptor, GLINT_E_IO if the program cannot be
+ * executed. */
 static enum glint_status start_ffmpeg_child(struct child *child,
                                             const char *const *argv,
                                             enum child_pipe kind,
+                                            const char *const *words,
                                             struct glint_error *error)
-{
-    *child = CHILD_NONE;
-    return start_program(child, argv, kind, error);
-}
-
-/* Starts a program like start_ffmpeg_child(), but with a file as standard
- * error. child_forward_messages() copies this file to glint's standard error,
- * and sets CHILD->heard if the file contains one of WORDS, a list that ends
- * with NULL. */
-static enum glint_status start_monitored_child(struct child *child,
-                                               const char *const *argv,
-                                               enum child_pipe kind,
-                                               const char *const *words,
-                                               struct glint_error *error)
 {
     enum glint_status status;
 
     *child = CHILD_NONE;
     child->listening = words;
     /* A full pipe would block the child; a file cannot. */
-    child->said = memfd_create("said", MFD_CLOEXEC);
+    if (words)
+        child->said = memfd_create("said", MFD_CLOEXEC);
     if (child->said >= 0)
         fcntl(child->said, F_SETFL, O_APPEND);
     status = start_program(child, argv, kind, error);
@@ -594,7 +585,8 @@ static bool run_ffprobe(const char *url, const char *const *options,
     for (int i = 0; options[i]; i++)
         argv[12 + i] = options[i];
     *text = '\0';
-    if (start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+    if (start_ffmpeg_child(&child, argv, CHILD_WRITES, NULL, &error) !=
+        GLINT_OK)
         return false;
     read_child_output(&child, text);
     return child_wait_for_exit(&child) == 0;
@@ -831,7 +823,8 @@ bool ffmpeg_read_times(struct ffmpeg_times *times, const char *name,
 
     *times = (struct ffmpeg_times){NULL, 0};
     if (!set_file_url(url, name) ||
-        start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+        start_ffmpeg_child(&child, argv, CHILD_WRITES, NULL, &error) !=
+            GLINT_OK)
         return false;
     from = fdopen(child.fd, "r");
     if (from) {
@@ -917,10 +910,9 @@ enum glint_status ffmpeg_start_reader(struct child *child, const char *name,
     add_two_arguments(&w, "-f", "yuv4mpegpipe");
     add_argument(&w, "-");
     status = end_ffmpeg_arguments(&w, error);
-    return status == GLINT_OK
-               ? start_monitored_child(child, w.word, CHILD_WRITES,
-                                       ffmpeg_cut_words, error)
-               : status;
+    return status == GLINT_OK ? start_ffmpeg_child(child, w.word, CHILD_WRITES,
+                                                   ffmpeg_cut_words, error)
+                              : status;
 }
 
 /* ---------------------------------------------------------------- encoding */
@@ -1105,7 +1097,8 @@ static bool is_encoder_installed(const char *encoder)
     struct glint_error error;
     struct child child;
 
-    if (start_ffmpeg_child(&child, argv, CHILD_WRITES, &error) != GLINT_OK)
+    if (start_ffmpeg_child(&child, argv, CHILD_WRITES, NULL, &error) !=
+        GLINT_OK)
         return false;
     read_child_output(&child, text);
     child_wait_for_exit(&child);
@@ -1301,7 +1294,7 @@ enum glint_status ffmpeg_start_writer(struct child *child,
     add_argument(&w, out);
     status = end_ffmpeg_arguments(&w, error);
     if (status == GLINT_OK)
-        status = start_ffmpeg_child(child, w.word, CHILD_READS, error);
+        status = start_ffmpeg_child(child, w.word, CHILD_READS, NULL, error);
     if (status == GLINT_OK)
         child->script = script_fd;
     else if (script_fd >= 0)
@@ -1396,7 +1389,8 @@ static bool decode_video_piece(const char *url, enum piece piece,
     for (int i = 0; rest[i]; i++)
         argv[k++] = rest[i];
     *cause = '\0';
-    if (start_ffmpeg_child(&child, argv, CHILD_PRINTS, &error) != GLINT_OK) {
+    if (start_ffmpeg_child(&child, argv, CHILD_PRINTS, NULL, &error) !=
+        GLINT_OK) {
         snprintf(cause, CAUSE, "%.*s", CAUSE - 1, error.text);
         return false;
     }
