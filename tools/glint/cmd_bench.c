@@ -251,47 +251,31 @@ static const struct option own[] = {{"moving", no_argument, NULL, OPT_MOVING},
                                     {"format", required_argument, NULL, 'F'},
                                     {NULL, 0, NULL, 0}};
 
-/* Applies option C with the value optarg. Returns 1 on success, 0 if the
- * value is invalid, -2 if C is unknown. */
-static int parse_option(struct bench *b, int c)
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 {
+    struct bench *const b = ctx;
+    bool good = true;
+    int code;
+
     switch (c) {
     case 's':
-        return tool_parse_size(optarg, &b->width, &b->height);
+        good = tool_parse_size(value, &b->width, &b->height);
+        break;
     case 'r':
-        return tool_parse_integer(optarg, 1, CANVAS_MAX, &b->rounds);
+        good = tool_parse_integer(value, 1, CANVAS_MAX, &b->rounds);
+        break;
     case 'F':
-        c = tool_find_word_index(optarg, format_words);
-        b->format = c < 0 ? b->format : c;
-        return c >= 0;
+        b->format = tool_find_word_index(value, format_words);
+        good = b->format >= 0;
+        break;
     case OPT_MOVING:
-        return b->moving = true;
+        b->moving = true;
+        break;
     default:
-        return -2;
+        code = settings_apply_option(tool, &b->base, c, value);
+        return code == -2 ? tool_apply_option(tool, c, value) : code;
     }
-}
-
-static int parse_options(struct bench *b, int argc, char **argv)
-{
-    const struct option *const options =
-        engine_build_options(b->tool, ENGINE_DRAWING, &b->base.options, own);
-    int c, at = 0, code;
-
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &at)) >=
-           0) {
-        const int taken = parse_option(b, c);
-
-        if (taken == 0)
-            return tool_report_bad_value(b->tool, options[at].name, optarg);
-        if (taken != -2)
-            continue;
-        code = settings_apply_option(b->tool, &b->base, c, optarg);
-        if (code == -2)
-            code = tool_apply_option(b->tool, c, optarg);
-        if (code >= 0)
-            return code;
-    }
-    return -1;
+    return good ? -1 : -2;
 }
 
 static int run_bench(struct bench *b, int n_names, const char *const *names)
@@ -328,7 +312,10 @@ int cmd_bench(int argc, char **argv)
     b->width = 1920;
     b->height = 1080;
     settings_set_defaults(&b->base);
-    code = parse_options(b, argc, argv);
+    code = tool_parse_options(
+        &tool, argc, argv, TOOL_COMMON_SHORT,
+        engine_build_options(&tool, ENGINE_DRAWING, &b->base.options, own),
+        parse_option, b);
     if (code < 0)
         code = tool_start_threads(&tool);
     if (code == EXIT_OK && tool.workers)

@@ -156,6 +156,18 @@ static bool parse_exposure(struct asked *a, const char *text)
            (tool_parse_number(text, &a->ev) && fabs(a->ev) <= 100);
 }
 
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
+{
+    struct asked *const a = ctx;
+
+    if (c == 'x')
+        return parse_exposure(a, value) ? -1 : -2;
+    if (c != 'f')
+        return tool_apply_option(tool, c, value);
+    a->fit = true;
+    return -1;
+}
+
 int cmd_compare(int argc, char **argv)
 {
     static const struct option options[] = {
@@ -164,20 +176,11 @@ int cmd_compare(int argc, char **argv)
         TOOL_COMMON_OPTIONS};
     struct tool tool = {.name = "compare", .help = help, .help_end = help_end};
     struct asked a = {.fit = false};
-    int c, code;
+    int code = tool_parse_options(&tool, argc, argv, TOOL_COMMON_SHORT, options,
+                                  parse_option, &a);
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, NULL)) >=
-           0) {
-        a.fit |= c == 'f';
-        if (c == 'x' && !parse_exposure(&a, optarg))
-            return tool_report_bad_value(&tool, "exposure", optarg);
-        if (c == 'f' || c == 'x')
-            continue;
-        code = tool_apply_option(&tool, c, optarg);
-        if (code >= 0)
-            return code;
-    }
-    code = tool_check_inputs(&tool, argc, argv, 2, "expects two pictures");
+    if (code < 0)
+        code = tool_check_inputs(&tool, argc, argv, 2, "expects two pictures");
     if (code >= 0)
         return code;
     a.name[0] = argv[optind];

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "desk/render_file.h"
 #include "explain/explain.h"
 #include "explain/explain_scene.h"
 #include "model/ghost_file.h"
@@ -339,21 +340,6 @@ static int print_explanation(struct tool *tool, struct explain_command *c,
     return code;
 }
 
-/* Rejects an image name that cannot be written, before the work begins. */
-static int check_picture_name(const struct tool *tool, const char *path)
-{
-    struct glint_error error = {""};
-
-    if (!path)
-        return EXIT_OK;
-    if (tool_check_output(tool, path) != EXIT_OK)
-        return EXIT_OUTPUT;
-    if (glint_picture_check(path, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
-        return EXIT_OK;
-    tool_fail(tool, GLINT_E_OUTPUT, error.text);
-    return EXIT_OUTPUT;
-}
-
 static int check_outputs_differ_from_inputs(const struct tool *tool,
                                             const struct explain_command *c)
 {
@@ -385,7 +371,7 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
     enum glint_status status;
     int code;
 
-    if (check_picture_name(tool, c->output) != EXIT_OK ||
+    if ((c->output && render_file_check_codes(tool, c->output) != EXIT_OK) ||
         (c->ghosts && tool_check_output(tool, c->ghosts) != EXIT_OK))
         return EXIT_OUTPUT;
     code = check_outputs_differ_from_inputs(tool, c);

@@ -235,6 +235,25 @@ struct asked {
     const char *poses; /* --poses: file for the poses of a motion; NULL: none */
 };
 
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
+{
+    struct asked *const asked = ctx;
+    bool good = true;
+
+    if (c == 'f')
+        good = tool_parse_number(value, &asked->f_number);
+    else if (c == 'z')
+        good = zoom_option_parse(&asked->zoom, value);
+    else if (c == 'F')
+        good = zoom_option_parse_focus(&asked->zoom, value);
+    else if (c == 'p')
+        asked->poses = value;
+    else
+        return c == 'c' ? coating_parse_option(tool, &asked->coating, value)
+                        : tool_apply_option(tool, c, value);
+    return good ? -1 : -2;
+}
+
 static int parse_options(struct tool *tool, int argc, char **argv,
                          struct asked *asked)
 {
@@ -244,34 +263,12 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         ZOOM_OPTIONS('z', 'F'),
         {"poses", required_argument, NULL, 'p'},
         TOOL_COMMON_OPTIONS};
-    int c, code, index = 0;
+    const int code = tool_parse_options(tool, argc, argv, TOOL_COMMON_SHORT,
+                                        options, parse_option, asked);
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
-           0) {
-        bool good = true;
-
-        code = -1;
-        if (c == 'f')
-            good = tool_parse_number(optarg, &asked->f_number);
-        else if (c == 'z')
-            good = zoom_option_parse(&asked->zoom, optarg);
-        else if (c == 'F')
-            good = zoom_option_parse_focus(&asked->zoom, optarg);
-        else if (c == 'p')
-            asked->poses = optarg;
-        else
-            code = c == 'c'
-                       ? coating_parse_option(tool, &asked->coating, optarg)
-                       : tool_apply_option(tool, c, optarg);
-        if (code >= 0)
-            return code;
-        if (!good)
-            return tool_report_bad_value(tool, options[index].name, optarg);
-    }
-    code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
-    if (code >= 0)
-        return code;
-    return -1;
+    return code >= 0
+               ? code
+               : tool_check_inputs(tool, argc, argv, 1, "expects one lens");
 }
 
 static int print_medium_info(const struct tool *tool, const char *path)

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "overlay/apart.h"
+#include "desk/render_file.h"
 #include "desk/sheet.h"
 #include "desk/styles.h"
 #include "formats/picture.h"
@@ -252,20 +253,6 @@ static void list_styles(void)
     }
 }
 
-/* Returns -1 if the file OUT can be written, else an exit code. */
-static int check_sheet_output(const struct tool *tool,
-                              const struct styles_command *c)
-{
-    struct glint_error error = {""};
-
-    if (tool_check_output(tool, c->output) != EXIT_OK)
-        return EXIT_OUTPUT;
-    if (glint_picture_check(c->output, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
-        return -1;
-    tool_fail(tool, GLINT_E_OUTPUT, error.text);
-    return EXIT_OUTPUT;
-}
-
 static int check_output_differs_from_inputs(const struct tool *tool,
                                             const struct styles_command *c,
                                             const struct drawing *drawing)
@@ -299,7 +286,9 @@ static int check_style_options(struct tool *tool, struct styles_command *c)
     if (code >= 0)
         return code;
     if (c->output)
-        return check_sheet_output(tool, c);
+        return render_file_check_codes(tool, c->output) == EXIT_OK
+                   ? -1
+                   : EXIT_OUTPUT;
     return c->input ? tool_usage(tool, "needs -o OUT for the sheet") : -1;
 }
 

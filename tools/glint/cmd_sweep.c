@@ -42,6 +42,7 @@ static const char *const default_lenses[] = {
 enum { MAX_LIST = 8 };
 
 struct asked {
+    struct sweep *sweep;
     const char *output;
     int n_sizes, size[MAX_LIST][2];
     int n_lights, lights[MAX_LIST];
@@ -212,49 +213,50 @@ static const struct option options[] = {
     {"small", no_argument, NULL, OPT_SMALL},
     TOOL_COMMON_OPTIONS};
 
-/* Applies option C with the value optarg. Returns 1 on success, 0 if the
- * value is invalid, -2 if C is unknown. */
-static int parse_option(struct sweep *s, struct asked *a, int c)
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
 {
+    struct asked *const a = ctx;
+    bool good = true;
+
     switch (c) {
     case 'o':
-        a->output = optarg;
-        return 1;
+        a->output = value;
+        break;
     case 's':
-        return parse_image_sizes(optarg, a);
+        good = parse_image_sizes(value, a);
+        break;
     case 'l':
-        return parse_light_counts(optarg, a);
+        good = parse_light_counts(value, a);
+        break;
     case 'a':
-        return (a->n_angles = parse_number_list(optarg, 0, 60, a->angle)) > 0;
+        good = (a->n_angles = parse_number_list(value, 0, 60, a->angle)) > 0;
+        break;
     case 'r':
-        return tool_parse_integer(optarg, 1, SWEEP_ROUNDS, &s->rounds);
+        good = tool_parse_integer(value, 1, SWEEP_ROUNDS, &a->sweep->rounds);
+        break;
     case OPT_SMALL:
-        return s->small = true;
+        a->sweep->small = true;
+        break;
     default:
-        return -2;
+        return tool_apply_option(tool, c, value);
     }
+    return good ? -1 : -2;
 }
 
 static int parse_options(struct tool *tool, int argc, char **argv,
-                         struct sweep *s, struct asked *a)
+                         struct asked *a)
 {
-    int c, at = 0, code;
+    const int code = tool_parse_options(
+        tool, argc, argv, "o:" TOOL_COMMON_SHORT, options, parse_option, a);
 
-    while ((c = tool_getopt(argc, argv, "o:" TOOL_COMMON_SHORT, options,
-                            &at)) >= 0) {
-        const int taken = parse_option(s, a, c);
-
-        if (taken == 0)
-            return tool_report_bad_value(tool, options[at].name, optarg);
-        if (taken == -2 && (code = tool_apply_option(tool, c, optarg)) >= 0)
-            return code;
-    }
+    if (code >= 0)
+        return code;
     if (!a->output)
         return tool_usage(tool, "needs -o FILE");
     if (argc - optind > SWEEP_LENSES)
         return tool_usage(tool, "accepts at most %d lenses", SWEEP_LENSES);
     for (; optind < argc; optind++)
-        s->lens[s->n_lenses++] = argv[optind];
+        a->sweep->lens[a->sweep->n_lenses++] = argv[optind];
     return -1;
 }
 
@@ -296,9 +298,10 @@ int cmd_sweep(int argc, char **argv)
 
     if (!s)
         return tool_fail(&tool, GLINT_E_MEMORY, NULL);
+    asked.sweep = s;
     s->tool = &tool;
     settings_set_defaults(&s->base);
-    code = parse_options(&tool, argc, argv, s, &asked);
+    code = parse_options(&tool, argc, argv, &asked);
     if (code < 0)
         code = tool_start_threads(&tool);
     if (code == EXIT_OK && tool.workers && asked.output) {

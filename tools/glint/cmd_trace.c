@@ -58,6 +58,35 @@ struct options {
     double angle_deg, wavelength_nm;
 };
 
+static int parse_option(struct tool *tool, void *ctx, int c, const char *value)
+{
+    struct options *const o = ctx;
+    bool good = true;
+
+    if (c == 'g')
+        good = tool_parse_integer(value, -1, GLINT_MAX_GHOSTS, &o->ghost);
+    else if (c == 'a')
+        good =
+            tool_parse_number(value, &o->angle_deg) && fabs(o->angle_deg) < 90;
+    else if (c == 'w')
+        good = tool_parse_number(value, &o->wavelength_nm) &&
+               o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
+    else if (c == 'n')
+        good = tool_parse_integer(value, 1, 4096, &o->grid);
+    else if (c == 'z')
+        good = zoom_option_parse(&o->zoom, value);
+    else if (c == 'F')
+        good = zoom_option_parse_focus(&o->zoom, value);
+    else if (c == 'm')
+        o->model = value;
+    else if (c == 'p')
+        o->pupil = true;
+    else
+        return c == 'C' ? coating_parse_option(tool, &o->coating, value)
+                        : tool_apply_option(tool, c, value);
+    return good ? -1 : -2;
+}
+
 static int parse_options(struct tool *tool, int argc, char **argv,
                          struct options *o)
 {
@@ -71,42 +100,12 @@ static int parse_options(struct tool *tool, int argc, char **argv,
         {"coating", required_argument, NULL, 'C'},
         ZOOM_OPTIONS('z', 'F'),
         TOOL_COMMON_OPTIONS};
-    int c, code = -1, index = 0;
+    const int code = tool_parse_options(tool, argc, argv, TOOL_COMMON_SHORT,
+                                        options, parse_option, o);
 
-    while ((c = tool_getopt(argc, argv, TOOL_COMMON_SHORT, options, &index)) >=
-           0) {
-        bool ok = true;
-
-        if (c == 'g')
-            ok = tool_parse_integer(optarg, -1, GLINT_MAX_GHOSTS, &o->ghost);
-        else if (c == 'a')
-            ok = tool_parse_number(optarg, &o->angle_deg) &&
-                 fabs(o->angle_deg) < 90;
-        else if (c == 'w')
-            ok = tool_parse_number(optarg, &o->wavelength_nm) &&
-                 o->wavelength_nm >= 300 && o->wavelength_nm <= 1100;
-        else if (c == 'n')
-            ok = tool_parse_integer(optarg, 1, 4096, &o->grid);
-        else if (c == 'z')
-            ok = zoom_option_parse(&o->zoom, optarg);
-        else if (c == 'F')
-            ok = zoom_option_parse_focus(&o->zoom, optarg);
-        else if (c == 'm')
-            o->model = optarg;
-        else if (c == 'p')
-            o->pupil = true;
-        else
-            code = c == 'C' ? coating_parse_option(tool, &o->coating, optarg)
-                            : tool_apply_option(tool, c, optarg);
-        if (code >= 0)
-            return code;
-        if (!ok)
-            return tool_report_bad_value(tool, options[index].name, optarg);
-    }
-    code = tool_check_inputs(tool, argc, argv, 1, "expects one lens");
-    if (code >= 0)
-        return code;
-    return -1;
+    return code >= 0
+               ? code
+               : tool_check_inputs(tool, argc, argv, 1, "expects one lens");
 }
 
 /* -------------------------------------------------------------- exact rays */

@@ -6,22 +6,27 @@
 
 #include "formats/picture.h"
 
+int render_file_check_codes(const struct tool *tool, const char *path)
+{
+    struct glint_error error = {""};
+
+    if (tool_check_output(tool, path) != EXIT_OK)
+        return EXIT_OUTPUT;
+    if (glint_picture_check(path, GLINT_PICTURE_8BIT, &error) == GLINT_OK)
+        return EXIT_OK;
+    tool_fail(tool, GLINT_E_OUTPUT, error.text);
+    return EXIT_OUTPUT;
+}
+
 int render_file_check_path(const struct tool *tool, const char *path,
                            bool *is_linear)
 {
     struct glint_error error = {""};
-    enum glint_status status =
-        glint_picture_check(path, GLINT_PICTURE_FLOAT, &error);
 
-    if (tool_check_output(tool, path) != EXIT_OK)
-        return EXIT_OUTPUT;
-    *is_linear = status == GLINT_OK;
-    if (!*is_linear)
-        status = glint_picture_check(path, GLINT_PICTURE_8BIT, &error);
-    if (status == GLINT_OK)
-        return EXIT_OK;
-    tool_fail(tool, status, error.text);
-    return EXIT_OUTPUT;
+    *is_linear =
+        glint_picture_check(path, GLINT_PICTURE_FLOAT, &error) == GLINT_OK;
+    return *is_linear ? tool_check_output(tool, path)
+                      : render_file_check_codes(tool, path);
 }
 
 int render_file_save(const struct tool *tool, const char *path, bool is_linear,

@@ -15,6 +15,9 @@
 int render_file_check_path(const struct tool *tool, const char *path,
                            bool *is_linear);
 
+/* The same of a picture of 8-bit codes. */
+int render_file_check_codes(const struct tool *tool, const char *path);
+
 /* Writes IMAGE to PATH, after render_file_check_path(): unchanged if IS_LINEAR,
  * else as sRGB codes of the light times EXPOSURE (0: an exposure that makes the
  * 99.9th percentile white). Returns EXIT_OK or the code of tool_fail(). */
