@@ -25,6 +25,10 @@ demo:
 	@tools/make/demo
 inputs:
 	@tools/make/inputs
+# Frame rate and latency of live on ARM, in an emulator.
+latency-table:
+	@$(MAKE) --no-print-directory TARGET=aarch64 glint-live >&2
+	@tools/measure/latency-table | tools/measure/write-figures latency
 # Seconds to a picture with each lens: half an hour.
 first-picture-table: all
 	@tools/measure/first-picture $(LENSES) | tools/measure/write-figures first-picture
@@ -141,7 +145,7 @@ budget: all
 	        build/$$t/glint >&2 || exit 1; done
 	@tools/measure/budget | tools/measure/write-figures arm
 
-.PHONY: figures figure figures-quick first-picture-table video-report occlusion-table demo inputs scene-table hidden-table mesh-table \
+.PHONY: figures figure figures-quick first-picture-table latency-table video-report occlusion-table demo inputs scene-table hidden-table mesh-table \
         motion-table ward-table translucent-table stone-table ward-sheet colour-table power-fit corpus corpus-evaluate \
         corpus-stars corpus-sheet corpus-report gallery lens-sheet corpus-fit bench size trade reuse-table \
         zoom-halfway-table cost-fit budget
