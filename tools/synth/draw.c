@@ -308,7 +308,7 @@ static int open_lens_by_name(const struct tool *tool, struct synth_lens *lens,
     const struct glint_optics *const optics = &lens->opened.setup.optics;
     const char *end;
     char quality[40];
-    int code;
+    int code = -1;
 
     snprintf(lens->name, sizeof lens->name, "%s", item->lens);
     snprintf(lens->coating, sizeof lens->coating, "%s", item->coating);
@@ -317,7 +317,9 @@ static int open_lens_by_name(const struct tool *tool, struct synth_lens *lens,
     snprintf(quality, sizeof quality, "%.6f", item->quality);
     settings_set_quality(s, glint_option_number(quality, &end));
     s->camera.waves.kind = GLINT_WAVES_AUTO;
-    code = coating_parse_option(tool, &s->coating, item->coating);
+    /* "mixed" is the default; a model keeps the coatings of its bake. */
+    if (!tool_is_model(item->lens) || strcmp(item->coating, "mixed") != 0)
+        code = coating_parse_option(tool, &s->coating, item->coating);
     if (code < 0)
         code = opened_lens_open(tool, &lens->opened, s, item->lens);
     if (code == EXIT_OK)

@@ -147,11 +147,12 @@ static bool count_bake_work(void *ctx, int work)
 /* Prints that baking FILE exceeds MODEL_CACHE_WORK. Returns an exit code. */
 static int report_too_much_work(const struct tool *tool, const char *file)
 {
-    tool_error(tool,
-               "%.200s: baking takes more than about 30 s of processor time; "
-               "use --rays exact, or bake with glint bake, which has no limit, "
-               "and name its model as the lens",
-               file);
+    tool_error(
+        tool,
+        "%.200s: baking takes more than about 30 s of processor time; "
+        "bake it with glint bake, which has no limit, and name the model "
+        "as the lens",
+        file);
     return EXIT_LENS;
 }
 
