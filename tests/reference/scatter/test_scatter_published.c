@@ -147,11 +147,10 @@ TEST(c4_tucker)
 {
     const struct greens g = {&stone[1]};
     const struct glint_tall m = {TEXELS, K2, read_green_row, &g};
-    float *left = malloc(TEXELS * K2 * sizeof *left);
+    float *left = test_free_later(malloc(TEXELS * K2 * sizeof *left));
     double f[TEXELS], h[K2];
     struct glint_terms terms;
 
-    assert_non_null(left);
     assert_true(glint_compute_leading_terms(&m, 5, &terms));
     for (int x = 0; x < TEXELS; x++)
         memcpy(left + x * K2, glint_scatter_get_row(&stone[1], x, 1),
@@ -159,7 +158,6 @@ TEST(c4_tucker)
     for (int t = 0; t < 5; t++)
         assert_near(sqrt(glint_fit_tucker_term(left, TEXELS, K2, f, h)),
                     terms.value[t], 1e-5 * terms.value[0]);
-    free(left);
     glint_terms_free(&terms);
 }
 

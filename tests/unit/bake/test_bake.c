@@ -127,10 +127,8 @@ static void parse_singlet(struct glint_prescription *lens)
     "stop 46 17\n"
 
 /* Parses and bakes the lens of TEXT; if TEXT is NULL, bakes LENS. */
-static void parse_and_bake_lens(struct baked *b,
-                                struct glint_prescription *lens,
-                                const char *text, double tolerance,
-                                double max_deg)
+static void bake_text(struct baked *b, struct glint_prescription *lens,
+                      const char *text, double tolerance, double max_deg)
 {
     struct glint_bake_options o = options;
 
@@ -360,7 +358,7 @@ TEST(each_ray_lies_in_one_pupil_part)
          * same code. */
         skip();
     load_lens(&lens, "../tests/lenses/cooke-triplet");
-    parse_and_bake_lens(&b, &lens, NULL, 1, 0.5);
+    bake_text(&b, &lens, NULL, 1, 0.5);
     assert_ok(glint_setup_init(&fast, &lens, 0, 0, &nm, 1, &error));
     assert_int_equal(fast.ghost[GHOST].j, 3);
     assert_in_range(b.lens.header->n_parts, 1, MOST - 1);
@@ -617,8 +615,8 @@ static long measure_system_errors(const struct glint_lens *lens, int ghost,
     return tally.n;
 }
 
-static const struct glint_model_output *
-address_of_system_outputs(const struct baked *b, int system)
+static const struct glint_model_output *outputs_of(const struct baked *b,
+                                                   int system)
 {
     return (const void *)(b->data + b->lens.system[system].output_at);
 }
@@ -635,8 +633,7 @@ TEST(stated_errors_match_measured_errors)
     for (int g = 0; g < setup.n_ghosts; g++)
         for (uint32_t k = 0; k < model.lens.ghost[g].n_systems; k++) {
             const int system = (int)(model.lens.ghost[g].first_system + k);
-            const struct glint_model_output *o =
-                address_of_system_outputs(&model, system);
+            const struct glint_model_output *o = outputs_of(&model, system);
             double rms[TRIED];
 
             assert_true(measure_system_errors(&model.lens, g, system, rms) >
@@ -665,8 +662,7 @@ TEST(errors_stay_near_the_tolerances)
     assert_true(model.report.rays > 300 * (int)model.lens.header->n_systems);
     assert_true(model.report.intruders < model.report.rays / 1000);
     for (uint32_t k = 0; k < model.lens.header->n_systems; k++) {
-        const struct glint_model_output *o =
-            address_of_system_outputs(&model, (int)k);
+        const struct glint_model_output *o = outputs_of(&model, (int)k);
 
         for (int kind = 0; kind < TRIED; kind++)
             assert_true(read_error_stated_in_model(o[kind].rms) <=
@@ -682,11 +678,11 @@ TEST(errors_near_the_axis_fall_with_squared_tolerance)
     struct glint_prescription lens;
     struct baked b;
 
-    parse_and_bake_lens(&b, &lens, FAST_SINGLET, tolerance, 4);
+    bake_text(&b, &lens, FAST_SINGLET, tolerance, 4);
     assert_int_equal(b.lens.system[0].sine_lo_q30, 0);
-    assert_true(read_error_stated_in_model(
-                    address_of_system_outputs(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
-                1.6 * tolerance * tolerance * aim_px);
+    assert_true(
+        read_error_stated_in_model(outputs_of(&b, 0)[GLINT_OUT_SENSOR_X].rms) <
+        1.6 * tolerance * tolerance * aim_px);
     free(b.data);
 }
 
@@ -697,13 +693,10 @@ TEST(fit_follows_a_zero_of_the_energy)
     struct glint_prescription lens;
     struct baked b;
 
-    parse_and_bake_lens(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1,
-                        0.5);
+    bake_text(&b, &lens, FAST_SINGLET "coating 532 1.2316\n", 0.1, 0.5);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++) {
-        assert_true(
-            read_error_stated_in_model(
-                address_of_system_outputs(&b, (int)k)[GLINT_OUT_ENERGY].rms) <
-            1e-3);
+        assert_true(read_error_stated_in_model(
+                        outputs_of(&b, (int)k)[GLINT_OUT_ENERGY].rms) < 1e-3);
     }
     free(b.data);
 }
@@ -730,7 +723,7 @@ TEST(wrong_coefficient_is_detected)
     b.lens.system = (const void *)(b.data + b.lens.header->system_at);
     glint_visible_init(&visible, &setup, 0, field_mm, band_nm);
     glint_measure_system_errors(&visible, &b.lens, 0, &no_barrels, &before);
-    o = address_of_system_outputs(&b, 0);
+    o = outputs_of(&b, 0);
     assert_near(read_error_stated_in_model(o->rms) / before.of[0].rms, 1, 1e-3);
     coef = (void *)(b.data + o->coef_at);
     for (uint32_t k = 1; k < o->n_terms; k++)
@@ -858,7 +851,7 @@ TEST(loosest_tolerance_keeps_a_term)
     o.tolerance = 100;
     bake_and_open_model(&b, &lens, &o);
     for (uint32_t k = 0; k < b.lens.header->n_systems; k++)
-        assert_in_range(address_of_system_outputs(&b, (int)k)->n_terms, 1,
+        assert_in_range(outputs_of(&b, (int)k)->n_terms, 1,
                         GLINT_MAX_MODEL_TERMS);
     free(b.data);
 }

@@ -72,8 +72,8 @@ static const void *address_of_baked_table(const struct baked *b, uint32_t at)
     return b->data + at;
 }
 
-static void check_scaled_vector(const int32_t *v, double x, double y, double z,
-                                double scale)
+static void check_vector(const int32_t *v, double x, double y, double z,
+                         double scale)
 {
     assert_true(fabs(v[0] - x * scale) <= .5001);
     assert_true(fabs(v[1] - y * scale) <= .5001);
@@ -112,17 +112,17 @@ TEST(right_handed_scene_is_mirrored)
     assert_true(h->shadow == 1 && h->flare == 1 && h->highlights == 3);
     assert_int_equal(h->background_q15[0], 16384);
     assert_int_equal(h->background_q15[2], 65536);
-    check_scaled_vector(h->camera.at, 0, 1, -4, unit);
-    check_scaled_vector(h->camera.axis_q30[0], 1, 0, 0, 0x1p30);
-    check_scaled_vector(h->camera.axis_q30[1], 0, 1, 0, 0x1p30);
-    check_scaled_vector(h->camera.axis_q30[2], 0, 0, 1, 0x1p30);
+    check_vector(h->camera.at, 0, 1, -4, unit);
+    check_vector(h->camera.axis_q30[0], 1, 0, 0, 0x1p30);
+    check_vector(h->camera.axis_q30[1], 0, 1, 0, 0x1p30);
+    check_vector(h->camera.axis_q30[2], 0, 0, 1, 0x1p30);
     assert_int_equal(h->camera.tan_x_q24, 1 << 24);
     assert_int_equal(h->n_lights, 2);
-    check_scaled_vector(b.model.light[0].toward_q30, .6, 0, -.8, 0x1p30);
+    check_vector(b.model.light[0].toward_q30, .6, 0, -.8, 0x1p30);
     assert_int_equal(b.model.light[0].radius, 1 << 29);
     assert_true(fabs(glint_real_value(b.model.light[0].rgb[0]) - 1) < 1e-9);
     assert_true(glint_real_value(b.model.light[0].rgb[2]) == 0);
-    check_scaled_vector(b.model.light[1].at, 1, 2, -3, unit);
+    check_vector(b.model.light[1].at, 1, 2, -3, unit);
     assert_int_equal(b.model.light[1].radius, 1 << 17);
     assert_true(glint_real_value(b.model.light[1].rgb[1]) == 7);
     /* Each of the weights .1, .7 and .2 would be rounded up, but their sum must
@@ -134,12 +134,11 @@ TEST(right_handed_scene_is_mirrored)
     assert_int_equal(b.model.material[0].power_q8, 20 << 8);
     assert_int_equal(b.model.material[1].index_q16, 3 << 15);
     assert_int_equal(b.model.object[0].kind, GLINT_OBJECT_SPHERE);
-    check_scaled_vector(b.model.object[0].at, 0, .5, -1, unit);
+    check_vector(b.model.object[0].at, 0, .5, -1, unit);
     assert_int_equal(b.model.object[0].radius, 1 << 18);
     /* This rotation takes y to +z in the text, which is -z in the baked scene:
      * -90 degrees about x. */
-    check_scaled_vector(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0,
-                        0x1p30);
+    check_vector(b.model.object[1].turn_q30, sqrt(.5), -sqrt(.5), 0, 0x1p30);
     assert_int_equal(b.model.object[2].catcher_q15, 16384);
     assert_int_equal(glint_scene_find(&b.model, "t"), 3);
 }
@@ -191,11 +190,9 @@ TEST(both_handednesses_give_the_same_mesh)
         v = address_of_baked_table(&b, m->vertex_at);
         assert_int_equal(m->n_vertices, 3);
         assert_true(m->uv_at == 0 && m->normal_at == 0);
-        check_scaled_vector(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
-        check_scaled_vector(v + 3 * t->vertex[1], left, !left, left ? 1 : -1,
-                            unit);
-        check_scaled_vector(v + 3 * t->vertex[2], !left, left, left ? 1 : -1,
-                            unit);
+        check_vector(v + 3 * t->vertex[0], 0, 0, left ? 1 : -1, unit);
+        check_vector(v + 3 * t->vertex[1], left, !left, left ? 1 : -1, unit);
+        check_vector(v + 3 * t->vertex[2], !left, left, left ? 1 : -1, unit);
         assert_true(t->material == GLINT_SCENE_NONE);
     }
 }

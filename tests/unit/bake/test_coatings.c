@@ -211,8 +211,8 @@ TEST(coatings_have_their_films)
 
 /* ---------------------------------------------------- reflectance and keys */
 
-static double compute_reflectance(const struct glint_prescription *lens, int k,
-                                  double nm)
+static double reflectance(const struct glint_prescription *lens, int k,
+                          double nm)
 {
     const struct glint_surface *s = &lens->surface[k];
     const double before = k ? glint_index(s[-1].nd, s[-1].vd, nm) : 1;
@@ -234,22 +234,15 @@ TEST(quarter_wave_film_reflects_least_at_its_wavelength)
     apply_coatings(&bare, "none");
     /* design wavelengths for surfaces 0, 2, 3 and 4, nm */
     apply_coatings(&lens, "450,650,1100,550");
-    assert_true(compute_reflectance(&lens, 0, 650) >
-                1.2 * compute_reflectance(&lens, 0, 450));
-    assert_true(compute_reflectance(&lens, 2, 450) >
-                1.2 * compute_reflectance(&lens, 2, 650));
-    assert_true(compute_reflectance(&lens, 4, 550) <
-                compute_reflectance(&lens, 4, 450));
-    assert_true(compute_reflectance(&lens, 4, 550) <
-                compute_reflectance(&lens, 4, 650));
-    assert_true(compute_reflectance(&lens, 1, 500) ==
-                compute_reflectance(&bare, 1, 500));
-    assert_true(fabs(compute_reflectance(&lens, 3, 550) -
-                     compute_reflectance(&bare, 3, 550)) < 1e-9);
-    assert_true(compute_reflectance(&lens, 3, 420) <
-                0.7 * compute_reflectance(&bare, 3, 420));
-    assert_true(compute_reflectance(&lens, 3, 680) <
-                0.9 * compute_reflectance(&bare, 3, 680));
+    assert_true(reflectance(&lens, 0, 650) > 1.2 * reflectance(&lens, 0, 450));
+    assert_true(reflectance(&lens, 2, 450) > 1.2 * reflectance(&lens, 2, 650));
+    assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 450));
+    assert_true(reflectance(&lens, 4, 550) < reflectance(&lens, 4, 650));
+    assert_true(reflectance(&lens, 1, 500) == reflectance(&bare, 1, 500));
+    assert_true(fabs(reflectance(&lens, 3, 550) - reflectance(&bare, 3, 550)) <
+                1e-9);
+    assert_true(reflectance(&lens, 3, 420) < 0.7 * reflectance(&bare, 3, 420));
+    assert_true(reflectance(&lens, 3, 680) < 0.9 * reflectance(&bare, 3, 680));
 }
 
 TEST(coatings_change_the_key)

@@ -104,14 +104,12 @@ static enum glint_status parse_text_with_line(int number, const char *line)
     /* The copy has exactly the size of the text, so that ASan detects
      * overreads. */
     bytes = strlen(text);
-    copy = malloc(bytes);
-    assert_non_null(copy);
+    copy = test_free_later(malloc(bytes));
     memcpy(copy, text, bytes);
     glint_description_free(&scene);
     fault.text[0] = '\0';
     status =
         glint_description_parse(&scene, copy, bytes, "x.scene", &files, &fault);
-    free(copy);
     return status;
 }
 

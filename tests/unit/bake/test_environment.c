@@ -474,14 +474,13 @@ TEST(rgb9e5_codes_round_trip)
 
 /* ------------------------------------------------------------------- files */
 
-static void check_damaged_file_is_rejected(const struct baked *b, size_t at,
-                                           uint32_t value, const char *why)
+static void expect_damaged(const struct baked *b, size_t at, uint32_t value,
+                           const char *why)
 {
-    unsigned char *copy = malloc(b->bytes);
+    unsigned char *copy = test_free_later(malloc(b->bytes));
     struct glint_environment e;
     const char *reason = "nothing";
 
-    assert_non_null(copy);
     memcpy(copy, b->data, b->bytes);
     memcpy(copy + at, &value, sizeof value);
     if (at != offsetof(struct glint_environment_header, crc32))
@@ -490,7 +489,6 @@ static void check_damaged_file_is_rejected(const struct baked *b, size_t at,
                      GLINT_E_FORMAT);
     if (!strstr(reason, why))
         fail_msg("%zu: %s, not %s", at, reason, why);
-    free(copy);
 }
 
 #define AT(field) offsetof(struct glint_environment_header, field)
@@ -504,31 +502,27 @@ TEST(rejects_damaged_files)
     paint_panorama(compute_sky_and_sun_light);
     bake_panorama(&b, &o);
     h = b.environment.header;
-    check_damaged_file_is_rejected(&b, AT(magic), 0, "not a baked environment");
-    check_damaged_file_is_rejected(&b, AT(version), 9, "newer");
-    check_damaged_file_is_rejected(&b, AT(crc32), 0, "checksum");
-    check_damaged_file_is_rejected(&b, AT(variant), 2, "unknown");
-    check_damaged_file_is_rejected(&b, AT(code), 2, "unknown");
-    check_damaged_file_is_rejected(&b, AT(name), 0, "name is empty");
-    check_damaged_file_is_rejected(&b, AT(side_log2), 11, "out of range");
-    check_damaged_file_is_rejected(&b, AT(side_log2), 6, "out of range");
-    check_damaged_file_is_rejected(&b, AT(unit_log2), 101, "scale");
-    check_damaged_file_is_rejected(&b, AT(n_levels), 5, "out of range");
-    check_damaged_file_is_rejected(&b, AT(n_lights), 17, "out of range");
-    check_damaged_file_is_rejected(&b, AT(level_at), (uint32_t)b.bytes,
-                                   "outside");
-    check_damaged_file_is_rejected(&b, AT(irradiance_at), 8, "outside");
-    check_damaged_file_is_rejected(&b, AT(light_at), (uint32_t)b.bytes - 4,
-                                   "outside");
-    check_damaged_file_is_rejected(&b, h->level_at, 4, "size of a mip level");
-    check_damaged_file_is_rejected(&b, h->level_at + 4, 2, "outside");
-    check_damaged_file_is_rejected(&b, h->level_at + 8, (1u << 28) + 1,
-                                   "size of a mip level");
-    check_damaged_file_is_rejected(&b, h->level_at + 12, 1,
-                                   "size of a mip level");
-    check_damaged_file_is_rejected(&b, h->light_at, 0, "unit vector");
-    check_damaged_file_is_rejected(&b, h->light_at + 12, 1u << 30, "too large");
-    check_damaged_file_is_rejected(&b, h->light_at + 16, 5, "normalised");
+    expect_damaged(&b, AT(magic), 0, "not a baked environment");
+    expect_damaged(&b, AT(version), 9, "newer");
+    expect_damaged(&b, AT(crc32), 0, "checksum");
+    expect_damaged(&b, AT(variant), 2, "unknown");
+    expect_damaged(&b, AT(code), 2, "unknown");
+    expect_damaged(&b, AT(name), 0, "name is empty");
+    expect_damaged(&b, AT(side_log2), 11, "out of range");
+    expect_damaged(&b, AT(side_log2), 6, "out of range");
+    expect_damaged(&b, AT(unit_log2), 101, "scale");
+    expect_damaged(&b, AT(n_levels), 5, "out of range");
+    expect_damaged(&b, AT(n_lights), 17, "out of range");
+    expect_damaged(&b, AT(level_at), (uint32_t)b.bytes, "outside");
+    expect_damaged(&b, AT(irradiance_at), 8, "outside");
+    expect_damaged(&b, AT(light_at), (uint32_t)b.bytes - 4, "outside");
+    expect_damaged(&b, h->level_at, 4, "size of a mip level");
+    expect_damaged(&b, h->level_at + 4, 2, "outside");
+    expect_damaged(&b, h->level_at + 8, (1u << 28) + 1, "size of a mip level");
+    expect_damaged(&b, h->level_at + 12, 1, "size of a mip level");
+    expect_damaged(&b, h->light_at, 0, "unit vector");
+    expect_damaged(&b, h->light_at + 12, 1u << 30, "too large");
+    expect_damaged(&b, h->light_at + 16, 5, "normalised");
 }
 
 /* ------------------------------------------------------------------- texts */

@@ -34,8 +34,8 @@ TEST(bk7_indices_match_the_catalogue)
 
 /* Returns the reflectance of a boundary between media of refractive indices N1
  * and N2 with a film of index NF; NF 0: no film. */
-static double compute_film_reflectance(double n1, double n2, double cosine,
-                                       double nf, double phase)
+static double film_reflectance(double n1, double n2, double cosine, double nf,
+                               double phase)
 {
     const struct glint_film_at film = {nf, phase};
 
@@ -72,12 +72,11 @@ TEST(reflects_totally_beyond_the_critical_angle)
     static const double film[] = {0.0, 1.38};
 
     for (int f = 0; f < 2; f++) {
-        assert_true(compute_film_reflectance(1.5, 1.0, 0.3, film[f], pi) ==
-                    1.0);
-        assert_true(compute_film_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9,
-                                             film[f], pi) == 1.0);
-        assert_true(compute_film_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 + 1e-9,
-                                             film[f], pi) < 1.0);
+        assert_true(film_reflectance(1.5, 1.0, 0.3, film[f], pi) == 1.0);
+        assert_true(film_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 - 1e-9, film[f],
+                                     pi) == 1.0);
+        assert_true(film_reflectance(1.5, 1.0, sqrt(5.0) / 3.0 + 1e-9, film[f],
+                                     pi) < 1.0);
     }
 }
 
@@ -88,23 +87,19 @@ TEST(film_reflectance_matches_hand_computation)
 {
     const double quarter = pi, half = 2.0 * pi;
 
-    assert_near(compute_film_reflectance(1.0, 2.25, 1.0, 1.5, quarter), 0.0,
-                1e-30);
-    assert_near(compute_film_reflectance(2.25, 1.0, 1.0, 1.5, quarter), 0.0,
-                1e-30);
-    assert_near(compute_film_reflectance(1.0, 1.52, 1.0, 1.38, quarter),
-                0.0126008, 5e-8);
-    assert_near(compute_film_reflectance(1.0, 1.5, 1.0, 1.38, half), 0.04,
-                1e-15);
-    assert_near(compute_film_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04,
-                1e-15);
+    assert_near(film_reflectance(1.0, 2.25, 1.0, 1.5, quarter), 0.0, 1e-30);
+    assert_near(film_reflectance(2.25, 1.0, 1.0, 1.5, quarter), 0.0, 1e-30);
+    assert_near(film_reflectance(1.0, 1.52, 1.0, 1.38, quarter), 0.0126008,
+                5e-8);
+    assert_near(film_reflectance(1.0, 1.5, 1.0, 1.38, half), 0.04, 1e-15);
+    assert_near(film_reflectance(1.0, 1.5, 1.0, 1.38, 0.0), 0.04, 1e-15);
     /* a film with the refractive index of one of the media has no effect */
     for (int i = 1; i <= 20; i++) {
         const double c = 0.05 * i;
 
-        assert_near(compute_film_reflectance(1.0, 1.5, c, 1.5, 2.0),
+        assert_near(film_reflectance(1.0, 1.5, c, 1.5, 2.0),
                     compute_bare_reflectance(1, 1.5, c), 1e-14);
-        assert_near(compute_film_reflectance(1.0, 1.5, c, 1.0, 2.0),
+        assert_near(film_reflectance(1.0, 1.5, c, 1.0, 2.0),
                     compute_bare_reflectance(1, 1.5, c), 1e-14);
     }
 }
@@ -145,11 +140,11 @@ TEST(film_reflectance_matches_airy)
                 const double sine = n[k][0] * sqrt(1 - c * c);
 
                 frustrated += sine > n[k][1] && sine < n[k][2];
-                assert_near(compute_film_reflectance(n[k][0], n[k][2], c,
-                                                     n[k][1], phase),
-                            compute_airy_reflectance(n[k][0], n[k][2], c,
-                                                     n[k][1], phase),
-                            1e-11);
+                assert_near(
+                    film_reflectance(n[k][0], n[k][2], c, n[k][1], phase),
+                    compute_airy_reflectance(n[k][0], n[k][2], c, n[k][1],
+                                             phase),
+                    1e-11);
             }
     assert_true(frustrated > 1000);
 }
@@ -158,16 +153,13 @@ TEST(film_reflectance_matches_airy)
  * totally. */
 TEST(thin_gap_transmits_by_frustrated_reflection)
 {
-    assert_true(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
-    assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 60.0), 1.0,
-                1e-12);
-    assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0,
-                1e-12);
+    assert_true(film_reflectance(1.7, 1.7, 0.6, 1.01, 1e-3) < 1e-4);
+    assert_near(film_reflectance(1.7, 1.7, 0.6, 1.01, 60.0), 1.0, 1e-12);
+    assert_near(film_reflectance(1.7, 1.7, 0.6, 1.01, 1e300), 1.0, 1e-12);
     /* The film's refractive index is 1.36, 1.7 times the sine 0.8, so the angle
      * is critical. */
-    assert_near(compute_film_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
-                compute_film_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0),
-                1e-7);
+    assert_near(film_reflectance(1.7, 1.7, 0.6, 1.36, 3.0),
+                film_reflectance(1.7, 1.7, 0.6, 1.36 - 1e-9, 3.0), 1e-7);
 }
 
 /* Checks that the reflectance of a boundary is 0 .. 1 and the same from both
@@ -181,10 +173,8 @@ TEST(reflectance_is_equal_from_both_sides)
             for (int i = 0; i <= 1000; i++) {
                 const double c1 = 1e-3 * i, s1 = sqrt(1 - c1 * c1);
                 const double s2 = s1 / n2, c2 = sqrt(1 - s2 * s2);
-                const double into =
-                    compute_film_reflectance(1, n2, c1, film[f], 2.6);
-                const double out =
-                    compute_film_reflectance(n2, 1, c2, film[f], 2.6);
+                const double into = film_reflectance(1, n2, c1, film[f], 2.6);
+                const double out = film_reflectance(n2, 1, c2, film[f], 2.6);
 
                 assert_true(into >= 0.0 && into <= 1.0);
                 assert_true(out >= 0.0 && out <= 1.0);

@@ -32,8 +32,8 @@ static struct glint_error error;
 /* Writes the valid table to TEXT, with END after each line. Replaces line
  * NUMBER, from 1, by LINE; NUMBER 0: replaces none. Returns the size in
  * bytes. */
-static size_t compose_table_with_line(char text[4096], int number,
-                                      const char *line, const char *end)
+static size_t compose_table(char text[4096], int number, const char *line,
+                            const char *end)
 {
     text[0] = 0;
     for (int i = 0; i < N_GOOD; i++) {
@@ -47,14 +47,12 @@ static enum glint_status parse_copy_of_text(const char *text, size_t bytes)
 {
     /* The copy has exactly the size of the text, so that ASan detects
      * overreads. */
-    char *copy = malloc(bytes ? bytes : 1);
+    char *copy = test_free_later(malloc(bytes ? bytes : 1));
     enum glint_status status;
 
-    assert_non_null(copy);
     if (bytes)
         memcpy(copy, text, bytes);
     status = glint_prescription_parse(&lens, copy, bytes, "x.lens", &error);
-    free(copy);
     return status;
 }
 
@@ -117,21 +115,19 @@ TEST(parses_a_valid_table)
 {
     char text[4096];
 
-    expect_valid_text(text, compose_table_with_line(text, 0, NULL, "\n"));
+    expect_valid_text(text, compose_table(text, 0, NULL, "\n"));
     expect_tiny_lens();
-    expect_valid_text(text, compose_table_with_line(text, 0, NULL, "\r\n"));
+    expect_valid_text(text, compose_table(text, 0, NULL, "\r\n"));
     expect_tiny_lens();
-    expect_valid_text(text, compose_table_with_line(text, 0, NULL, " \t \n\n"));
+    expect_valid_text(text, compose_table(text, 0, NULL, " \t \n\n"));
     expect_tiny_lens();
     /* the last line may have no line end */
-    expect_valid_text(text, compose_table_with_line(text, 0, NULL, "\n") - 1);
+    expect_valid_text(text, compose_table(text, 0, NULL, "\n") - 1);
     expect_tiny_lens();
     expect_valid_text(
-        text, compose_table_with_line(text, 1,
-                                      "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
+        text, compose_table(text, 1, "\xef\xbb\xbf# mark\nname tiny-4", "\n"));
     expect_tiny_lens();
-    expect_valid_text(
-        text, compose_table_with_line(text, 3, "\tf-number\t+.8E1", "\n"));
+    expect_valid_text(text, compose_table(text, 3, "\tf-number\t+.8E1", "\n"));
     expect_tiny_lens();
 }
 
@@ -140,7 +136,7 @@ static void expect_surface_coatings(int number, const char *line,
 {
     char text[4096];
 
-    expect_valid_text(text, compose_table_with_line(text, number, line, "\n"));
+    expect_valid_text(text, compose_table(text, number, line, "\n"));
     for (int k = 0; k < 4; k++) {
         assert_true(lens.surface[k].coating.nm == nm[k]);
         assert_true(lens.surface[k].coating.film[0].index == n[k]);
@@ -371,10 +367,10 @@ TEST(rejects_wrong_lines)
     char text[4096];
 
     for (size_t i = 0; i < sizeof(mistakes) / sizeof(mistakes[0]); i++)
-        expect_parse_error(text,
-                           compose_table_with_line(text, mistakes[i].number,
-                                                   mistakes[i].line, "\n"),
-                           mistakes[i].error);
+        expect_parse_error(
+            text,
+            compose_table(text, mistakes[i].number, mistakes[i].line, "\n"),
+            mistakes[i].error);
 }
 
 /* Checks that an overlap of 0.009 mm is a warning that names the surfaces, and
@@ -384,12 +380,10 @@ TEST(warns_of_small_overlaps)
     char text[4096];
 
     strcpy(error.text, "stale");
-    assert_ok(
-        parse_copy_of_text(text, compose_table_with_line(text, 0, NULL, "\n")));
+    assert_ok(parse_copy_of_text(text, compose_table(text, 0, NULL, "\n")));
     assert_string_equal(error.text, "");
     assert_ok(parse_copy_of_text(
-        text,
-        compose_table_with_line(text, 6, "surface 50 2.3517 12 N-BK7", "\n")));
+        text, compose_table(text, 6, "surface 50 2.3517 12 N-BK7", "\n")));
     assert_string_equal(
         error.text, "x.lens:6:12: surface 0 and surface 1 overlap by 0.008964 "
                     "mm at 10.8 mm from the axis; drawn as they are");
@@ -402,16 +396,16 @@ TEST(rejects_invalid_bytes)
 
     expect_parse_error(NULL, 0, "1:1: the line 'name' is missing");
     expect_parse_error("\n\n", 2, "3:1: the line 'name' is missing");
-    bytes = compose_table_with_line(text, 0, NULL, "\n");
+    bytes = compose_table(text, 0, NULL, "\n");
     text[5] = 0;
     expect_parse_error(text, bytes, "1:6: byte 0x00 is not text (UTF-8)");
     /* the text is cut off after the first byte of a multi-byte character */
-    bytes = compose_table_with_line(text, 0, NULL, "\n");
+    bytes = compose_table(text, 0, NULL, "\n");
     text[bytes - 1] = '\xe2';
     expect_parse_error(text, bytes, "10:34: byte 0xe2 is not text (UTF-8)");
     memset(line, '#', sizeof(line));
     line[201] = 0;
-    expect_parse_error(text, compose_table_with_line(text, 2, line, "\r\n"),
+    expect_parse_error(text, compose_table(text, 2, line, "\r\n"),
                        "2:201: line is longer than 200 bytes");
 }
 
@@ -421,10 +415,10 @@ TEST(rejects_too_long_lines_and_texts)
     char text[4096], line[300] = "source ";
 
     memset(line + 7, 'x', 193); /* The line becomes 200 bytes long. */
-    expect_valid_text(text, compose_table_with_line(text, 2, line, "\r\n"));
+    expect_valid_text(text, compose_table(text, 2, line, "\r\n"));
     assert_int_equal(strlen(lens.source), 193);
     memset(big, '\n', sizeof(big));
-    memcpy(big, text, compose_table_with_line(text, 0, NULL, "\n"));
+    memcpy(big, text, compose_table(text, 0, NULL, "\n"));
     expect_valid_text(big, 65536);
     expect_parse_error(big, 65537, "1:1: text is longer than 65536 bytes");
 }
@@ -435,11 +429,11 @@ TEST(accepts_utf8_in_comments)
 {
     char text[4096];
 
-    expect_valid_text(
-        text, compose_table_with_line(text, 2,
-                                      "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
-                                      "source Voigtl\xc3\xa4nder a#1 \t # no",
-                                      "\n"));
+    expect_valid_text(text,
+                      compose_table(text, 2,
+                                    "# \xe2\x82\xac \xf0\x9f\x93\xb7\n"
+                                    "source Voigtl\xc3\xa4nder a#1 \t # no",
+                                    "\n"));
     assert_string_equal(lens.source, "Voigtl\xc3\xa4nder a#1");
 }
 
@@ -499,12 +493,12 @@ TEST(checks_stated_focal_lengths)
 
     expect_valid_text(
         text,
-        compose_table_with_line(
-            text, 2, "focal-length 38.15\nback-focal-length 29.41", "\n"));
+        compose_table(text, 2, "focal-length 38.15\nback-focal-length 29.41",
+                      "\n"));
     assert_true(lens.check_focal_mm == 38.15);
     assert_true(lens.check_back_mm == 29.41);
     expect_parse_error(
-        text, compose_table_with_line(text, 2, "focal-length 38.08", "\n"),
+        text, compose_table(text, 2, "focal-length 38.08", "\n"),
         "2:14: focal-length is 38.1194 mm, not the stated 38.08 mm");
 }
 

@@ -17,8 +17,8 @@ static const struct glint_degrees degrees = {.most = {6, 6, 0, 0},
 
 /* Fits a polynomial to VALUE(u, v) on a grid, LEAST .. 1 along u and -1 .. 1
  * along v. Returns the residual. */
-static double fit_polynomial_on_grid(double (*value)(double u, double v),
-                                     double least, struct glint_poly *poly)
+static double fit_on_grid(double (*value)(double u, double v), double least,
+                          struct glint_poly *poly)
 {
     double u[RAYS], v[RAYS], zero[RAYS], one[RAYS], y[RAYS];
     const struct glint_regress_samples samples = {
@@ -64,13 +64,11 @@ TEST(symmetric_grid_separates_even_and_odd_terms)
     const double x[GLINT_VARIABLES] = {0.3, -0.6, 0, 0};
     struct glint_poly poly;
 
-    assert_true(fit_polynomial_on_grid(evaluate_even_polynomial, -1, &poly) <=
-                1);
+    assert_true(fit_on_grid(evaluate_even_polynomial, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
     assert_near(evaluate_polynomial(&poly, x),
                 evaluate_even_polynomial(x[0], x[1]), 1e-8);
-    assert_true(fit_polynomial_on_grid(evaluate_odd_polynomial, -1, &poly) <=
-                1);
+    assert_true(fit_on_grid(evaluate_odd_polynomial, -1, &poly) <= 1);
     assert_int_equal(poly.n, 4);
     assert_near(evaluate_polynomial(&poly, x),
                 evaluate_odd_polynomial(x[0], x[1]), 1e-8);
@@ -90,8 +88,7 @@ TEST(fits_nearly_dependent_powers)
     const double x[GLINT_VARIABLES] = {0.967, 0.4, 0, 0};
     struct glint_poly poly;
 
-    assert_true(
-        fit_polynomial_on_grid(evaluate_cubic_polynomial, 0.95, &poly) <= 1);
+    assert_true(fit_on_grid(evaluate_cubic_polynomial, 0.95, &poly) <= 1);
     assert_near(evaluate_polynomial(&poly, x),
                 evaluate_cubic_polynomial(x[0], x[1]), 1e-8);
 }

@@ -38,8 +38,8 @@ static void load_lens_of_surfaces(const char *surfaces)
 
 /* Returns the sag by the definition of the surface, in long double and without
  * derivatives, independent of the library. */
-static long double compute_surface_sag(const struct glint_surface *s,
-                                       long double x, long double y)
+static long double surface_sag(const struct glint_surface *s, long double x,
+                               long double y)
 {
     const struct glint_shape *const a = &s->shape;
     const long double along2 = a->bend == GLINT_BEND_ROUND ? x * x + y * y
@@ -95,12 +95,11 @@ static struct line transform_to_surface_frame(const struct glint_surface *s,
     return out;
 }
 
-static long double compute_gap_to_surface(const struct glint_surface *s,
-                                          const struct line *l, long double t)
+static long double gap_to_surface(const struct glint_surface *s,
+                                  const struct line *l, long double t)
 {
     return l->at[2] + t * l->way[2] -
-           compute_surface_sag(s, l->at[0] + t * l->way[0],
-                               l->at[1] + t * l->way[1]);
+           surface_sag(s, l->at[0] + t * l->way[0], l->at[1] + t * l->way[1]);
 }
 
 /* Finds the intersection nearest to the vertex plane: searches outwards in
@@ -118,15 +117,12 @@ static bool find_nearest_intersection(const struct glint_surface *s,
             long double low = plane + side * reach * k / n;
             long double high = plane + side * reach * (k + 1) / n;
 
-            if (!(compute_gap_to_surface(s, l, low) *
-                      compute_gap_to_surface(s, l, high) <=
-                  0))
+            if (!(gap_to_surface(s, l, low) * gap_to_surface(s, l, high) <= 0))
                 continue;
             for (int i = 0; i < 80; i++) {
                 const long double middle = (low + high) / 2;
 
-                if (compute_gap_to_surface(s, l, low) *
-                        compute_gap_to_surface(s, l, middle) <=
+                if (gap_to_surface(s, l, low) * gap_to_surface(s, l, middle) <=
                     0)
                     high = middle;
                 else
@@ -147,11 +143,8 @@ static void refract_by_vector_snell(const struct glint_surface *s,
     const long double x = l->at[0] + t * l->way[0];
     const long double y = l->at[1] + t * l->way[1], h = 1e-5L;
     long double n[3] = {
-        -(compute_surface_sag(s, x + h, y) - compute_surface_sag(s, x - h, y)) /
-            (2 * h),
-        -(compute_surface_sag(s, x, y + h) - compute_surface_sag(s, x, y - h)) /
-            (2 * h),
-        1};
+        -(surface_sag(s, x + h, y) - surface_sag(s, x - h, y)) / (2 * h),
+        -(surface_sag(s, x, y + h) - surface_sag(s, x, y - h)) / (2 * h), 1};
     const long double size = sqrtl(n[0] * n[0] + n[1] * n[1] + 1);
     long double c = 0, out;
 
@@ -222,8 +215,8 @@ static int compare_rays_near_axis(const char *surfaces, double span)
             continue;
         refract_by_vector_snell(s, &own, t, 1 / (long double)s->nd, way);
         for (int k = 0; k < 2; k++) {
-            const long double z = compute_gap_to_surface(s, &own, t) +
-                                  compute_surface_sag(s, at[0], at[1]);
+            const long double z =
+                gap_to_surface(s, &own, t) + surface_sag(s, at[0], at[1]);
             const long double at_flat = at[k] + s->shape.decentre_mm[k] +
                                         (s->thickness_mm - z) / way[2] * way[k];
 

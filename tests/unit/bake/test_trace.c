@@ -159,8 +159,8 @@ TEST(rays_match_other_program)
 /* Returns a lens of N uncoated surfaces, which lead alternately into glass of
  * refractive index 1.5 and into air, with the stop behind them. The parser
  * might reject it. */
-static struct glint_prescription
-make_lens_of_bare_surfaces(int n, const double *radius_mm, double thickness_mm)
+static struct glint_prescription make_bare_lens(int n, const double *radius_mm,
+                                                double thickness_mm)
 {
     struct glint_prescription lens;
 
@@ -195,8 +195,7 @@ static void expect_event_of_path(const struct glint_event *event,
 TEST(ghost_path_has_five_events)
 {
     static const double radii[] = {40.0, -40.0};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(2, radii, 5.0);
+    const struct glint_prescription lens = make_bare_lens(2, radii, 5.0);
     const struct glint_ghost ghost = {0, 1};
     struct glint_path path;
 
@@ -214,7 +213,7 @@ TEST(direct_path_begins_at_a_front_stop)
 {
     static const double radii[] = {40.0, -40.0};
     static const struct glint_ghost none = {-1, -1};
-    struct glint_prescription lens = make_lens_of_bare_surfaces(2, radii, 5.0);
+    struct glint_prescription lens = make_bare_lens(2, radii, 5.0);
     const double up[3] = {0.0, 0.6, 0.8};
     struct glint_path path, same;
     struct glint_ray ray;
@@ -240,7 +239,7 @@ TEST(longest_path_fits_the_event_array)
 {
     static double radii[GLINT_MAX_SURFACES];
     struct glint_prescription lens =
-        make_lens_of_bare_surfaces(GLINT_MAX_SURFACES, radii, 1);
+        make_bare_lens(GLINT_MAX_SURFACES, radii, 1);
     const struct glint_ghost ghost = {0, GLINT_MAX_SURFACES - 1};
     struct glint_path path;
 
@@ -267,8 +266,7 @@ trace_single_ray(const struct glint_prescription *lens, double py_mm,
 TEST(plate_displaces_ray)
 {
     static const double flat[2] = {0.0, 0.0};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(2, flat, 5.0);
+    const struct glint_prescription lens = make_bare_lens(2, flat, 5.0);
     const double up[3] = {0.0, 0.6, 0.8};
     const double inside = 5.0 * 0.4 / sqrt(0.84);
     struct glint_ray ray;
@@ -286,8 +284,7 @@ TEST(plate_displaces_ray)
 TEST(surface_of_huge_radius_acts_as_a_plane)
 {
     static const double huge[2] = {1e7, 0.0};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(2, huge, 5.0);
+    const struct glint_prescription lens = make_bare_lens(2, huge, 5.0);
     const double along[3] = {0.0, 0.0, 1.0};
     const double height = 6.0;
     struct glint_ray ray;
@@ -306,8 +303,7 @@ TEST(surface_of_huge_radius_acts_as_a_plane)
 TEST(ray_to_the_centre_of_a_tiny_sphere_goes_straight)
 {
     static const double tiny[1] = {0.01};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(1, tiny, 5.0);
+    const struct glint_prescription lens = make_bare_lens(1, tiny, 5.0);
     const double up[3] = {0.0, 0.6, 0.8}, along[3] = {0.0, 0.0, 1.0};
     struct glint_ray ray;
 
@@ -327,7 +323,7 @@ TEST(ray_to_the_centre_of_a_tiny_sphere_goes_straight)
 TEST(aplanatic_points_are_free_of_aberration)
 {
     static const double radius[1] = {10.0};
-    struct glint_prescription lens = make_lens_of_bare_surfaces(1, radius, 5.0);
+    struct glint_prescription lens = make_bare_lens(1, radius, 5.0);
     struct glint_ray ray;
 
     lens.stop_thickness_mm = 35.0 / 3.0;
@@ -346,8 +342,7 @@ TEST(aplanatic_points_are_free_of_aberration)
 TEST(reflects_totally_beyond_the_critical_angle)
 {
     static const double curved[2] = {0.0, -10.0};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(2, curved, 5.0);
+    const struct glint_prescription lens = make_bare_lens(2, curved, 5.0);
     const double along[3] = {0.0, 0.0, 1.0};
     struct glint_ray ray = {7.0, 7.0, 7.0, 7.0, 7.0, 7.0};
 
@@ -366,8 +361,7 @@ TEST(plate_ghost_is_displaced_three_times)
 {
     static const double flat[2] = {0.0, 0.0};
     static const struct glint_ghost ghost = {0, 1};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(2, flat, 5.0);
+    const struct glint_prescription lens = make_bare_lens(2, flat, 5.0);
     const double up[3] = {0.0, 0.6, 0.8}, along[3] = {0.0, 0.0, 1.0};
     const double inside = 5.0 * 0.4 / sqrt(0.84);
     struct glint_path path;
@@ -393,8 +387,7 @@ TEST(plate_ghost_is_displaced_three_times)
 TEST(invalid_rays_are_missed)
 {
     static const double flat[2] = {0.0, 0.0};
-    const struct glint_prescription lens =
-        make_lens_of_bare_surfaces(2, flat, 5.0);
+    const struct glint_prescription lens = make_bare_lens(2, flat, 5.0);
     const double along[3] = {0.0, 0.0, 1.0}, back[3] = {0.0, 0.0, -1.0};
     const double across[3] = {1.0, 0.0, 0.0},
                  none[3] = {(double)NAN, (double)NAN, (double)NAN};

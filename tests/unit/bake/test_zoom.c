@@ -204,7 +204,7 @@ TEST(elements_stay_solid_behind_a_front_stop)
 
 /* ---------------------------------------------------- zoom lines of tables */
 
-static void check_table_is_rejected(const char *body, const char *cause)
+static void expect_rejected(const char *body, const char *cause)
 {
     char text[1000];
 
@@ -221,28 +221,23 @@ static void check_table_is_rejected(const char *body, const char *cause)
 
 TEST(rejects_wrong_columns)
 {
-    check_table_is_rejected("f-number 10\n" FRONT "4/x" BACK,
-                            "t.lens:5:15: thickness 'x'");
-    check_table_is_rejected("f-number 10\n" FRONT "4//6" BACK, "thickness");
-    check_table_is_rejected(
-        "f-number 10/11/12\n" FRONT "4/6" BACK,
-        "thickness has 2 positions, but the lines above have 3");
-    check_table_is_rejected("f-number 10/11\n" FRONT "4" BACK,
-                            "no thickness differs");
-    check_table_is_rejected("f-number 10\n" FRONT "4/4" BACK,
-                            "focal lengths must only rise or only fall");
-    check_table_is_rejected("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
-                            "more than 8 positions");
-    check_table_is_rejected("f-number 10\nfocal-length 31/99\n" FRONT
-                            "4/6" BACK,
-                            "focal-length is");
-    check_table_is_rejected("f-number 10\nfocus\n" FRONT "4/6" BACK,
-                            "end it above");
-    check_table_is_rejected("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT
-                            "4/6" BACK,
-                            "t.lens:5:1: the group above has no line 'end'");
-    check_table_is_rejected("f-number 10\nfocus\nend\n" FRONT "4/6" BACK,
-                            "the focusing group has no surface");
+    expect_rejected("f-number 10\n" FRONT "4/x" BACK,
+                    "t.lens:5:15: thickness 'x'");
+    expect_rejected("f-number 10\n" FRONT "4//6" BACK, "thickness");
+    expect_rejected("f-number 10/11/12\n" FRONT "4/6" BACK,
+                    "thickness has 2 positions, but the lines above have 3");
+    expect_rejected("f-number 10/11\n" FRONT "4" BACK, "no thickness differs");
+    expect_rejected("f-number 10\n" FRONT "4/4" BACK,
+                    "focal lengths must only rise or only fall");
+    expect_rejected("f-number 10\n" FRONT "1/2/3/4/5/6/7/8/9" BACK,
+                    "more than 8 positions");
+    expect_rejected("f-number 10\nfocal-length 31/99\n" FRONT "4/6" BACK,
+                    "focal-length is");
+    expect_rejected("f-number 10\nfocus\n" FRONT "4/6" BACK, "end it above");
+    expect_rejected("f-number 10\nfocus\ngroup tilt 1 0\n" FRONT "4/6" BACK,
+                    "t.lens:5:1: the group above has no line 'end'");
+    expect_rejected("f-number 10\nfocus\nend\n" FRONT "4/6" BACK,
+                    "the focusing group has no surface");
 }
 
 /* Checks that the lens at a zoom position does not depend on the position set

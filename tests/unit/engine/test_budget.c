@@ -107,8 +107,8 @@ TEST(frame_time_stays_within_the_budget)
  * times of level FROM and higher levels wrong by 2^OCTAVES, and draws N frames.
  * Returns how many of these have full resolution. Sets *LAST to whether the
  * last one has. */
-static int count_full_resolution_frames(double ms, int from, double octaves,
-                                        int n, bool *last)
+static int count_full_frames(double ms, int from, double octaves, int n,
+                             bool *last)
 {
     static uint8_t px[2 * WIDTH * HEIGHT];
     struct glint_image image = glint_image_over(px, GLINT_YUYV, WIDTH, HEIGHT);
@@ -139,8 +139,7 @@ TEST(overestimated_levels_are_used_in_the_end)
 {
     bool last;
 
-    assert_in_range(count_full_resolution_frames(4.6, 1, 1.5, 300, &last), 1,
-                    299);
+    assert_in_range(count_full_frames(4.6, 1, 1.5, 300, &last), 1, 299);
     assert_true(last);
 }
 
@@ -152,14 +151,12 @@ TEST(slightly_too_slow_level_is_tried)
 {
     bool last;
 
-    assert_in_range(count_full_resolution_frames(4.6, 2, 0.95, 20, &last), 1,
-                    20);
+    assert_in_range(count_full_frames(4.6, 2, 0.95, 20, &last), 1, 20);
     assert_true(last);
     /* a quality level predicted to exceed the budget by half is not tried */
-    assert_int_equal(count_full_resolution_frames(4.6, 2, 1.3, 20, &last), 0);
-    assert_in_range(
-        count_full_resolution_frames(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last),
-        1, 25);
+    assert_int_equal(count_full_frames(4.6, 2, 1.3, 20, &last), 0);
+    assert_in_range(count_full_frames(4.1, GLINT_QUALITY_LEVELS, 0, 100, &last),
+                    1, 25);
     assert_false(last);
 }
 

@@ -506,9 +506,8 @@ TEST(shorter_config_of_older_programs_gets_defaults)
 TEST(shorter_options_of_older_programs_are_respected)
 {
     const size_t bytes = offsetof(struct glint_options, tile);
-    struct glint_options o, *const older = malloc(bytes);
+    struct glint_options o, *const older = test_free_later(malloc(bytes));
 
-    assert_non_null(older);
     memset(&o, 0x55, sizeof o);
     glint_options_defaults_sized(&o, bytes);
     assert_int_equal(((unsigned char *)&o)[bytes], 0x55);
@@ -523,7 +522,6 @@ TEST(shorter_options_of_older_programs_are_respected)
     assert_true(cfg.light.strength == 0.25);
     assert_int_equal(cfg.drawing.dials.snap_codes_q8, 3 << 8);
     assert_int_equal(cfg.drawing.tile_log2, 6);
-    free(older);
 }
 
 /* Checks that options set by name draw the same image as a configuration with
@@ -571,12 +569,11 @@ TEST(camera_options_equal_a_setup_by_steps)
     struct glint_iris iris = {
         .roundness = 0.3, .softness = 0.1, .dust = 0.02, .dust_seed = 7};
     const struct glint_front front = {.dust = 0.05, .dust_seed = 1};
-    struct glint_setup *const setup = malloc(sizeof *setup);
+    struct glint_setup *const setup = test_free_later(malloc(sizeof *setup));
     struct glint_dirt *dirt = NULL;
     struct glint_front_dirt *on_front = NULL;
     struct glint_options o;
 
-    assert_non_null(setup);
     assert_ok(glint_setup_from_model(setup, lens, 6, 10, nm, 2, &error));
     assert_ok(glint_setup_iris(setup, &iris, &dirt, &error));
     glint_setup_balance(setup);
@@ -611,7 +608,6 @@ TEST(camera_options_equal_a_setup_by_steps)
     assert_memory_equal(got, want, BYTES);
     glint_front_free(on_front);
     glint_dirt_free(dirt);
-    free(setup);
 }
 
 /* Checks that dust in the stop is drawn if it is the only option of the iris

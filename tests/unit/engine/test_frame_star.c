@@ -38,8 +38,7 @@ TEST_CLOSE
 /* Returns the power, in the brightest channel, of the starburst of a lamp of
  * power POWER at the fade level LEVEL, 0 .. 1. SEEN_PX: RMS radius of the
  * lamp's clipped core in the image, pixels; 0: not clipped. */
-static double compute_star_power_at_fade_level(double power, double seen_px,
-                                               double level)
+static double star_power_at_fade(double power, double seen_px, double level)
 {
     const struct glint_lamp lamp = {5, 30, power, {1, .5, 0}, {0, 0}, 0};
 
@@ -72,25 +71,21 @@ static double compute_half_power_of_white_star(double seen_px)
 TEST(clipped_lamps_get_more_star_power)
 {
     /* the star of a lamp that is not clipped has the lamp's power */
-    assert_true(
-        is_relatively_near(compute_star_power_at_fade_level(1000, 0, 1), 1000));
+    assert_true(is_relatively_near(star_power_at_fade(1000, 0, 1), 1000));
     /* The star of a clipped lamp gets more power: at most 32 times, and at most
      * so much that the star is white out to the edge of the visible core. */
-    assert_true(is_relatively_near(
-        compute_star_power_at_fade_level(1000, 50, 1), 32000));
-    assert_true(is_relatively_near(compute_star_power_at_fade_level(1000, 2, 1),
+    assert_true(is_relatively_near(star_power_at_fade(1000, 50, 1), 32000));
+    assert_true(is_relatively_near(star_power_at_fade(1000, 2, 1),
                                    compute_half_power_of_white_star(2)));
-    assert_true(is_relatively_near(
-        compute_star_power_at_fade_level(1000, 0.5, 1), 1000));
+    assert_true(is_relatively_near(star_power_at_fade(1000, 0.5, 1), 1000));
     /* the star of a fading lamp fades with the lamp */
-    assert_true(
-        is_relatively_near(compute_star_power_at_fade_level(500, 2, 0.5),
-                           0.5 * compute_half_power_of_white_star(2)));
+    assert_true(is_relatively_near(star_power_at_fade(500, 2, 0.5),
+                                   0.5 * compute_half_power_of_white_star(2)));
 }
 
 static double compute_star_radius_px(double power, double seen_px)
 {
-    compute_star_power_at_fade_level(power, seen_px, 1);
+    star_power_at_fade(power, seen_px, 1);
     return frame.star.light[0].radius_q8 / 256.0;
 }
 
@@ -136,7 +131,7 @@ TEST(glare_of_a_small_lamp_does_not_widen_spikes)
         before = radius;
     }
     before = compute_star_radius_px(3 * white, 50);
-    compute_star_power_at_fade_level(1.5 * white, 50, 0.5);
+    star_power_at_fade(1.5 * white, 50, 0.5);
     assert_true(fabs(frame.star.light[0].radius_q8 / 256.0 - before) < 0.01);
 }
 
@@ -168,7 +163,7 @@ TEST(reserved_memory_prevents_allocations)
     star = frame.star.star;
     tables = frame.star.tables;
     bytes = glint_frame_star_count_bytes(&frame);
-    compute_star_power_at_fade_level(1000, 0, 1);
+    star_power_at_fade(1000, 0, 1);
     assert_ptr_equal(star, frame.star.star);
     assert_int_equal(bytes, glint_frame_star_count_bytes(&frame));
     /* the star tables, and the lamps twice: as given and as drawn */
@@ -184,17 +179,17 @@ TEST(stars_cost_at_most_a_quarter_of_the_budget)
     const struct glint_budget none = frame.budget;
     double pixels;
 
-    compute_star_power_at_fade_level(1e7, 0, 1);
+    star_power_at_fade(1e7, 0, 1);
     pixels = frame.star.pixels;
     frame.budget.ms_per_minsn = 0.1;
     frame.budget.ms = 1;
-    compute_star_power_at_fade_level(1e7, 0, 1);
+    star_power_at_fade(1e7, 0, 1);
     print_message("%.0f pixels, %.0f within 1 ms\n", pixels, frame.star.pixels);
     assert_true(frame.star.pixels > 1000);
     assert_true(frame.star.pixels < 0.5 * pixels);
     assert_true(frame.star.pixels * 0.32e-3 * 0.1 <= 0.25);
     frame.budget.ms = 1e-6;
-    compute_star_power_at_fade_level(1e7, 0, 1);
+    star_power_at_fade(1e7, 0, 1);
     assert_true(frame.star.pixels == 0);
     frame.budget = none;
 }
@@ -225,9 +220,9 @@ TEST(camera_noise_does_not_make_stars_flicker)
             if (i < SETTLED)
                 continue;
             assert_int_equal(night.n_tracks, 1);
-            power = compute_star_power_at_fade_level(
-                (double)t->power_q16 / 65536, t->size_q8 / 256.0,
-                t->level_q15 / 32768.0);
+            power =
+                star_power_at_fade((double)t->power_q16 / 65536,
+                                   t->size_q8 / 256.0, t->level_q15 / 32768.0);
             step = last > 0 ? fmax(step, fabs(log(power / last))) : step;
             least = fmin(least, power);
             most = fmax(most, power);
@@ -249,7 +244,7 @@ TEST(higher_cull_codes_cover_fewer_pixels)
 
     for (frame.dials.cull_codes = 1 / 32.; frame.dials.cull_codes < 16;
          frame.dials.cull_codes *= 8) {
-        compute_star_power_at_fade_level(1e4, 0, 1);
+        star_power_at_fade(1e4, 0, 1);
         print_message("%g codes: %.0f pixels\n", frame.dials.cull_codes,
                       frame.star.pixels);
         assert_true(frame.star.pixels > 0 && frame.star.pixels < 0.9 * last);

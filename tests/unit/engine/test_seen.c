@@ -27,7 +27,7 @@ static void set_flare_rows(int rows, double of)
             light[y][x][1] = (float)of;
 }
 
-static struct glint_seen measure_flare_visibility(void)
+static struct glint_seen visibility(void)
 {
     struct glint_seen seen;
 
@@ -44,31 +44,28 @@ TEST(bright_background_lowers_visibility)
 
     fill_background(0);
     set_flare_rows(4, each);
-    dark = measure_flare_visibility();
+    dark = visibility();
     assert_true(fabs(log2(dark.few)) <= 0.126);
     assert_true(dark.many == 0);
     fill_background(120);
-    lit = measure_flare_visibility();
+    lit = visibility();
     assert_true(fabs(log2(lit.few *
                           (canvas_decode_srgb(152) - canvas_decode_srgb(120)) /
                           each)) <= 0.126);
     fill_background(240);
-    assert_true(measure_flare_visibility().few ==
-                0); /* nothing is visible on white */
+    assert_true(visibility().few == 0); /* nothing is visible on white */
 }
 
 TEST(visibility_ignores_single_pixels)
 {
     fill_background(0);
     set_flare_rows(0, 1);
-    assert_true(measure_flare_visibility().few == 0 &&
-                measure_flare_visibility().many == 0);
+    assert_true(visibility().few == 0 && visibility().many == 0);
     set_flare_rows(HEIGHT / 3, 4 * canvas_decode_srgb(32));
-    assert_true(measure_flare_visibility().few ==
-                measure_flare_visibility().many);
-    assert_true(fabs(log2(measure_flare_visibility().many) - 2) <= 0.126);
+    assert_true(visibility().few == visibility().many);
+    assert_true(fabs(log2(visibility().many) - 2) <= 0.126);
     light[0][0][0] = 1; /* a single bright pixel is ignored */
-    assert_true(fabs(log2(measure_flare_visibility().few) - 2) <= 0.126);
+    assert_true(fabs(log2(visibility().few) - 2) <= 0.126);
 }
 
 /* Checks the measure `white`: the light of a flare divided by the light that
@@ -81,16 +78,16 @@ TEST(only_all_channels_make_white)
 
     fill_background(200);
     set_flare_rows(1, 1);
-    assert_true(measure_flare_visibility().white ==
+    assert_true(visibility().white ==
                 0); /* green light alone does not make a pixel white */
     for (int x = 0; x < WIDTH; x++)
         for (int c = 0; c < 3; c++)
             light[0][x][c] = x < 4 ? room : 0;
-    assert_true(fabs(log2(measure_flare_visibility().white)) <= 0.126);
+    assert_true(fabs(log2(visibility().white)) <= 0.126);
     fill_background(250);
-    assert_true(measure_flare_visibility().white == 0);
+    assert_true(visibility().white == 0);
     fill_background(159);
-    assert_true(measure_flare_visibility().white == 0);
+    assert_true(visibility().white == 0);
 }
 
 /* Checks the background (struct ground) that is sampled from an image: if the
@@ -111,8 +108,8 @@ TEST(background_is_sampled_from_the_image)
 /* Corrects the exposure of a flare at the strength ASKED. Before the
  * correction, the flare has the peak PEAK, the mean MEAN and the visibility
  * SEEN. Returns the corrected peak. */
-static double compute_exposed_flare_peak(double asked, double peak, double mean,
-                                         struct glint_seen seen)
+static double exposed_peak(double asked, double peak, double mean,
+                           struct glint_seen seen)
 {
     const struct glint_response_light drawn = {{peak, 0, 0}, {mean, 0, 0}};
     struct glint_strength s;
@@ -131,23 +128,17 @@ TEST(hidden_flares_are_exposed_brighter)
                             half = {0.0625, 0, 0};
 
     /* a flare that is fully visible gets a peak of a quarter of white */
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, plain) -
-                     0.25) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, plain) - 0.25) < 0.001);
     /* An invisible flare is brightened until it is visible. The limit of its
      * peak is 0.6 of white. */
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, half) - 0.5) <
-                0.001);
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, hidden) -
-                     0.6) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, half) - 0.5) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, hidden) - 0.6) < 0.001);
     /* Half of the strength darkens the flare to a quarter, as for visible
      * flares. */
-    assert_true(fabs(compute_exposed_flare_peak(0.25, peak, mean, half) -
-                     0.125) < 0.001);
-    assert_true(fabs(compute_exposed_flare_peak(0.25, peak, mean, plain) -
-                     0.0625) < 0.001);
+    assert_true(fabs(exposed_peak(0.25, peak, mean, half) - 0.125) < 0.001);
+    assert_true(fabs(exposed_peak(0.25, peak, mean, plain) - 0.0625) < 0.001);
     /* The mean of the flare is limited to 0.04 of white. */
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, peak / 10, hidden) -
-                     0.4) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, peak / 10, hidden) - 0.4) < 0.001);
 }
 
 TEST(veils_and_skies_are_exposed_darker)
@@ -157,15 +148,11 @@ TEST(veils_and_skies_are_exposed_darker)
                             thin = {1, 0.05, 0}, sky = {0, 0, peak / 0.4},
                             haze = {0, 0, peak / 0.05};
 
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, veil) -
-                     0.125) < 0.001);
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, mean, thick) - 0.1) <
-                0.001);
-    assert_true(compute_exposed_flare_peak(0.5, peak, mean, thin) > 0.24);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, veil) - 0.125) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, mean, thick) - 0.1) < 0.001);
+    assert_true(exposed_peak(0.5, peak, mean, thin) > 0.24);
     /* On a sky that becomes white when light of 0.4 is added, the peak of
      * ghosts is two fifths of 0.4, and at least 0.1. */
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, peak / 300, sky) -
-                     0.16) < 0.001);
-    assert_true(fabs(compute_exposed_flare_peak(0.5, peak, peak / 300, haze) -
-                     0.1) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, peak / 300, sky) - 0.16) < 0.001);
+    assert_true(fabs(exposed_peak(0.5, peak, peak / 300, haze) - 0.1) < 0.001);
 }

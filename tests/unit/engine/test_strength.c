@@ -47,10 +47,10 @@ static struct glint_engine_lamp make_lamp_at_angle(double theta_deg,
 
 /* Returns the peak of the flare of N lamps after exposure, US microseconds
  * after the previous frame. level[i], 0 .. 1, is the fade level of lamp i. */
-static double compute_exposed_flare_peak(struct glint_strength *s,
-                                         const struct glint_response *r,
-                                         struct glint_engine_lamp *lamps,
-                                         const double *level, int n, int us)
+static double exposed_peak(struct glint_strength *s,
+                           const struct glint_response *r,
+                           struct glint_engine_lamp *lamps, const double *level,
+                           int n, int us)
 {
     const struct glint_strength_lamps all = {lamps, part, n, PIXELS};
 
@@ -60,16 +60,15 @@ static double compute_exposed_flare_peak(struct glint_strength *s,
     return glint_largest_channel(s->light.peak);
 }
 
-static double compute_flare_peak_of_still(double asked,
-                                          const struct glint_response *r,
-                                          double theta, double power)
+static double peak_of_still(double asked, const struct glint_response *r,
+                            double theta, double power)
 {
     struct glint_engine_lamp lamp = make_lamp_at_angle(theta, power);
     struct glint_strength s;
 
     glint_strength_set_defaults(&s);
     s.asked = asked;
-    return compute_exposed_flare_peak(&s, r, &lamp, NULL, 1, 0);
+    return exposed_peak(&s, r, &lamp, NULL, 1, 0);
 }
 
 /* ------------------------------------------------------------ still images */
@@ -85,12 +84,10 @@ TEST(peak_is_a_quarter_of_white_by_default)
 {
     const struct glint_response r = make_lens_response(0, 7);
 
-    assert_true(fabs(compute_flare_peak_of_still(0.5, &r, 5, common) - 0.25) <
-                1e-4);
-    assert_true(fabs(compute_flare_peak_of_still(1, &r, 5, common) - 1) < 1e-3);
-    assert_true(
-        fabs(compute_flare_peak_of_still(0.25, &r, 5, common) - 0.0625) < 1e-4);
-    assert_true(compute_flare_peak_of_still(0, &r, 5, common) == 0);
+    assert_true(fabs(peak_of_still(0.5, &r, 5, common) - 0.25) < 1e-4);
+    assert_true(fabs(peak_of_still(1, &r, 5, common) - 1) < 1e-3);
+    assert_true(fabs(peak_of_still(0.25, &r, 5, common) - 0.0625) < 1e-4);
+    assert_true(peak_of_still(0, &r, 5, common) == 0);
 }
 
 TEST(peak_rises_with_strength)
@@ -99,7 +96,7 @@ TEST(peak_rises_with_strength)
     double last = 0;
 
     for (double asked = 0.01; asked < 4; asked *= 1.1) {
-        const double peak = compute_flare_peak_of_still(asked, &r, 12, 1e5);
+        const double peak = peak_of_still(asked, &r, 12, 1e5);
 
         assert_true(peak > last);
         last = peak;
@@ -114,8 +111,7 @@ TEST(any_lamp_power_gives_a_visible_flare)
     double last = 0;
 
     for (double stops = -4; stops <= 40; stops++) {
-        const double peak =
-            compute_flare_peak_of_still(0.5, &r, 12, exp2(stops));
+        const double peak = peak_of_still(0.5, &r, 12, exp2(stops));
 
         assert_true(peak >= 0.124 && peak <= 0.501);
         assert_true(peak > last);
@@ -153,9 +149,9 @@ TEST(many_equal_lamps_share_the_exposure)
 
     for (int i = 0; i < 16; i++)
         lamps[i] = make_lamp_at_angle(i, 1e4);
-    one = compute_flare_peak_of_still(0.5, &r, 1, 1e4);
-    each = compute_exposed_flare_peak(&strength, &r, lamps, NULL, 16, 0) /
-           2; /* 2 = 16^(1/4) */
+    one = peak_of_still(0.5, &r, 1, 1e4);
+    each =
+        exposed_peak(&strength, &r, lamps, NULL, 16, 0) / 2; /* 2 = 16^(1/4) */
     assert_true(each > one / 2.2 && each < one);
 }
 
@@ -207,7 +203,7 @@ static double compute_corrected_flare_peak(double asked, double stops,
 
     glint_strength_set_defaults(&s);
     s.asked = asked;
-    compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, 0);
+    exposed_peak(&s, &r, &lamp, NULL, 1, 0);
     assert_false(s.is_drawn);
     drawn.peak[1] = exp2(stops - 5);
     drawn.mean[1] = exp2(stops - 5 - mean_stops);
@@ -243,7 +239,7 @@ TEST(physical_exposure_is_not_corrected)
     struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
     double scale;
 
-    compute_exposed_flare_peak(&strength, &r, &lamp, NULL, 1, 0);
+    exposed_peak(&strength, &r, &lamp, NULL, 1, 0);
     scale = strength.scale;
     glint_strength_correct_exposure(&strength, &none, NULL);
     assert_true(strength.scale == scale && !strength.is_drawn);
@@ -266,7 +262,7 @@ TEST(crossing_lamp_changes_gradually)
         struct glint_engine_lamp lamp =
             make_lamp_at_angle(fabs(20 - i * 0.2), 1e5);
         const double peak =
-            compute_exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
+            exposed_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.5);
         if (i > 0)
@@ -286,8 +282,8 @@ TEST(rising_sun_lowers_the_factor_gradually)
         struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e3),
                                              make_lamp_at_angle(8, 1e6)};
         const double level[2] = {1, fmin(1, (i - 49) / 5.0)};
-        const double peak = compute_exposed_flare_peak(
-            &strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
+        const double peak =
+            exposed_peak(&strength, &r, lamps, level, i < 50 ? 1 : 2, FRAME_US);
 
         assert_true(peak > 0.1 && peak < 0.8);
         if (i > 0)
@@ -312,13 +308,13 @@ TEST(leaving_sun_raises_the_factor_slowly)
         struct glint_engine_lamp lamps[2] = {make_lamp_at_angle(5, 1e3),
                                              make_lamp_at_angle(8, 1e6)};
 
-        compute_exposed_flare_peak(&strength, &r, lamps, NULL, 2, 0);
+        exposed_peak(&strength, &r, lamps, NULL, 2, 0);
         first = scale = strength.scale;
     }
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, 1e3);
 
-        compute_exposed_flare_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
+        exposed_peak(&strength, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(strength.scale >= scale &&
                     strength.scale / scale < exp2(0.081));
         scale = strength.scale;
@@ -336,8 +332,8 @@ TEST(single_lamp_follows_its_level)
     for (int i = 1; i <= 8; i++) {
         const double level = i / 8.0;
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, level * common);
-        const double peak = compute_exposed_flare_peak(&strength, &r, &lamp,
-                                                       &level, 1, FRAME_US);
+        const double peak =
+            exposed_peak(&strength, &r, &lamp, &level, 1, FRAME_US);
 
         assert_true(fabs(peak - 0.25 * level) < 0.01);
         assert_true(peak > last);
@@ -353,17 +349,14 @@ TEST(exposure_adapts_at_once_after_a_cut)
     struct glint_engine_lamp faint = make_lamp_at_angle(5, 10),
                              bright = make_lamp_at_angle(5, common);
 
-    compute_exposed_flare_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
-    assert_true(compute_exposed_flare_peak(&strength, &r, &bright, NULL, 1,
-                                           FRAME_US) > 0.3);
+    exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US);
+    assert_true(exposed_peak(&strength, &r, &bright, NULL, 1, FRAME_US) > 0.3);
     assert_true(part[0] < 1);
     bright = make_lamp_at_angle(5, common);
-    assert_true(
-        fabs(compute_exposed_flare_peak(&strength, &r, &bright, NULL, 1, 0) -
-             0.25) < 1e-4);
-    compute_exposed_flare_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
-    assert_true(compute_exposed_flare_peak(&strength, &r, &faint, NULL, 1,
-                                           FRAME_US) > 0.1);
+    assert_true(fabs(exposed_peak(&strength, &r, &bright, NULL, 1, 0) - 0.25) <
+                1e-4);
+    exposed_peak(&strength, &r, &faint, NULL, 0, FRAME_US);
+    assert_true(exposed_peak(&strength, &r, &faint, NULL, 1, FRAME_US) > 0.1);
 }
 
 /* Checks that a strength set in a key frame applies in this frame, also after
@@ -379,24 +372,22 @@ TEST(strength_of_key_frames_applies_at_once)
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, common);
 
         s.asked = asked[i];
-        assert_true(
-            fabs(compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                 asked[i] * asked[i]) < 1e-3);
+        assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                         asked[i] * asked[i]) < 1e-3);
     }
     s.asked = 0;
     for (int i = 0; i < 250; i++) {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, 64 * common);
 
-        compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
+        exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US);
         assert_true(s.scale == 0);
     }
     {
         struct glint_engine_lamp lamp = make_lamp_at_angle(5, 64 * common);
 
         s.asked = 0.5;
-        assert_true(
-            fabs(compute_exposed_flare_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
-                 compute_flare_peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
+        assert_true(fabs(exposed_peak(&s, &r, &lamp, NULL, 1, FRAME_US) -
+                         peak_of_still(0.5, &r, 5, 64 * common)) < 1e-3);
         assert_true(part[0] > 0.998);
     }
 }

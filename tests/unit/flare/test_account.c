@@ -65,8 +65,8 @@ static void plan_and_bin_edges(struct fixture *f)
 
 /* Returns the address of the coefficient of term TERM of output KIND of
  * system SYSTEM. */
-static int32_t *address_of_coefficient(struct fixture *f, int system, int kind,
-                                       int term)
+static int32_t *coefficient_of(struct fixture *f, int system, int kind,
+                               int term)
 {
     const struct glint_model_system *s = &f->lens.system[system];
     const struct glint_model_output *o =
@@ -197,8 +197,8 @@ TEST(counts_bundles_blocked_by_barrels)
     open_model_with_beams(&f, 2);
     /* A value above 1 means that the barrel aperture blocks the ray; here it
      * blocks all rays. */
-    *address_of_coefficient(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
-    *address_of_coefficient(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
+    *coefficient_of(&f, 0, GLINT_OUT_BARREL_0, 0) = 295279001;
+    *coefficient_of(&f, 1, GLINT_OUT_BARREL_0, 0) = 295279001;
     assert_bundle_outcome(&f, GLINT_OUTCOME_BLOCKED, 2 * WAVES);
 }
 
@@ -210,14 +210,11 @@ TEST(counts_bundles_outside_the_image)
 
     open_model_with_beams(&f, 1);
     f.light[0].sine_q30 = 1 << 26;
-    *address_of_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) =
-        510027366; /* 1.9 mm */
+    *coefficient_of(&f, 0, GLINT_OUT_SENSOR_X, 0) = 510027366; /* 1.9 mm */
     assert_bundle_outcome(&f, GLINT_OUTCOME_OUTSIDE, WAVES);
-    *address_of_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) =
-        469762048; /* 1.75 mm */
+    *coefficient_of(&f, 0, GLINT_OUT_SENSOR_X, 0) = 469762048; /* 1.75 mm */
     assert_bundle_outcome(&f, GLINT_OUTCOME_EMPTY, WAVES);
-    *address_of_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) =
-        402653184; /* 1.5 mm */
+    *coefficient_of(&f, 0, GLINT_OUT_SENSOR_X, 0) = 402653184; /* 1.5 mm */
     assert_bundle_outcome(&f, GLINT_OUTCOME_DRAWN, WAVES);
 }
 
@@ -391,8 +388,8 @@ static void scale_stop_polynomials(struct fixture *f)
     for (int k = 0; k < f->lens.system[0].n_outputs; k++, o++)
         for (int term = 0; term < o->n_terms; term++)
             if (o->kind == GLINT_OUT_STOP_X || o->kind == GLINT_OUT_STOP_Y)
-                *address_of_coefficient(f, 0, o->kind, term) =
-                    *address_of_coefficient(f, 0, o->kind, term) / 5 * 12;
+                *coefficient_of(f, 0, o->kind, term) =
+                    *coefficient_of(f, 0, o->kind, term) / 5 * 12;
     f->cfg.stop.n_blades = 0;
 }
 
@@ -422,7 +419,7 @@ static void check_outside_ghost_adds_no_light(int small_stop)
                 (int32_t)lrint(cos(degrees / 57.29578) * 0x1p30);
             f.light[0].sin_q30 =
                 (int32_t)lrint(sin(degrees / 57.29578) * 0x1p30);
-            *address_of_coefficient(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
+            *coefficient_of(&f, 0, GLINT_OUT_SENSOR_X, 0) = x_q28;
             f.cfg.width = WIDTH;
             f.cfg.height = HEIGHT;
             plan_and_bin_edges(&f);

@@ -25,9 +25,8 @@ static struct glint_vertex make_stop_vertex(int x_q16, int y_q16)
 }
 
 /* Returns the visible part of the edge from A to B. */
-static struct glint_edge_part
-clip_edge_to_visible_part(const struct glint_vertex *a,
-                          const struct glint_vertex *b)
+static struct glint_edge_part clip_edge(const struct glint_vertex *a,
+                                        const struct glint_vertex *b)
 {
     const struct glint_vertex *const end[2] = {a, b};
     struct glint_outside out[2];
@@ -48,10 +47,8 @@ TEST(edge_is_cut_at_the_side)
         for (int to = ONE_Q16; to < 40 * ONE_Q16; to += to / 3) {
             const struct glint_vertex in = make_stop_vertex(from, 0),
                                       out = make_stop_vertex(to, 5 * 256);
-            const struct glint_edge_part there =
-                clip_edge_to_visible_part(&in, &out);
-            const struct glint_edge_part back =
-                clip_edge_to_visible_part(&out, &in);
+            const struct glint_edge_part there = clip_edge(&in, &out);
+            const struct glint_edge_part back = clip_edge(&out, &in);
 
             assert_true(there.visible && back.visible);
             assert_int_equal(there.cut[0], GLINT_CUT_NOTHING);
@@ -73,10 +70,8 @@ TEST(edge_across_the_stop_is_cut_twice)
     const struct glint_vertex high = make_stop_vertex(0, 5 * ONE_Q16 / 4);
     const struct glint_vertex past =
         make_stop_vertex(ONE_Q16 / 2, 5 * ONE_Q16 / 2);
-    const struct glint_edge_part through =
-        clip_edge_to_visible_part(&left, &right);
-    const struct glint_edge_part over =
-        clip_edge_to_visible_part(&right, &high);
+    const struct glint_edge_part through = clip_edge(&left, &right);
+    const struct glint_edge_part over = clip_edge(&right, &high);
 
     assert_true(through.visible && over.visible);
     assert_int_equal(through.cut[0], 2);
@@ -87,7 +82,7 @@ TEST(edge_across_the_stop_is_cut_twice)
     assert_int_equal(over.cut[1], 1);
     assert_true(abs(over.end_q8[0][0] - 256) <= 1);
     assert_true(abs(over.end_q8[1][1] - 256) <= 1);
-    assert_false(clip_edge_to_visible_part(&right, &past).visible);
+    assert_false(clip_edge(&right, &past).visible);
 }
 
 /* Checks that a cell finds the upper right corner of the stop exactly if the

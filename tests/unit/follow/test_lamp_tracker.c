@@ -668,8 +668,8 @@ TEST(leaving_lamp_continues_and_fades)
 
 /* Returns the fade level, 0 .. 1, of a lamp US microseconds after it was
  * switched on, with a frame every ELAPSED_US. */
-static double measure_level_after_switching_on(int32_t us, int32_t elapsed_us,
-                                               int32_t attack_ms)
+static double level_after_switch_on(int32_t us, int32_t elapsed_us,
+                                    int32_t attack_ms)
 {
     const struct night_lamp lamp[2] = {{60, 60, 5, 3}, {200, 120, 5, 3}};
     double level;
@@ -692,18 +692,15 @@ static double measure_level_after_switching_on(int32_t us, int32_t elapsed_us,
 TEST(rise_does_not_depend_on_the_frame_rate)
 {
     for (int k = 1; k <= 10; k++) {
-        const double at30 =
-            measure_level_after_switching_on(k * FPS30, FPS30, 300);
-        const double at60 =
-            measure_level_after_switching_on(k * FPS30, FPS60, 300);
-        const double at1000 =
-            measure_level_after_switching_on(k * FPS30, 1000, 300);
+        const double at30 = level_after_switch_on(k * FPS30, FPS30, 300);
+        const double at60 = level_after_switch_on(k * FPS30, FPS60, 300);
+        const double at1000 = level_after_switch_on(k * FPS30, 1000, 300);
 
         assert_true(fabs(at30 - at60) < 0.02 * at30);
         assert_true(fabs(at30 - at1000) < 0.02);
         assert_true(fabs(at30 - fmin(1, k * FPS30 / 300e3)) < 1e-3);
     }
-    assert_true(measure_level_after_switching_on(4 * 50000, 50000, 200) == 1);
+    assert_true(level_after_switch_on(4 * 50000, 50000, 200) == 1);
 }
 
 /* Checks a frame with all lamps at other positions: old tracks must end, and

@@ -134,7 +134,7 @@ static void add_light_to_image(int dither)
     add_light_in_strips(&fixture.image, dither, 0);
 }
 
-static int read_sample_before_drawing(int plane, int x, int y)
+static int sample_before(int plane, int x, int y)
 {
     return fixture
         .before[plane][address_of_sample(plane, x, y) - fixture.plane[plane]];
@@ -193,12 +193,9 @@ static struct coding make_coding_of_image(void)
 static void compute_expected_rgb_change(const struct coding *c, int x, int y,
                                         int cx, int cy, double rgb[3])
 {
-    const double luma =
-        (read_sample_before_drawing(0, x, y) - c->black) / c->y_steps;
-    const double cb =
-        (read_sample_before_drawing(1, cx, cy) - 128) / c->c_steps;
-    const double cr =
-        (read_sample_before_drawing(2, cx, cy) - 128) / c->c_steps;
+    const double luma = (sample_before(0, x, y) - c->black) / c->y_steps;
+    const double cb = (sample_before(1, cx, cy) - 128) / c->c_steps;
+    const double cr = (sample_before(2, cx, cy) - 128) / c->c_steps;
     const int at = y * fixture.image.width + x;
 
     rgb[0] = luma + 2 * (1 - c->kr) * cr;
@@ -236,7 +233,7 @@ static void check_chroma_block(int cx, int cy, double within)
             for (int i = 0; i < 3; i++)
                 total[i] += rgb[i];
             assert_code_is_near(
-                read_sample_before_drawing(0, x, y) +
+                sample_before(0, x, y) +
                     c.y_steps * (c.kr * rgb[0] + c.kg * rgb[1] + c.kb * rgb[2]),
                 *address_of_sample(0, x, y), within);
         }
@@ -245,10 +242,10 @@ static void check_chroma_block(int cx, int cy, double within)
     {
         const double luma = c.kr * total[0] + c.kg * total[1] + c.kb * total[2];
 
-        assert_code_is_near(read_sample_before_drawing(1, cx, cy) +
+        assert_code_is_near(sample_before(1, cx, cy) +
                                 c.c_steps * (total[2] - luma) / 2 / (1 - c.kb),
                             *address_of_sample(1, cx, cy), within);
-        assert_code_is_near(read_sample_before_drawing(2, cx, cy) +
+        assert_code_is_near(sample_before(2, cx, cy) +
                                 c.c_steps * (total[0] - luma) / 2 / (1 - c.kr),
                             *address_of_sample(2, cx, cy), within);
     }
@@ -267,7 +264,7 @@ static void check_rgb24_image(double within)
         for (int x = 0; x < compute_row_bytes_of_plane(0); x++) {
             const double light =
                 read_light_of_pixel(x % 3, y * fixture.image.width + x / 3);
-            const int code = read_sample_before_drawing(0, x, y);
+            const int code = sample_before(0, x, y);
 
             assert_code_is_near(
                 code + 255 * compute_expected_code_change(code / 255.0, light),
@@ -282,14 +279,13 @@ static void check_grey_image(double within)
     for (int y = 0; y < count_rows_of_plane(0); y++)
         for (int x = 0; x < compute_row_bytes_of_plane(0); x++) {
             const double weight[3] = {0.2126, 0.7152, 0.0722};
-            const double v =
-                (read_sample_before_drawing(0, x, y) - c.black) / c.y_steps;
+            const double v = (sample_before(0, x, y) - c.black) / c.y_steps;
             double light = 0;
 
             for (int i = 0; i < 3; i++)
                 light += weight[i] *
                          read_light_of_pixel(i, y * fixture.image.width + x);
-            assert_code_is_near(read_sample_before_drawing(0, x, y) +
+            assert_code_is_near(sample_before(0, x, y) +
                                     c.y_steps *
                                         compute_expected_code_change(v, light),
                                 *address_of_sample(0, x, y), within);

@@ -134,7 +134,7 @@ static double evaluate_output(int kind, double u, double v)
 }
 
 /* Checks that output KIND of the interpolated model is X at (U, V). */
-static void check_interpolated_output(int kind, double u, double v, double x)
+static void check_output(int kind, double u, double v, double x)
 {
     const double got = evaluate_output(kind, u, v);
 
@@ -145,9 +145,9 @@ static void check_interpolated_output(int kind, double u, double v, double x)
 static void check_barrel_values(int kind, struct barrel b)
 {
     assert_true(mixed.outputs >> (GLINT_OUT_BARREL_0 + kind) & 1);
-    check_interpolated_output(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
-    check_interpolated_output(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
-    check_interpolated_output(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
+    check_output(GLINT_OUT_BARREL_0 + kind, 0, 0, b.middle);
+    check_output(GLINT_OUT_BARREL_0 + kind, 1, 0, b.middle + b.u);
+    check_output(GLINT_OUT_BARREL_0 + kind, 0, 1, b.middle + b.v2);
 }
 
 static const struct barrel right = {0.3, 0.5, 0.1}, left = {0.3, -0.5, 0.1};
@@ -161,10 +161,9 @@ TEST(outputs_are_interpolated)
         const double part = 0.25 * k;
 
         interpolate_barrels(NULL, 0, NULL, 0, part);
-        check_interpolated_output(GLINT_OUT_SENSOR_X, 1, 0.5,
-                                  0.5 - 0.25 * part);
-        check_interpolated_output(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
-        check_interpolated_output(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
+        check_output(GLINT_OUT_SENSOR_X, 1, 0.5, 0.5 - 0.25 * part);
+        check_output(GLINT_OUT_SENSOR_Y, 1, 0.5, 0.25);
+        check_output(GLINT_OUT_ENERGY, 1, 0.5, 0.25 + 0.25 * part);
     }
 }
 
@@ -306,11 +305,10 @@ TEST(energies_keep_the_smaller_head)
         head[0] = (uint8_t)(k % 3 ? 3 : 0);
         head[1] = (uint8_t)(k % 3 == 1 ? 1 : 2);
         interpolate_barrels(NULL, 0, NULL, 0, 0.5);
-        check_interpolated_output(GLINT_OUT_ENERGY, 0, 0,
-                                  roots ? value * value : value);
+        check_output(GLINT_OUT_ENERGY, 0, 0, roots ? value * value : value);
         glint_blend_scale_energy(&mixed, ONE / 4);
-        check_interpolated_output(GLINT_OUT_ENERGY, 0, 0,
-                                  (roots ? value * value : value) / 4);
+        check_output(GLINT_OUT_ENERGY, 0, 0,
+                     (roots ? value * value : value) / 4);
     }
     roots = head[0] = head[1] = 0;
 }
@@ -375,11 +373,10 @@ TEST(outputs_are_interpolated_across_moving_boxes)
 
         interpolate_models(&a, &b, part);
         for (int i = -2; i <= 2; i++) {
-            check_interpolated_output(
-                GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
-                slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
-            check_interpolated_output(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
-                                      slope * 0.5 * (3 + part));
+            check_output(GLINT_OUT_SENSOR_X, 0.5 * i, 0.5,
+                         slope * (0.5 * part + (4 + 0.5 * part) * 0.5 * i));
+            check_output(GLINT_OUT_SENSOR_Y, 0.5 * i, 0.5,
+                         slope * 0.5 * (3 + part));
         }
     }
 }
@@ -545,8 +542,8 @@ static void check_interpolated_ghosts(const struct sight *sight, size_t n)
                      is_ghost_dark(s->sensor) ? "not dark" : "dark");
         if (is_ghost_dark(s->sensor))
             continue;
-        check_interpolated_output(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
-        check_interpolated_output(GLINT_OUT_ENERGY, 0, 0, s->energy);
+        check_output(GLINT_OUT_SENSOR_X, 1, 0, s->sensor);
+        check_output(GLINT_OUT_ENERGY, 0, 0, s->energy);
     }
 }
 
@@ -699,7 +696,7 @@ TEST(parts_are_interpolated_with_their_ghost)
     SHOWS(sights);
 }
 
-static double interpolate_linearly(double a, double b)
+static double interpolate(double a, double b)
 {
     return 0.75 * a + 0.25 * b;
 }
@@ -737,21 +734,17 @@ TEST(lens_numbers_are_interpolated)
             fail_msg("%s", reason);
     }
     glint_zoom_set(&zoom, ONE / 4);
-    assert_true(glint_real_value(z->focal_mm) ==
-                interpolate_linearly(50, 4800));
-    assert_true(glint_real_value(z->back_focal_mm) ==
-                interpolate_linearly(3840, 40));
-    assert_true(glint_real_value(z->entrance_radius_mm) ==
-                interpolate_linearly(7, 672));
-    assert_true(glint_real_value(z->stop_radius_mm) ==
-                interpolate_linearly(480, 5));
-    assert_true(glint_real_value(z->f_number) == interpolate_linearly(2, 192));
+    assert_true(glint_real_value(z->focal_mm) == interpolate(50, 4800));
+    assert_true(glint_real_value(z->back_focal_mm) == interpolate(3840, 40));
+    assert_true(glint_real_value(z->entrance_radius_mm) == interpolate(7, 672));
+    assert_true(glint_real_value(z->stop_radius_mm) == interpolate(480, 5));
+    assert_true(glint_real_value(z->f_number) == interpolate(2, 192));
     for (int i = 0; i < GLINT_FLUX_TERMS; i++) {
         assert_true(glint_real_value(z->direct_flux[i]) ==
-                    (i + 1) * interpolate_linearly(1, 96));
+                    (i + 1) * interpolate(1, 96));
         assert_true(glint_real_value(z->stopped_flux[0][i]) ==
-                    (i + 20) * interpolate_linearly(1, 96));
+                    (i + 20) * interpolate(1, 96));
         assert_true(glint_real_value(z->stopped_flux[1][i]) ==
-                    -(i + 30) * interpolate_linearly(96, 1));
+                    -(i + 30) * interpolate(96, 1));
     }
 }

@@ -15,9 +15,8 @@ enum { WIDTH = MOVING_WIDTH, HEIGHT = MOVING_HEIGHT, SAMPLES = 4 };
  * (X, Y), Q8 pixels from the image centre, where the ray enters the ball; -1 if
  * the ray misses it. The ball has the radius RADIUS and the centre C in camera
  * coordinates. */
-static double compute_cosine_to_normal(const struct glint_scene *s,
-                                       const int32_t c[3], double radius,
-                                       double x_q8, double y_q8)
+static double cosine_to_normal(const struct glint_scene *s, const int32_t c[3],
+                               double radius, double x_q8, double y_q8)
 {
     const double per_tan = (double)s->view.per_tan_q8;
     const double d[3] = {x_q8 / per_tan, -y_q8 / per_tan, 1};
@@ -47,14 +46,12 @@ static double compute_shell_coverage(const struct glint_scene *s,
 
     glint_view_convert_to_camera(&s->view, l->ball->at, c);
     for (int k = 0; k < SAMPLES; k++)
-        hits +=
-            compute_cosine_to_normal(
-                s, c, l->ball->radius, x_q8 + glint_sample_offset_q8(s, k, 0),
-                y_q8 + glint_sample_offset_q8(s, k, 1)) >= 0;
+        hits += cosine_to_normal(s, c, l->ball->radius,
+                                 x_q8 + glint_sample_offset_q8(s, k, 0),
+                                 y_q8 + glint_sample_offset_q8(s, k, 1)) >= 0;
     return share * hits / SAMPLES *
-           (1 - fmax(0, compute_cosine_to_normal(s, c, l->ball->radius, x_q8,
-                                                 y_q8)) /
-                    2);
+           (1 -
+            fmax(0, cosine_to_normal(s, c, l->ball->radius, x_q8, y_q8)) / 2);
 }
 
 /* Returns the coverage of pixel (X, Y) by line L (a trajectory), 0 .. 1. */

@@ -250,8 +250,7 @@ TEST(random_words_are_rejected_or_readable)
     int opened = 0;
 
     bake_track(&baked, 300, 50, 1);
-    copy = malloc(baked.bytes);
-    assert_non_null(copy);
+    copy = test_free_later(malloc(baked.bytes));
     for (int i = 0; i < 3000; i++) {
         const char *reason;
         /* every second change is in the file header */
@@ -273,7 +272,6 @@ TEST(random_words_are_rejected_or_readable)
     }
     print_message("  %d of 3000 open\n", opened);
     assert_true(opened > 10 && opened < 2500);
-    free(copy);
 }
 
 /* Checks that tracks scaled by 1e-6 to 1e4 keep their relative precision, as

@@ -99,10 +99,9 @@ TEST(rejects_unknown_fourccs)
 
 /* ------------------------------------------------------------------ colours */
 
-static bool convert_v4l2_colour(struct glint_image *image,
-                                enum glint_pixel_format format, uint32_t space,
-                                uint32_t enc, uint32_t quantization,
-                                uint32_t xfer)
+static bool convert_colour(struct glint_image *image,
+                           enum glint_pixel_format format, uint32_t space,
+                           uint32_t enc, uint32_t quantization, uint32_t xfer)
 {
     const struct glint_v4l2_colour colour = {space, enc, quantization, xfer};
 
@@ -116,30 +115,26 @@ TEST(undeclared_colour_has_defaults)
 
     /* vivid and most webcams report sRGB and leave the other colour fields at
      * their defaults */
-    assert_true(
-        convert_v4l2_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_true(convert_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i.transfer, GLINT_TONE_SRGB);
     /* JPEG has full range. */
-    assert_true(
-        convert_v4l2_colour(&i, GLINT_I420, V4L2_COLORSPACE_JPEG, 0, 0, 0));
+    assert_true(convert_colour(&i, GLINT_I420, V4L2_COLORSPACE_JPEG, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
     assert_true(
-        convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_REC709, 0, 0, 0));
+        convert_colour(&i, GLINT_NV12, V4L2_COLORSPACE_REC709, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_LIMITED);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    assert_true(convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_SMPTE170M,
-                                    0, 0, 0));
+    assert_true(
+        convert_colour(&i, GLINT_NV12, V4L2_COLORSPACE_SMPTE170M, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT601);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
-    assert_true(
-        convert_v4l2_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_true(convert_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
-    assert_true(
-        convert_v4l2_colour(&i, GLINT_GREY, V4L2_COLORSPACE_SRGB, 0, 0, 0));
+    assert_true(convert_colour(&i, GLINT_GREY, V4L2_COLORSPACE_SRGB, 0, 0, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
 }
 
@@ -147,21 +142,20 @@ TEST(declared_colour_is_used)
 {
     struct glint_image i;
 
-    assert_true(convert_v4l2_colour(
-        &i, GLINT_UYVY, V4L2_COLORSPACE_SRGB, V4L2_YCBCR_ENC_709,
-        V4L2_QUANTIZATION_FULL_RANGE, V4L2_XFER_FUNC_709));
+    assert_true(convert_colour(&i, GLINT_UYVY, V4L2_COLORSPACE_SRGB,
+                               V4L2_YCBCR_ENC_709, V4L2_QUANTIZATION_FULL_RANGE,
+                               V4L2_XFER_FUNC_709));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
     assert_int_equal(i.transfer, GLINT_TONE_BT709);
     /* A colour space that glint does not support is rejected. */
     assert_false(
-        convert_v4l2_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
+        convert_colour(&i, GLINT_NV12, V4L2_COLORSPACE_BT2020, 0, 0, 0));
     assert_int_equal(i.matrix, GLINT_MATRIX_BT709);
-    assert_false(convert_v4l2_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,
-                                     V4L2_QUANTIZATION_LIM_RANGE, 0));
+    assert_false(convert_colour(&i, GLINT_RGB24, V4L2_COLORSPACE_SRGB, 0,
+                                V4L2_QUANTIZATION_LIM_RANGE, 0));
     assert_int_equal(i.range, GLINT_RANGE_FULL);
-    assert_false(
-        convert_v4l2_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_RAW, 0, 0, 0));
+    assert_false(convert_colour(&i, GLINT_YUYV, V4L2_COLORSPACE_RAW, 0, 0, 0));
 }
 
 TEST(colour_declarations_are_inverse)

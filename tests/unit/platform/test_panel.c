@@ -426,12 +426,11 @@ static void check_drawing_of_format(enum glint_pixel_format format, int width,
                                     int height, int pad, int panel_width)
 {
     const int stride = 4 * panel_width;
-    uint8_t *const mem = malloc((size_t)(stride * height));
+    uint8_t *const mem = test_free_later(malloc((size_t)(stride * height)));
     struct glint_image image;
     uint8_t *const codes =
         make_random_picture(&image, format, width, height, pad);
 
-    assert_non_null(mem);
     open_panel(panel_width, height, xrgb8888, width, height,
                GLINT_PANEL_CENTRE);
     glint_panel_clear(&panel, mem, stride);
@@ -442,7 +441,6 @@ static void check_drawing_of_format(enum glint_pixel_format format, int width,
                                mem + y * stride + 4 * (panel.shown.x + x));
     glint_panel_close(&panel);
     free(codes);
-    free(mem);
 }
 
 /* Checks that every format is drawn correctly. Each image has exactly its size

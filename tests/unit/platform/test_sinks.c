@@ -23,9 +23,8 @@ static struct glint_y4m_sink y4m;
 static struct glint_error error;
 
 /* Returns an image with its planes in MEM. */
-static struct glint_image make_image_over_memory(enum glint_pixel_format format,
-                                                 int width, int height,
-                                                 void *mem)
+static struct glint_image make_image(enum glint_pixel_format format, int width,
+                                     int height, void *mem)
 {
     struct glint_image image = glint_image_over(mem, format, width, height);
 
@@ -37,13 +36,11 @@ static struct glint_image make_image_over_memory(enum glint_pixel_format format,
 
 /* Converts 3 x 3 pixels FROM of FORMAT to the format PLANAR. Checks that the
  * resulting planes, one after the other, equal WANT. */
-static void expect_converted_planes(enum glint_pixel_format format,
-                                    const uint8_t *from,
-                                    enum glint_pixel_format planar,
-                                    const char *want)
+static void expect_planes(enum glint_pixel_format format, const uint8_t *from,
+                          enum glint_pixel_format planar, const char *want)
 {
     const struct glint_image image =
-        make_image_over_memory(format, 3, 3, (uint8_t *)(uintptr_t)from);
+        make_image(format, 3, 3, (uint8_t *)(uintptr_t)from);
     struct glint_image to;
     uint8_t mem[64], work[64];
     const size_t n = glint_image_bytes(planar, 3, 3);
@@ -51,7 +48,7 @@ static void expect_converted_planes(enum glint_pixel_format format,
     assert_int_equal(glint_get_planar_format(format), planar);
     assert_int_equal(strlen(want), n);
     memset(mem, '-', sizeof mem);
-    to = make_image_over_memory(planar, 3, 3, mem);
+    to = make_image(planar, 3, 3, mem);
     assert_true(glint_row_rgb_bytes(3) <= sizeof work);
     glint_row_rgb_init(&row, work, 3);
     glint_convert_to_planes(&to, &image, &row);
@@ -65,20 +62,18 @@ static void expect_converted_planes(enum glint_pixel_format format,
  * are Cr. */
 TEST(converts_packed_to_planar)
 {
-    expect_converted_planes(GLINT_YUYV,
-                            (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
-                            GLINT_I422, "abcdefghiABCDEF123456");
-    expect_converted_planes(GLINT_UYVY,
-                            (const uint8_t *)"Aa1bBc2.Cd3eDf4.Eg5hFi6.",
-                            GLINT_I422, "abcdefghiABCDEF123456");
-    expect_converted_planes(GLINT_NV12, (const uint8_t *)"abcdefghiA1B2C3D4",
-                            GLINT_I420, "abcdefghiABCD1234");
-    expect_converted_planes(GLINT_NV21, (const uint8_t *)"abcdefghi1A2B3C4D",
-                            GLINT_I420, "abcdefghiABCD1234");
-    expect_converted_planes(GLINT_I420, (const uint8_t *)"abcdefghiABCD1234",
-                            GLINT_I420, "abcdefghiABCD1234");
-    expect_converted_planes(GLINT_GREY, (const uint8_t *)"abcdefghi",
-                            GLINT_GREY, "abcdefghi");
+    expect_planes(GLINT_YUYV, (const uint8_t *)"aAb1cB.2dCe3fD.4gEh5iF.6",
+                  GLINT_I422, "abcdefghiABCDEF123456");
+    expect_planes(GLINT_UYVY, (const uint8_t *)"Aa1bBc2.Cd3eDf4.Eg5hFi6.",
+                  GLINT_I422, "abcdefghiABCDEF123456");
+    expect_planes(GLINT_NV12, (const uint8_t *)"abcdefghiA1B2C3D4", GLINT_I420,
+                  "abcdefghiABCD1234");
+    expect_planes(GLINT_NV21, (const uint8_t *)"abcdefghi1A2B3C4D", GLINT_I420,
+                  "abcdefghiABCD1234");
+    expect_planes(GLINT_I420, (const uint8_t *)"abcdefghiABCD1234", GLINT_I420,
+                  "abcdefghiABCD1234");
+    expect_planes(GLINT_GREY, (const uint8_t *)"abcdefghi", GLINT_GREY,
+                  "abcdefghi");
 }
 
 /* Computes Y', Cb and Cr of an RGB colour with the coefficients of the
@@ -102,9 +97,8 @@ static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
                                      enum glint_range range)
 {
     uint8_t rgb[3 * 256], ycc[3 * 256], work[2048];
-    const struct glint_image from =
-        make_image_over_memory(GLINT_RGB24, 256, 1, rgb);
-    struct glint_image to = make_image_over_memory(GLINT_I444, 256, 1, ycc);
+    const struct glint_image from = make_image(GLINT_RGB24, 256, 1, rgb);
+    struct glint_image to = make_image(GLINT_I444, 256, 1, ycc);
     long n_off = 0;
 
     to.matrix = matrix;
@@ -137,9 +131,8 @@ static void check_rgb_to_ycc_colours(enum glint_matrix matrix,
 static void check_clamped_chroma_codes(void)
 {
     uint8_t rgb[] = {0, 0, 255, 255, 0, 0}, ycc[6], work[64];
-    const struct glint_image from =
-        make_image_over_memory(GLINT_RGB24, 2, 1, rgb);
-    struct glint_image to = make_image_over_memory(GLINT_I444, 2, 1, ycc);
+    const struct glint_image from = make_image(GLINT_RGB24, 2, 1, rgb);
+    struct glint_image to = make_image(GLINT_I444, 2, 1, ycc);
 
     to.range = GLINT_RANGE_FULL;
     glint_row_rgb_init(&row, work, 2);
@@ -159,7 +152,7 @@ TEST(converts_rgb_to_ycc)
                                "\x80\x80\x5a\x36\xf0\x80\x80\x80\x80"
                                "\x80\x80\xf0\x22\x6e\x80\x80\x80\x80";
 
-    expect_converted_planes(GLINT_RGB24, colours, GLINT_I444, want);
+    expect_planes(GLINT_RGB24, colours, GLINT_I444, want);
     check_clamped_chroma_codes();
     check_rgb_to_ycc_colours(GLINT_MATRIX_BT601, GLINT_RANGE_LIMITED);
     check_rgb_to_ycc_colours(GLINT_MATRIX_BT601, GLINT_RANGE_FULL);
@@ -175,7 +168,7 @@ TEST(writes_y4m)
         "YUV4MPEG2 W4 H2 F25:1 Ip A1:1 C422 XCOLORRANGE=FULL\n"
         "FRAME\nabcdefghABCD1234FRAME\nabcdefghABCD1234";
     struct glint_image image =
-        make_image_over_memory(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
+        make_image(GLINT_YUYV, 4, 2, (void *)"aAb1cBd2eCf3gDh4");
 
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 25, 1);
@@ -197,8 +190,7 @@ TEST(y4m_writes_supported_formats_without_copy)
                                  "XCOLORRANGE=LIMITED\nFRAME\nabcdA1";
     static const char white[] = "YUV4MPEG2 W1 H1 F30:1 Ip A1:1 C444 "
                                 "XCOLORRANGE=LIMITED\nFRAME\n\xeb\x80\x80";
-    struct glint_image image =
-        make_image_over_memory(GLINT_I420, 2, 2, (void *)"abcdA1");
+    struct glint_image image = make_image(GLINT_I420, 2, 2, (void *)"abcdA1");
 
     glint_y4m_sink_open(&y4m, scratch_file, 0, 0);
     assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
@@ -206,7 +198,7 @@ TEST(y4m_writes_supported_formats_without_copy)
     y4m.sink.close(&y4m.sink);
     y4m.sink.close(&y4m.sink);
     scratch_expect_bytes(scratch_file, planes, sizeof planes - 1);
-    image = make_image_over_memory(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
+    image = make_image(GLINT_BGR24, 1, 1, (void *)"\xff\xff\xff");
     image.range = GLINT_RANGE_FULL;
     glint_y4m_sink_open(&y4m, scratch_file, 30, 1);
     assert_ok(y4m.sink.put(&y4m.sink, &image, &error));
@@ -219,8 +211,7 @@ TEST(y4m_writes_supported_formats_without_copy)
 TEST(y4m_drops_frames_for_a_slow_reader)
 {
     static uint8_t mem[4096 * 3], sink_hole[65536];
-    const struct glint_image image =
-        make_image_over_memory(GLINT_GREY, 96, 128, mem);
+    const struct glint_image image = make_image(GLINT_GREY, 96, 128, mem);
     char name[32];
     int fd[2];
 
@@ -250,7 +241,7 @@ TEST(y4m_drops_frames_for_a_slow_reader)
 TEST(y4m_reports_an_invalid_path)
 {
     const struct glint_image image =
-        make_image_over_memory(GLINT_YUYV, 2, 1, (void *)"aAb1");
+        make_image(GLINT_YUYV, 2, 1, (void *)"aAb1");
 
     glint_y4m_sink_open(&y4m, "/nowhere/x.y4m", 25, 1);
     assert_int_equal(y4m.sink.put(&y4m.sink, &image, &error), GLINT_E_OUTPUT);
@@ -261,7 +252,7 @@ TEST(y4m_reports_an_invalid_path)
 TEST(null_sink_accepts_images)
 {
     const struct glint_image image =
-        make_image_over_memory(GLINT_YUYV, 2, 1, (void *)"aAb1");
+        make_image(GLINT_YUYV, 2, 1, (void *)"aAb1");
     struct glint_null_sink null;
 
     glint_null_sink_open(&null);
@@ -358,8 +349,7 @@ static void open_v4l2_sink(struct glint_v4l2_sink *out,
 
 TEST(v4l2_writes_an_image)
 {
-    struct glint_image image =
-        make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_image image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
 
     reset_fake_v4l2_node();
@@ -387,7 +377,7 @@ TEST(v4l2_writes_padded_rows)
 {
     static const uint8_t zero;
     struct glint_image image =
-        make_image_over_memory(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
+        make_image(GLINT_I420, 4, 2, (void *)"abcdefghABCD");
     struct glint_v4l2_sink out;
     char want[] = "abcd..efgh..AB.CD.";
 
@@ -403,7 +393,7 @@ TEST(v4l2_writes_padded_rows)
     out.sink.close(&out.sink);
 
     reset_fake_v4l2_node();
-    image = make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
+    image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1..cBd2");
     image.stride_bytes[0] = 6;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
@@ -411,7 +401,7 @@ TEST(v4l2_writes_padded_rows)
     out.sink.close(&out.sink);
 
     reset_fake_v4l2_node();
-    image = make_image_over_memory(GLINT_NV12, 2, 2, (void *)"abcdA1");
+    image = make_image(GLINT_NV12, 2, 2, (void *)"abcdA1");
     node.stride = 3;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
@@ -419,7 +409,7 @@ TEST(v4l2_writes_padded_rows)
     out.sink.close(&out.sink);
 
     reset_fake_v4l2_node(); /* an image whose planes are not contiguous */
-    image = make_image_over_memory(GLINT_NV12, 2, 2, (void *)"abcd..A1");
+    image = make_image(GLINT_NV12, 2, 2, (void *)"abcd..A1");
     image.plane[1] += 2;
     open_v4l2_sink(&out, &image);
     assert_ok(out.sink.put(&out.sink, &image, &error));
@@ -430,7 +420,7 @@ TEST(v4l2_writes_padded_rows)
 TEST(v4l2_drops_frames_without_a_buffer)
 {
     const struct glint_image image =
-        make_image_over_memory(GLINT_GREY, 4, 1, (void *)"abcd");
+        make_image(GLINT_GREY, 4, 1, (void *)"abcd");
     struct glint_v4l2_sink out;
 
     reset_fake_v4l2_node();
@@ -450,11 +440,10 @@ TEST(v4l2_drops_frames_without_a_buffer)
     out.sink.close(&out.sink);
 }
 
-static void expect_sink_rejects_image(enum glint_status status,
-                                      const char *part)
+static void expect_rejected(enum glint_status status, const char *part)
 {
     const struct glint_image image =
-        make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+        make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
 
     assert_int_equal(
@@ -468,38 +457,32 @@ static void expect_sink_rejects_image(enum glint_status status,
 
 TEST(v4l2_rejects_unsuitable_devices)
 {
-    struct glint_image image =
-        make_image_over_memory(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
+    struct glint_image image = make_image(GLINT_YUYV, 2, 2, (void *)"aAb1cBd2");
     struct glint_v4l2_sink out;
 
     reset_fake_v4l2_node();
     node.caps = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_READWRITE;
-    expect_sink_rejects_image(GLINT_E_DEVICE, "fake is not a video output");
+    expect_rejected(GLINT_E_DEVICE, "fake is not a video output");
     node.caps = V4L2_CAP_VIDEO_OUTPUT | V4L2_CAP_STREAMING;
-    expect_sink_rejects_image(GLINT_E_DEVICE,
-                              "does not accept frames by write()");
+    expect_rejected(GLINT_E_DEVICE, "does not accept frames by write()");
     reset_fake_v4l2_node();
     node.fourcc = V4L2_PIX_FMT_MJPEG;
-    expect_sink_rejects_image(GLINT_E_DEVICE,
-                              "accepts MJPG 2 x 2, not YUYV 2 x 2");
+    expect_rejected(GLINT_E_DEVICE, "accepts MJPG 2 x 2, not YUYV 2 x 2");
     reset_fake_v4l2_node();
     node.fail_request = VIDIOC_S_FMT;
     node.fail_errno = EBUSY;
-    expect_sink_rejects_image(GLINT_E_DEVICE,
-                              "VIDIOC_S_FMT: Device or resource busy; "
-                              "another program");
+    expect_rejected(GLINT_E_DEVICE, "VIDIOC_S_FMT: Device or resource busy; "
+                                    "another program");
     reset_fake_v4l2_node();
     node.stride = 8;
     node.size = 15;
-    expect_sink_rejects_image(GLINT_E_DEVICE,
-                              "frames of 15 bytes with rows of 8");
+    expect_rejected(GLINT_E_DEVICE, "frames of 15 bytes with rows of 8");
     reset_fake_v4l2_node();
     node.fail_request = VIDIOC_QUERYCAP;
     node.fail_errno = ENODEV;
-    expect_sink_rejects_image(GLINT_E_DEVICE,
-                              "VIDIOC_QUERYCAP: No such device");
+    expect_rejected(GLINT_E_DEVICE, "VIDIOC_QUERYCAP: No such device");
     node.caps = 0; /* a regular file */
-    expect_sink_rejects_image(GLINT_E_DEVICE, "is not a video device");
+    expect_rejected(GLINT_E_DEVICE, "is not a video device");
     image.format = GLINT_I444;
     assert_int_equal(
         glint_v4l2_sink_open(&out, scratch_file, &image, 0, 0, &error),

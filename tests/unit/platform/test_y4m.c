@@ -347,7 +347,7 @@ TEST(rejects_invalid_frames)
 /* -------------------------------------------------------------- round trips */
 
 /* Checks that copying DATA frame by frame to a file preserves every byte. */
-static void check_copied_stream_is_identical(const char *data, size_t bytes)
+static void check_copied_stream(const char *data, size_t bytes)
 {
     struct memory memory = {data, bytes, 0, 5000, false};
     struct glint_y4m_reader reader;
@@ -369,18 +369,15 @@ static void check_copied_stream_is_identical(const char *data, size_t bytes)
 
 TEST(copies_streams_unchanged)
 {
-    check_copied_stream_is_identical(BYTES(SMALL));
-    check_copied_stream_is_identical(
-        BYTES("YUV4MPEG2 W3 H1 F0:0 It A1:1 C422 XYSCSS=422\n"
-              "FRAME\nabcBCbc"));
-    check_copied_stream_is_identical(
-        BYTES("YUV4MPEG2 W2 H1 F5:1 C444\nFRAME\nabBCbc"));
-    check_copied_stream_is_identical(
-        BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
-              "FRAME\nab"));
-    check_copied_stream_is_identical(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
+    check_copied_stream(BYTES(SMALL));
+    check_copied_stream(BYTES("YUV4MPEG2 W3 H1 F0:0 It A1:1 C422 XYSCSS=422\n"
+                              "FRAME\nabcBCbc"));
+    check_copied_stream(BYTES("YUV4MPEG2 W2 H1 F5:1 C444\nFRAME\nabBCbc"));
+    check_copied_stream(BYTES("YUV4MPEG2 W2 H1 F5:1 Cmono XCOLORRANGE=FULL\n"
+                              "FRAME\nab"));
+    check_copied_stream(BYTES("YUV4MPEG2 W1 H1 F5:1\nFRAME\nabc"));
     /* a stream without frames is valid */
-    check_copied_stream_is_identical(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n"));
+    check_copied_stream(BYTES("YUV4MPEG2 W8192 H8192 F5:1\n"));
 }
 
 /* ----------------------------------------------------- bit depth and layout */
@@ -561,8 +558,7 @@ TEST(transfer_tables_match_the_standards)
 
 /* Returns the code, 0 .. 1, of LIGHT by bisection: the inverse of
  * decode_transfer_code(). */
-static double encode_transfer_light(enum glint_transfer_curve curve,
-                                    double light)
+static double encode_light(enum glint_transfer_curve curve, double light)
 {
     double low = 0, high = 1;
 
@@ -596,8 +592,7 @@ static void check_added_light(enum glint_transfer_curve curve,
     /* logarithmic curves have no codes for light near 0 */
     for (double ground = fmax(0.001, 2 * decode_transfer_code(curve, 1e-5));
          ground < most; ground *= 1.7) {
-        const int code =
-            (int)(65535 * encode_transfer_light(curve, ground) + 0.5);
+        const int code = (int)(65535 * encode_light(curve, ground) + 0.5);
         uint8_t planes[6] = {
             (uint8_t)code, (uint8_t)(code >> 8), 0, 128, 0, 128};
         double y, cb, cr, rgb[3];
@@ -649,8 +644,7 @@ TEST(pq_copy_is_graded_to_sdr)
 
     for (int i = 0; i < 4; i++) {
         const int code =
-            (int)(64.5 + 876 * encode_transfer_light(GLINT_TRANSFER_PQ,
-                                                     nits[i] / 203));
+            (int)(64.5 + 876 * encode_light(GLINT_TRANSFER_PQ, nits[i] / 203));
 
         bytes[at + 2 * (size_t)i] = (char)code;
         bytes[at + 2 * (size_t)i + 1] = (char)(code >> 8);
@@ -671,9 +665,8 @@ TEST(copies_a_video_of_odd_height)
 {
     enum { FRAME = 720 * 405 + 2 * 360 * 203, HEADER = 80 };
     const size_t bytes = HEADER + 2 * (6 + FRAME);
-    char *const data = malloc(bytes + 1);
+    char *const data = test_free_later(malloc(bytes + 1));
 
-    assert_non_null(data);
     assert_int_equal(snprintf(data, bytes, "%s%s\n",
                               "YUV4MPEG2 W720 H405 F25:1 Ip A1:1 C420mpeg2 ",
                               "XYSCSS=420MPEG2 XCOLORRANGE=LIMITED"),
@@ -683,8 +676,7 @@ TEST(copies_a_video_of_odd_height)
             data[i] = (char)(i * 7);
     memcpy(data + HEADER, "FRAME\n", 6);
     memcpy(data + HEADER + 6 + FRAME, "FRAME\n", 6);
-    check_copied_stream_is_identical(data, HEADER + 2 * (6 + FRAME));
-    free(data);
+    check_copied_stream(data, HEADER + 2 * (6 + FRAME));
 }
 
 /* Checks that images whose rows are padded, or stored bottom row first, are

@@ -147,10 +147,9 @@ TEST(image_equals_the_reference)
  * parser warns of this. */
 TEST(clamped_anisotropy_is_warned_of)
 {
-    struct glint_description *s = malloc(sizeof *s);
+    struct glint_description *s = test_free_later(malloc(sizeof *s));
     struct glint_error error;
 
-    assert_non_null(s);
     assert_ok(parse_scene_text(
         "material m ward specular .9 .9 .9 alpha .002 .4 norm 1992\n"
         "environment 9e5\nsphere s at 0 0 -3 radius 1 material m\n",
@@ -161,7 +160,6 @@ TEST(clamped_anisotropy_is_warned_of)
     assert_true(s->n_lights > 0 &&
                 strcmp(s->light[0].name, "environment") == 0);
     glint_description_free(s);
-    free(s);
 }
 
 /* Checks that a scene is rejected if the program lacks the module that the

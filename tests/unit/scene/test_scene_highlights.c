@@ -65,7 +65,7 @@ static void draw_and_find_highlights(void)
     n = glint_scene_find_highlights(frame.scene, found);
 }
 
-static double compute_highlight_power(int i)
+static double highlight_power(int i)
 {
     return (double)found[i].spot.power_q16 * 0x1p-16;
 }
@@ -119,10 +119,10 @@ TEST(highlights_equal_the_reference)
                 (pow(s->axis_q8[0], 2) + pow(s->axis_q8[1], 2)) / 65536;
 
             print_message("%s: power %.2f, exact %.2f; off %.3f %.3f px\n",
-                          row[i].what, compute_highlight_power(k),
-                          exact[k].power, s->x_q8 / 256. - exact[k].x,
+                          row[i].what, highlight_power(k), exact[k].power,
+                          s->x_q8 / 256. - exact[k].x,
                           s->y_q8 / 256. - exact[k].y);
-            assert_true(fabs(compute_highlight_power(k) / exact[k].power - 1) <
+            assert_true(fabs(highlight_power(k) / exact[k].power - 1) <
                         row[i].off);
             assert_true(fabs(s->x_q8 / 256. - exact[k].x) < .05);
             assert_true(fabs(s->y_q8 / 256. - exact[k].y) < .05);
@@ -178,8 +178,8 @@ TEST(highlights_are_steady_in_motion)
                 move_ball_by_pixels(x, y);
                 draw_and_find_highlights();
                 assert_int_equal(n, 1);
-                least = fmin(least, compute_highlight_power(0));
-                most = fmax(most, compute_highlight_power(0));
+                least = fmin(least, highlight_power(0));
+                most = fmax(most, highlight_power(0));
                 if (k == 0) {
                     from[0] = found[0].spot.x_q8 / 256.;
                     from[1] = found[0].spot.y_q8 / 256.;
@@ -219,9 +219,8 @@ TEST(highlights_are_bit_identical)
                     memcpy(first, found, sizeof first);
                     n_first = n;
                     assert_true(n >= 3);
-                    full = half ? full : compute_highlight_power(0);
-                    assert_true(fabs(compute_highlight_power(0) / full - 1) <
-                                .1);
+                    full = half ? full : highlight_power(0);
+                    assert_true(fabs(highlight_power(0) / full - 1) < .1);
                 }
                 assert_int_equal(n, n_first);
                 assert_memory_equal(found, first, sizeof first);
@@ -297,7 +296,7 @@ TEST(near_highlights_are_merged)
                  "sphere c at -.5 0 0 radius .0145 material m\n",
                  .1 + .002 * i, .2 + .002 * i);
         assert_in_range(count_found_highlights(text), 2, 3);
-        assert_true(compute_highlight_power(0) > compute_highlight_power(1));
+        assert_true(highlight_power(0) > highlight_power(1));
     }
     strcpy(text, CAMERA STEEL(".01 .01") BRIGHT);
     for (int i = 0; i < 16; i++)
@@ -307,8 +306,8 @@ TEST(near_highlights_are_merged)
     assert_int_equal(count_found_highlights(text), 8);
     for (int i = 0; i < n; i++) {
         assert_int_equal(found[i].object, 15 - i);
-        assert_true(compute_highlight_power(i) < before);
-        before = compute_highlight_power(i);
+        assert_true(highlight_power(i) < before);
+        before = highlight_power(i);
     }
 }
 
@@ -331,15 +330,14 @@ TEST(power_is_linear_up_to_saturation)
         draw_and_find_highlights();
         assert_true(n <= 1 && (n == 1) == (e >= 0));
         if (n == 1) {
-            print_message("colour 1e%d: power %.4g\n", e,
-                          compute_highlight_power(0));
-            assert_true(compute_highlight_power(0) >= last &&
-                        compute_highlight_power(0) <= 0x1p26);
+            print_message("colour 1e%d: power %.4g\n", e, highlight_power(0));
+            assert_true(highlight_power(0) >= last &&
+                        highlight_power(0) <= 0x1p26);
             assert_true(found[0].spot.axis_q8[1] >= 128);
-            if (last > 500 && compute_highlight_power(0) < 1e5)
-                assert_true(compute_highlight_power(0) / last > 9 &&
-                            compute_highlight_power(0) / last < 25);
-            last = compute_highlight_power(0);
+            if (last > 500 && highlight_power(0) < 1e5)
+                assert_true(highlight_power(0) / last > 9 &&
+                            highlight_power(0) / last < 25);
+            last = highlight_power(0);
         }
         close_scene();
     }
@@ -354,7 +352,7 @@ TEST(power_is_linear_up_to_saturation)
         for (int i = 0; i < n; i++)
             assert_true(found[i].spot.x_q8 >= 0 && found[i].spot.y_q8 >= 0 &&
                         found[i].spot.x_q8 < 256 * SIDE &&
-                        compute_highlight_power(i) > 0);
+                        highlight_power(i) > 0);
         assert_int_equal(n, e > 4 ? 1 : e < -18 ? 0 : n);
         close_scene();
     }
@@ -363,8 +361,7 @@ TEST(power_is_linear_up_to_saturation)
             ".05 .05") "light sun direction .5 .6 1 colour 2e8 2e8 1e8\n"
                        "sphere s at 0 0 0 radius .0073 material m\n"),
         1);
-    print_message("a ball of a pixel: power %.3f\n",
-                  compute_highlight_power(0));
+    print_message("a ball of a pixel: power %.3f\n", highlight_power(0));
     assert_true(fabs(found[0].spot.x_q8 / 256. - SIDE / 2) < 1);
 }
 

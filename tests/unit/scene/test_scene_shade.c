@@ -25,9 +25,8 @@ static struct glint_scene *start_renderer(int shadow_points)
     return scene_init_renderer(&file, &cfg, NULL);
 }
 
-static struct glint_scene_ray make_ray_from_doubles(double x, double y,
-                                                    double z, double dx,
-                                                    double dy, double dz)
+static struct glint_scene_ray make_ray(double x, double y, double z, double dx,
+                                       double dy, double dz)
 {
     const double at[3] = {x, y, z}, d[3] = {dx, dy, dz};
     const double length = sqrt(dx * dx + dy * dy + dz * dz);
@@ -74,8 +73,7 @@ TEST(a5_nearest_triangle_is_visible)
         {-30, 0, 37, 30, 40, 117, 30, -40, 117}, /* blue triangle */
         {10, 10, 20, 20, 10, 20, 10, 20, 20}};   /* off the ray */
     static const uint32_t t[1][3] = {{0, 1, 2}};
-    const struct glint_scene_ray ahead =
-        make_ray_from_doubles(0, 0, 0, 0, 0, 1);
+    const struct glint_scene_ray ahead = make_ray(0, 0, 0, 0, 0, 1);
 
     for (int first = 0; first < 4; first++) {
         struct glint_scene *s;
@@ -163,8 +161,7 @@ TEST(a7_diffuse_light_of_a_lamp)
     const int32_t lamp[3] = {0, 40 * UNIT, 0};
     struct glint_scene *s;
     struct glint_met_shade to;
-    const struct glint_scene_ray down =
-        make_ray_from_doubles(0, 10, 30, 0, -1, 0);
+    const struct glint_scene_ray down = make_ray(0, 10, 30, 0, -1, 0);
 
     scene_begin_header(&file);
     scene_add_plane(&file, "floor", scene_add_material(&file, "red"), 0);
@@ -229,11 +226,10 @@ TEST(a8_phong_matches_double_precision)
 
         if (cosine > 0)
             expected += .6 * .5 * cosine + .3 * pow(gloss, 32);
-        assert_true(
-            fabs(shade_ray_red_q15(
-                     s, make_ray_from_doubles(2 * n[0], 2 * n[1], 0, 0, 0, 1)) /
-                     32768. -
-                 expected) < 2e-3);
+        assert_true(fabs(shade_ray_red_q15(
+                             s, make_ray(2 * n[0], 2 * n[1], 0, 0, 0, 1)) /
+                             32768. -
+                         expected) < 2e-3);
     }
 }
 
@@ -253,7 +249,7 @@ static int32_t measure_light_under_ball(double h, int hidden)
     file.object[1].hidden = (uint32_t)hidden;
     scene_add_lamp(&file, lamp, 4 * UNIT);
     return shade_ray_red_q15(start_renderer(1),
-                             make_ray_from_doubles(2, .5, 10, -2, -.5, 0));
+                             make_ray(2, .5, 10, -2, -.5, 0));
 }
 
 TEST(a10_ball_shadows_a_floor)
@@ -308,9 +304,8 @@ TEST(a10_open_surfaces_have_no_shadow_acne)
                 file.header.shadow = 1;
                 s = start_renderer(1);
             }
-            ray = make_ray_from_doubles(
-                0, 0, 0, rng_unit(&seed) * .3 - .15,
-                rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
+            ray = make_ray(0, 0, 0, rng_unit(&seed) * .3 - .15,
+                           rng_unit(&seed) * .3 - .15 - .25 * (kind == 1), 1);
             file.header.shadow = 0;
             memcpy(file.data, &file.header, sizeof file.header);
             if (!intersect_and_shade_ray(s, &ray, &to[0]))
@@ -341,8 +336,8 @@ TEST(a10_penumbra_is_monotone)
     file.light[0].radius = ONE_Q30 / 10;
     s = start_renderer(16);
     for (int i = 0; i <= 40; i++) {
-        const int32_t light = shade_ray_red_q15(
-            s, make_ray_from_doubles(i * .05, .2, 10, 0, -1, 0));
+        const int32_t light =
+            shade_ray_red_q15(s, make_ray(i * .05, .2, 10, 0, -1, 0));
 
         assert_true(light >= last);
         levels += light > last;
@@ -350,8 +345,7 @@ TEST(a10_penumbra_is_monotone)
     }
     assert_true(levels > 8);
     assert_in_range(last, 32767, 32768);
-    assert_int_equal(
-        shade_ray_red_q15(s, make_ray_from_doubles(.1, .2, 10, 0, -1, 0)), 0);
+    assert_int_equal(shade_ray_red_q15(s, make_ray(.1, .2, 10, 0, -1, 0)), 0);
 }
 
 /* Checks that the light behind objects is multiplied by the fractions that they
@@ -387,16 +381,15 @@ TEST(objects_let_a_fraction_of_light_through)
                 file.light[0].radius = is_sun ? ONE_Q30 / 100 : UNIT / 10;
                 s = start_renderer(points);
                 assert_int_equal(s->lit[0].shadow != NULL, 0);
-                assert_in_range(shade_ray_red_q15(s, make_ray_from_doubles(
-                                                         0, .2, 10, 0, -1, 0)) +
-                                    4,
-                                row[i].light_q15, row[i].light_q15 + 8);
+                assert_in_range(
+                    shade_ray_red_q15(s, make_ray(0, .2, 10, 0, -1, 0)) + 4,
+                    row[i].light_q15, row[i].light_q15 + 8);
             }
 }
 
 /* ---------------------------------- transparency and refraction (A11, A12) */
 
-static void make_material_transparent(struct glint_scene_material *m)
+static void make_transparent(struct glint_scene_material *m)
 {
     m->diffuse_q15 = 0;
     m->pass_q15 = 32768;
@@ -413,8 +406,7 @@ TEST(a11_transparent_ball_occludes_nothing)
 
     scene_begin_header(&file);
     scene_add_material(&file, "m");
-    make_material_transparent(
-        &file.material[scene_add_material(&file, "clear")]);
+    make_transparent(&file.material[scene_add_material(&file, "clear")]);
     scene_add_sphere(&file, "far", 0, UNIT / 2, UNIT / 3, 20 * UNIT, 3 * UNIT);
     scene_add_sphere(&file, "near", 1, 0, 0, 10 * UNIT, 2 * UNIT);
     scene_add_sphere(&file, "inside", 0, UNIT / 4, -UNIT / 4, 10 * UNIT,
@@ -422,9 +414,9 @@ TEST(a11_transparent_ball_occludes_nothing)
     scene_add_sun(&file, up);
     s = start_renderer(1);
     for (int i = 0; i < 20000; i++) {
-        struct glint_scene_ray ray = make_ray_from_doubles(
-            0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
-            rng_unit(&seed) * .4 - .2, 1);
+        struct glint_scene_ray ray =
+            make_ray(0, 0, i % 2 ? 9 : 0, rng_unit(&seed) * .4 - .2,
+                     rng_unit(&seed) * .4 - .2, 1);
         struct glint_met_shade with, without;
         struct glint_chord chord;
         int is;
@@ -503,8 +495,7 @@ TEST(a11_ray_leaves_a_ball_once)
             const double y = middle[1] / middle[2] + .4 * rng_unit(&seed) - .2;
             const double length = sqrt(x * x + y * y + 1);
             const double d[3] = {x / length, y / length, 1 / length};
-            const struct glint_scene_ray ray =
-                make_ray_from_doubles(0, 0, 0, x, y, 1);
+            const struct glint_scene_ray ray = make_ray(0, 0, 0, x, y, 1);
             struct glint_met_shade to;
 
             if (!intersect_and_shade_ray(s, &ray, &to))
@@ -589,10 +580,8 @@ TEST(a12_glass_balls_refract)
     file.material[0].ambient_q15 = 32768;
     file.material[0].diffuse_q15 = 0;
     file.material[0].texture = scene_add_texture(&file, rgb, 8, 0);
-    make_material_transparent(
-        &file.material[scene_add_material(&file, "glass")]);
-    make_material_transparent(
-        &file.material[scene_add_material(&file, "inner")]);
+    make_transparent(&file.material[scene_add_material(&file, "glass")]);
+    make_transparent(&file.material[scene_add_material(&file, "inner")]);
     /* a wall behind the ball: the floor rotated by 90 degrees about x; its
      * texture repeats once per unit */
     scene_add_plane(&file, "wall", 0, 0);
@@ -613,8 +602,7 @@ TEST(a12_glass_balls_refract)
         for (int i = 0; i < 3000; i++) {
             const double dx = rng_unit(&seed) * .2 - .1;
             double heading, u, code;
-            struct glint_scene_ray ray =
-                make_ray_from_doubles(0, 0, 0, dx, 0, 1);
+            struct glint_scene_ray ray = make_ray(0, 0, 0, dx, 0, 1);
             struct glint_met_shade to;
 
             u = trace_exact_path(dx, b, &heading);
@@ -643,8 +631,7 @@ TEST(a12_total_reflection_inside_a_ball)
     scene_begin_header(&file);
     file.header.background = GLINT_BACKGROUND_COLOUR;
     file.header.background_q15[0] = 8192;
-    make_material_transparent(
-        &file.material[scene_add_material(&file, "glass")]);
+    make_transparent(&file.material[scene_add_material(&file, "glass")]);
     file.material[0].index_q16 = 3 << 15;
     scene_add_sphere(&file, "ball", 0, 0, 0, 0, 2 * UNIT);
     scene_add_sun(&file, up);
@@ -652,8 +639,7 @@ TEST(a12_total_reflection_inside_a_ball)
     for (int i = 0; i <= 100; i++) {
         /* the angle of incidence of this ray has the sine x / 2 */
         const double x = 2 * i / 101.;
-        const int32_t red =
-            shade_ray_red_q15(s, make_ray_from_doubles(x, 0, 0, 0, 0, 1));
+        const int32_t red = shade_ray_red_q15(s, make_ray(x, 0, 0, 0, 0, 1));
 
         if (fabs(x / 2 - 1 / 1.5) > .001)
             assert_int_equal(red, x / 2 < 1 / 1.5 ? 8192 : 0);
@@ -702,7 +688,7 @@ TEST(a13_texture_coordinates)
                 if (k < 2)
                     uv[k] += w[j] * uv_q16[j][k];
             }
-        ray = make_ray_from_doubles(0, 0, 0, place[0], place[1], place[2]);
+        ray = make_ray(0, 0, 0, place[0], place[1], place[2]);
         assert_true(glint_scene_ray_hits_id(s, &ray, ray.toward_q30, 0, &met) &&
                     glint_scene_find_surface_at_hit(s, &ray, &met, &surface));
         /* half a texel; 1/256 texel is 128 in Q15 */
@@ -743,10 +729,9 @@ TEST(a13_distant_texture_has_its_mean)
     s = start_renderer(1);
     for (int i = 0; i < 2000; i++) {
         const double x = rng_unit(&seed) - .5;
-        const int32_t near = shade_ray_red_q15(
-            s, make_ray_from_doubles(x / 9, -.99, 0, x, -1, .1));
-        const int32_t far =
-            shade_ray_red_q15(s, make_ray_from_doubles(x, 0, 0, x, -.02, 1));
+        const int32_t near =
+            shade_ray_red_q15(s, make_ray(x / 9, -.99, 0, x, -1, .1));
+        const int32_t far = shade_ray_red_q15(s, make_ray(x, 0, 0, x, -.02, 1));
 
         assert_true(near >= 0 && near <= 32768);
         assert_in_range(far, 6900, 7200); /* the linear light of code 127.5 */
@@ -757,11 +742,10 @@ TEST(a13_distant_texture_has_its_mean)
     for (int i = 0; i < 500; i++) {
         const double x = rng_unit(&seed), z = rng_unit(&seed);
         const int32_t close =
-            shade_ray_red_q15(s, make_ray_from_doubles(x, -.75, z, 0, -1, 0));
+            shade_ray_red_q15(s, make_ray(x, -.75, z, 0, -1, 0));
 
-        assert_in_range(
-            shade_ray_red_q15(s, make_ray_from_doubles(x, .001, z, 0, -1, 0)),
-            6900, 7200);
+        assert_in_range(shade_ray_red_q15(s, make_ray(x, .001, z, 0, -1, 0)),
+                        6900, 7200);
         lowest = close < lowest ? close : lowest;
         highest = close > highest ? close : highest;
     }

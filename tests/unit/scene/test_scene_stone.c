@@ -458,13 +458,12 @@ TEST(albedo_0_and_1)
 
 static void expect_scene_is_rejected(const char *text, const char *reason)
 {
-    struct glint_description *s = malloc(sizeof *s);
+    struct glint_description *s = test_free_later(malloc(sizeof *s));
     struct glint_scene_bake_report report;
     struct glint_error error;
     unsigned char *data = NULL;
     size_t bytes;
 
-    assert_non_null(s);
     if (parse_scene_text(text, s, &error) == GLINT_OK) {
         if (glint_scene_bake(s, "x", 1, &data, &bytes, &report, &error) ==
             GLINT_OK) {
@@ -475,7 +474,6 @@ static void expect_scene_is_rejected(const char *text, const char *reason)
     }
     if (!strstr(error.text, reason))
         fail_msg("'%s' is not in '%s'", reason, error.text);
-    free(s);
 }
 
 TEST(rejects_unsuitable_meshes)

@@ -21,17 +21,15 @@ static const enum glint_scatter_model models[] = {
 static double compute_psnr(const struct built_stone *b)
 {
     const size_t n = 3 * (size_t)(b->fit.side * b->fit.side);
-    double *light = calloc(3 * n, sizeof *light);
+    double *light = test_free_later(calloc(3 * n, sizeof *light));
     double db;
 
-    assert_non_null(light);
     glint_scatter_test_light(b->fit.side, light);
     glint_scatter_light(&b->fit, light, light + n);
     assert_ok(glint_stone_light(&b->stone, light, light + 2 * n));
     for (size_t i = 0; i < n; i++)
         light[n + i] = fmax(light[n + i], 0);
     db = peak_psnr(light + 2 * n, light + n, n);
-    free(light);
     return db;
 }
 

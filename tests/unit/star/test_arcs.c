@@ -13,8 +13,7 @@
 #include "support/stars/canvas.h"
 #include "support/test.h"
 
-static double compute_arc_pattern(const struct glint_arcs *arcs, double x,
-                                  double y)
+static double arc_pattern(const struct glint_arcs *arcs, double x, double y)
 {
     const double q = hypot(x, y);
     double pattern;
@@ -36,10 +35,9 @@ static double compute_far_arc_pattern(const struct glint_arcs *arcs, double x,
 /* Returns the mean of the diffraction pattern |F|^2 / A^2 times q^3 / AT^3 over
  * the frequencies q of 0.8 to 1.2 times AT, in the direction PHI. F is the
  * amplitude and A the area of the stop. */
-static double compute_mean_scaled_pattern(double (*f)(const struct glint_arcs *,
-                                                      double, double),
-                                          const struct glint_arcs *arcs,
-                                          double at, double phi)
+static double
+mean_scaled_pattern(double (*f)(const struct glint_arcs *, double, double),
+                    const struct glint_arcs *arcs, double at, double phi)
 {
     enum { N = 400 };
     double sum = 0;
@@ -76,16 +74,13 @@ TEST(arcs_end_at_the_corners)
             double one, other;
 
             glint_arcs_init(&arcs, blades[i], 10, 0.9999);
-            one = compute_mean_scaled_pattern(compute_arc_pattern, &arcs, at,
-                                              phi);
-            other = compute_mean_scaled_pattern(compute_circle_pattern, &arcs,
-                                                at, phi);
+            one = mean_scaled_pattern(arc_pattern, &arcs, at, phi);
+            other = mean_scaled_pattern(compute_circle_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
             glint_arcs_init(&arcs, blades[i], 10, 1e-3);
-            one = compute_mean_scaled_pattern(compute_arc_pattern, &arcs, at,
-                                              phi);
-            other = compute_mean_scaled_pattern(compute_polygon_pattern, &arcs,
-                                                at, phi);
+            one = mean_scaled_pattern(arc_pattern, &arcs, at, phi);
+            other =
+                mean_scaled_pattern(compute_polygon_pattern, &arcs, at, phi);
             assert_true(fabs(one / other - 1) < 0.02);
         }
 }
@@ -102,10 +97,8 @@ TEST(switching_methods_causes_no_step)
             double before, after;
 
             glint_arcs_init(&arcs, n, 10, 0.05 + 0.04 * k);
-            before = compute_arc_pattern(&arcs, 4.99999 * cos(phi),
-                                         4.99999 * sin(phi));
-            after = compute_arc_pattern(&arcs, 5.00001 * cos(phi),
-                                        5.00001 * sin(phi));
+            before = arc_pattern(&arcs, 4.99999 * cos(phi), 4.99999 * sin(phi));
+            after = arc_pattern(&arcs, 5.00001 * cos(phi), 5.00001 * sin(phi));
             assert_true(fabs(sqrt(before) - sqrt(after)) < 4e-4);
         }
 }
@@ -160,10 +153,9 @@ TEST(distant_pattern_sums_over_a_circle)
         glint_arcs_init(&arcs, 5 + k % 4, 10, 0.05 + 0.3 * (k / 4 % 3));
         for (int i = 0; i < PHIS; i++) {
             const double phi = 2 * GLINT_PI * i / PHIS, at = k < 12 ? 12 : 60;
-            const double one = compute_mean_scaled_pattern(compute_arc_pattern,
-                                                           &arcs, at, phi);
-            const double other = compute_mean_scaled_pattern(
-                compute_far_arc_pattern, &arcs, at, phi);
+            const double one = mean_scaled_pattern(arc_pattern, &arcs, at, phi);
+            const double other =
+                mean_scaled_pattern(compute_far_arc_pattern, &arcs, at, phi);
 
             assert_true(other > 0.3 * one && other < 3 * one);
             exact += one;
@@ -266,12 +258,12 @@ static int measure_spike_width_px(double round, double soft, double radius)
     enum { SIDE = 255, ROW = 27 };
     struct glint_star_tables *t = make_star_tables(6, round, soft);
     struct glint_star_light lamp = star_canvas_make_light(127.5, 127.5, 20);
-    int32_t *linear_q20 = malloc(3 * SIDE * SIDE * sizeof *linear_q20);
+    int32_t *linear_q20 =
+        test_free_later(malloc(3 * SIDE * SIDE * sizeof *linear_q20));
     const int32_t *row = linear_q20 + 3 * SIDE * ROW;
     struct star_canvas canvas;
     int n = 0;
 
-    assert_non_null(linear_q20);
     lamp.radius_q8 = (int32_t)(256 * radius);
     star_canvas_open(&canvas, SIDE, SIDE, 5, 1, 1);
     star_canvas_draw_light(&canvas, t, &lamp, 1, glint_real_of(0x1p-21),
@@ -279,7 +271,6 @@ static int measure_spike_width_px(double round, double soft, double radius)
     star_canvas_close(&canvas);
     for (int x = 90; x < 165; x++)
         n += 2 * row[3 * x + 1] > row[3 * 127 + 1];
-    free(linear_q20);
     glint_star_tables_free(t);
     return n;
 }

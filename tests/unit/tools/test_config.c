@@ -93,13 +93,11 @@ static void expect_stderr_message(const char *want)
 
 /* ---------------------------------------------------------- valid entries */
 
-static void expect_applied_options(const char *text, size_t bytes,
-                                   const char *log)
+static void expect_options(const char *text, size_t bytes, const char *log)
 {
     struct config config = make_empty_config();
-    char *const exact = malloc(bytes + 1);
+    char *const exact = test_free_later(malloc(bytes + 1));
 
-    assert_non_null(exact);
     memcpy(exact, text, bytes);
     capture_stderr();
     assert_ok(config_parse(&config, "x.ini", exact, bytes, &error));
@@ -107,45 +105,41 @@ static void expect_applied_options(const char *text, size_t bytes,
     assert_string_equal(command.log, log);
     assert_string_equal(error.text, "");
     assert_null(command.tool.where);
-    free(exact);
     config_free(&config);
     config_free(&config);
 }
 
 TEST(applies_entries_in_order)
 {
-    expect_applied_options(BYTES(""), "");
-    expect_applied_options(BYTES("\n\n"), "");
-    expect_applied_options(BYTES("grid=64"), "grid=64;");
-    expect_applied_options(
+    expect_options(BYTES(""), "");
+    expect_options(BYTES("\n\n"), "");
+    expect_options(BYTES("grid=64"), "grid=64;");
+    expect_options(
         BYTES("[lens]\nlens = heliar tronnier \n[light]\n"
               "light = 1,2\nlight = 3,4\nlens=other\n"
               "[flare]\ndither = yes\nbalance = no\ngrid: 8\n"),
         "lens=heliar "
         "tronnier;light=1,2;light=3,4;lens=other;dither=(none);grid=8;");
-    expect_applied_options(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
-                           "threads=2;quiet=(none);");
-    expect_applied_options(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
-    expect_applied_options(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
-                           "lens=stop = polygon:6;lens=a:b;");
+    expect_options(BYTES("[camera]\n[output]\nthreads=2\nquiet=yes\n"),
+                   "threads=2;quiet=(none);");
+    expect_options(BYTES("tint=\ntint=warm\n"), "tint=;tint=warm;");
+    expect_options(BYTES("lens = stop = polygon:6\nlens: a:b\n"),
+                   "lens=stop = polygon:6;lens=a:b;");
 }
 
 TEST(accepts_blanks_and_line_ends)
 {
-    expect_applied_options(
-        BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
-        "grid=64;lens=a b;");
-    expect_applied_options(
-        BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"), "grid=5;");
-    expect_applied_options(
-        BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
-        "grid=7;lens=a;b;lens=c # d;");
+    expect_options(BYTES("\xef\xbb\xbfgrid=64\r\n  \t \r\nlens = a b\r\n"),
+                   "grid=64;lens=a b;");
+    expect_options(BYTES("\xef\xbb\xbf; note\n# lens=x\n ; x\n\t# y\ngrid=5"),
+                   "grid=5;");
+    expect_options(BYTES("grid = 7 ; cells\nlens = a;b\nlens = c # d\n"),
+                   "grid=7;lens=a;b;lens=c # d;");
     /* an indented line does not continue the previous line */
-    expect_applied_options(
-        BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
-        "lens=a;grid=9;light=1,2;");
-    expect_applied_options(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
-                           "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
+    expect_options(BYTES("[lens]\n  lens = a\n  grid = 9\n\tlight=1,2\n"),
+                   "lens=a;grid=9;light=1,2;");
+    expect_options(BYTES("lens=\xc3\xa4\xc3\xb6.lens\nlens=\"q\"\n"),
+                   "lens=\xc3\xa4\xc3\xb6.lens;lens=\"q\";");
 }
 
 /* Checks that option values remain valid after the text is freed, until
@@ -164,8 +158,7 @@ TEST(values_outlive_the_text)
 
 /* ------------------------------------------------------- rejected entries */
 
-static void expect_config_error(const char *text, size_t bytes,
-                                const char *want)
+static void expect_error(const char *text, size_t bytes, const char *want)
 {
     struct config config = make_empty_config();
 
@@ -178,46 +171,39 @@ static void expect_config_error(const char *text, size_t bytes,
 
 TEST(reports_mistakes_with_their_line)
 {
-    expect_config_error(
-        BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
-        "x.ini:4: grdi is not an option of configuration files");
-    expect_config_error(
-        BYTES("--grid=64\n"),
-        "x.ini:1: --grid is not an option of configuration files");
-    expect_config_error(BYTES("gri=64\n"),
-                        "x.ini:1: gri is not an option of configuration files");
-    expect_config_error(
-        BYTES("config=y.ini\n"),
-        "x.ini:1: config is not an option of configuration files");
-    expect_config_error(
-        BYTES("help=yes"),
-        "x.ini:1: help is not an option of configuration files");
-    expect_config_error(
-        BYTES("grid=64\nversion=yes"),
-        "x.ini:2: version is not an option of configuration files");
-    expect_config_error(BYTES("grid=64\nlens\n"),
-                        "x.ini:2: is neither [section] nor name = value");
-    expect_config_error(BYTES("[lens\ngrid=64\n"),
-                        "x.ini:1: is neither [section] nor name = value");
-    expect_config_error(BYTES("lens ; = x\ngrid=64\nfoo=1\n"),
-                        "x.ini:1: is neither [section] nor name = value");
-    expect_config_error(BYTES("foo=1\nlens\n"),
-                        "x.ini:1: foo is not an option of configuration files");
-    expect_config_error(BYTES("=5\n"),
-                        "x.ini:1:  is not an option of configuration files");
-    expect_config_error(BYTES("grid=\n"), "x.ini:1: grid needs a value");
-    expect_config_error(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
-    expect_config_error(BYTES("dither=maybe\n"),
-                        "x.ini:1: dither accepts yes or no");
-    expect_config_error(BYTES("dither=\n"),
-                        "x.ini:1: dither accepts yes or no");
-    expect_config_error(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
-                        "x.ini:4: dither is set twice");
-    expect_config_error(BYTES("grid=4\nlens=a\0b\n"), "x.ini: not a text file");
-    expect_config_error(BYTES("lens=a\x1b[2J\n"),
-                        "x.ini:1: contains a control character");
-    expect_config_error(BYTES("lens=a\rgrid=5\n"),
-                        "x.ini:1: contains a control character");
+    expect_error(BYTES("grid=64\n\n[lens]\ngrdi=5\n"),
+                 "x.ini:4: grdi is not an option of configuration files");
+    expect_error(BYTES("--grid=64\n"),
+                 "x.ini:1: --grid is not an option of configuration files");
+    expect_error(BYTES("gri=64\n"),
+                 "x.ini:1: gri is not an option of configuration files");
+    expect_error(BYTES("config=y.ini\n"),
+                 "x.ini:1: config is not an option of configuration files");
+    expect_error(BYTES("help=yes"),
+                 "x.ini:1: help is not an option of configuration files");
+    expect_error(BYTES("grid=64\nversion=yes"),
+                 "x.ini:2: version is not an option of configuration files");
+    expect_error(BYTES("grid=64\nlens\n"),
+                 "x.ini:2: is neither [section] nor name = value");
+    expect_error(BYTES("[lens\ngrid=64\n"),
+                 "x.ini:1: is neither [section] nor name = value");
+    expect_error(BYTES("lens ; = x\ngrid=64\nfoo=1\n"),
+                 "x.ini:1: is neither [section] nor name = value");
+    expect_error(BYTES("foo=1\nlens\n"),
+                 "x.ini:1: foo is not an option of configuration files");
+    expect_error(BYTES("=5\n"),
+                 "x.ini:1:  is not an option of configuration files");
+    expect_error(BYTES("grid=\n"), "x.ini:1: grid needs a value");
+    expect_error(BYTES("grid= ; 64\n"), "x.ini:1: grid needs a value");
+    expect_error(BYTES("dither=maybe\n"), "x.ini:1: dither accepts yes or no");
+    expect_error(BYTES("dither=\n"), "x.ini:1: dither accepts yes or no");
+    expect_error(BYTES("grid=4\ndither=yes\n\ndither=no\n"),
+                 "x.ini:4: dither is set twice");
+    expect_error(BYTES("grid=4\nlens=a\0b\n"), "x.ini: not a text file");
+    expect_error(BYTES("lens=a\x1b[2J\n"),
+                 "x.ini:1: contains a control character");
+    expect_error(BYTES("lens=a\rgrid=5\n"),
+                 "x.ini:1: contains a control character");
 }
 
 /* Checks an error that the command itself reports: its message must be

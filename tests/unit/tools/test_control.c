@@ -68,7 +68,7 @@ TEST(parses_every_command)
     expect_parsed_line(" # all a comment", CONTROL_NONE, -1, 0);
 }
 
-static void expect_parse_error(const char *text, const char *cause)
+static void expect_error(const char *text, const char *cause)
 {
     memset(&line, 0x55, sizeof line);
     assert_int_equal(control_parse_line(text, "f:1", &line, &error),
@@ -81,53 +81,45 @@ TEST(rejects_wrong_commands)
 {
     static char text[400];
 
-    expect_parse_error(
-        "orbti 3 4", "f:1:1: 'orbti' is not a command; did you mean 'orbit'?");
-    expect_parse_error("frob", "f:1:1: 'frob' is not a command");
-    expect_parse_error("orbit 3", "f:1:8: expected orbit YAW PITCH");
-    expect_parse_error("orbit 3 x",
-                       "f:1:9: 'x' is not a number; expected orbit YAW PITCH");
-    expect_parse_error(
-        "orbit 3 4 5",
-        "f:1:11: '5' is one value too many; expected orbit YAW PITCH");
-    expect_parse_error("orbit 3 400",
-                       "f:1:9: orbit YAW PITCH must be -360 to 360, not 400");
-    expect_parse_error(
-        "orbit nan 4",
-        "f:1:7: 'nan' is not a number; expected orbit YAW PITCH");
-    expect_parse_error("set", "f:1:4: expected set MATERIAL alpha X [Y]");
-    expect_parse_error("set steel",
-                       "f:1:10: expected set MATERIAL alpha X [Y]");
-    expect_parse_error(
-        "set steel alhpa 1",
-        "f:1:11: 'alhpa' is not a word of set; did you mean 'alpha'?");
-    expect_parse_error("environment", "f:1:12: expected environment turn DEG");
-    expect_parse_error(
+    expect_error("orbti 3 4",
+                 "f:1:1: 'orbti' is not a command; did you mean 'orbit'?");
+    expect_error("frob", "f:1:1: 'frob' is not a command");
+    expect_error("orbit 3", "f:1:8: expected orbit YAW PITCH");
+    expect_error("orbit 3 x",
+                 "f:1:9: 'x' is not a number; expected orbit YAW PITCH");
+    expect_error("orbit 3 4 5",
+                 "f:1:11: '5' is one value too many; expected orbit YAW PITCH");
+    expect_error("orbit 3 400",
+                 "f:1:9: orbit YAW PITCH must be -360 to 360, not 400");
+    expect_error("orbit nan 4",
+                 "f:1:7: 'nan' is not a number; expected orbit YAW PITCH");
+    expect_error("set", "f:1:4: expected set MATERIAL alpha X [Y]");
+    expect_error("set steel", "f:1:10: expected set MATERIAL alpha X [Y]");
+    expect_error("set steel alhpa 1",
+                 "f:1:11: 'alhpa' is not a word of set; did you mean 'alpha'?");
+    expect_error("environment", "f:1:12: expected environment turn DEG");
+    expect_error(
         "environment nxt",
         "f:1:13: 'nxt' is not a word of environment; did you mean 'next'?");
-    expect_parse_error("environment map",
-                       "f:1:16: expected environment map NAME");
-    expect_parse_error(
+    expect_error("environment map", "f:1:16: expected environment map NAME");
+    expect_error(
         "environment map a b",
         "f:1:19: 'b' is one value too many; expected environment map NAME");
-    expect_parse_error(
-        "environment scale 0",
-        "f:1:19: environment scale X must be 1e-06 to 1000000, not 0");
-    expect_parse_error(
-        "set steel alpha 0",
-        "f:1:17: set MATERIAL alpha X [Y] must be 0.001 to 1, not 0");
-    expect_parse_error("jump 1.5",
-                       "f:1:6: jump N needs whole numbers, not 1.5");
-    expect_parse_error(
+    expect_error("environment scale 0",
+                 "f:1:19: environment scale X must be 1e-06 to 1000000, not 0");
+    expect_error("set steel alpha 0",
+                 "f:1:17: set MATERIAL alpha X [Y] must be 0.001 to 1, not 0");
+    expect_error("jump 1.5", "f:1:6: jump N needs whole numbers, not 1.5");
+    expect_error(
         "-1 stop",
         "f:1:1: a frame must be a whole number from 0 to 1000000000, not '-1'");
-    expect_parse_error("1.5 stop", "f:1:1: a frame must be a whole number from "
-                                   "0 to 1000000000, not '1.5'");
-    expect_parse_error("7 ", "f:1:3: a command must follow the frame number");
-    expect_parse_error("show a23456789012345678901234567890123",
-                       "f:1:6: a name has at most 31 letters");
+    expect_error("1.5 stop", "f:1:1: a frame must be a whole number from "
+                             "0 to 1000000000, not '1.5'");
+    expect_error("7 ", "f:1:3: a command must follow the frame number");
+    expect_error("show a23456789012345678901234567890123",
+                 "f:1:6: a name has at most 31 letters");
     memset(text, 'a', sizeof text - 1);
-    expect_parse_error(text, "f:1:256: a line has at most 255 bytes");
+    expect_error(text, "f:1:256: a line has at most 255 bytes");
 }
 
 /* Checks that all forms of a command, which begin with the same word, have the

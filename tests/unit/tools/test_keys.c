@@ -6,9 +6,8 @@
 #include "desk/keys.h"
 #include "support/test.h"
 
-static enum glint_status parse_key_file_text(struct keys *keys,
-                                             const char *text,
-                                             struct glint_error *error)
+static enum glint_status parse_keys(struct keys *keys, const char *text,
+                                    struct glint_error *error)
 {
     return key_frames_parse_text(keys, "k.csv", text, strlen(text), error);
 }
@@ -18,11 +17,10 @@ TEST(interpolates_values_between_keys)
     struct glint_error error = {""};
     struct keys k;
 
-    assert_ok(
-        parse_key_file_text(&k,
-                            "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
-                            "20,3,,100,\n\n30,,8,,50\r\n",
-                            &error));
+    assert_ok(parse_keys(&k,
+                         "# remark\nframe, gain ,exposure,x,y\n10,1,-2,0,0\n"
+                         "20,3,,100,\n\n30,,8,,50\r\n",
+                         &error));
     assert_true(key_frames_have_column(&k, KEYS_GAIN) &&
                 !key_frames_have_column(&k, KEYS_STRENGTH));
     assert_true(key_frames_interpolate_at(&k, KEYS_STRENGTH, 15, 7) == 7);
@@ -55,7 +53,7 @@ TEST(uses_the_right_two_of_many_keys)
         at += (size_t)snprintf(text + at, sizeof text - at, "%d,%d\n", frame,
                                gain);
     }
-    assert_ok(parse_key_file_text(&k, text, &error));
+    assert_ok(parse_keys(&k, text, &error));
     for (int i = 0; i < 999; i++) {
         assert_true(key_frames_interpolate_at(&k, KEYS_GAIN, 3 * i, 0) ==
                     i * i);
@@ -95,8 +93,7 @@ TEST(rejects_wrong_key_files)
         struct glint_error error = {""};
         struct keys k;
 
-        assert_int_equal(parse_key_file_text(&k, bad[i][0], &error),
-                         GLINT_E_FORMAT);
+        assert_int_equal(parse_keys(&k, bad[i][0], &error), GLINT_E_FORMAT);
         assert_ptr_equal(strstr(error.text, bad[i][1]), error.text);
         assert_int_equal(k.n[KEYS_FRAME], 0);
     }

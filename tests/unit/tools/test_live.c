@@ -94,7 +94,7 @@ static int run_live_command(const char *line)
 }
 
 /* Returns how often TEXT was printed to standard error. */
-static int count_stderr_messages(const char *text)
+static int count_messages(const char *text)
 {
     static char all[100000];
     FILE *const f = fopen(said_path, "r");
@@ -155,9 +155,8 @@ static void count_allocations_at_stream_start(void)
 /* Runs LINE and calls FOLLOW at each wait. Checks that streaming was started
  * N_STARTS times, each time after all memory was allocated: between start
  * number i and the wait number wait[i], nothing may be allocated. */
-static void check_allocations_before_streaming(const char *line,
-                                               void (*follow)(int wait),
-                                               const int *wait, int n_starts)
+static void check_allocations(const char *line, void (*follow)(int wait),
+                              const int *wait, int n_starts)
 {
     fake_camera_reset();
     camera.on_stream = count_allocations_at_stream_start;
@@ -195,12 +194,10 @@ TEST(streaming_starts_after_all_setup)
     static const int start[] = {10}, back[] = {10, 40},
                      sizes[] = {4, 14, 24, 29};
 
-    check_allocations_before_streaming("--count 20", count_allocations, start,
-                                       1);
-    check_allocations_before_streaming("--count 50 --reconnect",
-                                       unplug_camera_during_wait, back, 2);
-    check_allocations_before_streaming("--count 27", change_camera_size, sizes,
-                                       4);
+    check_allocations("--count 20", count_allocations, start, 1);
+    check_allocations("--count 50 --reconnect", unplug_camera_during_wait, back,
+                      2);
+    check_allocations("--count 27", change_camera_size, sizes, 4);
 }
 
 TEST(skips_frames_before_counting)
@@ -266,7 +263,7 @@ TEST(reloads_neither_leak_nor_change_the_image)
                  config_path, exact ? " --rays exact --grid 8" : "");
         assert_ok(run_live_command(line));
         expect_closed_without_leaks();
-        assert_int_equal(count_stderr_messages("glint live: reloaded"),
+        assert_int_equal(count_messages("glint live: reloaded"),
                          exact ? 3 : 15);
         assert_int_equal(blocks[last_shot - 1], blocks[exact ? 18 : 28]);
         assert_memory_equal(read_snapshot_file(1), read_snapshot_file(2),
@@ -298,12 +295,10 @@ TEST(invalid_reload_keeps_the_old_settings)
     assert_ok(run_live_command(line));
     expect_closed_without_leaks();
     assert_int_equal(
-        count_stderr_messages(
-            "not reloaded: the previous configuration stays in use"),
+        count_messages("not reloaded: the previous configuration stays in use"),
         6);
-    assert_int_equal(count_stderr_messages("live: reloaded"), 2);
-    assert_int_equal(
-        count_stderr_messages(":2: no-such-thing is not an option"), 4);
+    assert_int_equal(count_messages("live: reloaded"), 2);
+    assert_int_equal(count_messages(":2: no-such-thing is not an option"), 4);
 }
 
 /* ---------------------------------------------------------------- snapshot */
@@ -366,7 +361,7 @@ TEST(snapshot_waits_for_the_next_frame)
     script = request_snapshot_without_frames;
     assert_ok(run_live_command(line));
     expect_closed_without_leaks();
-    assert_int_equal(count_stderr_messages(said), 1);
+    assert_int_equal(count_messages(said), 1);
     assert_int_equal(unlink(path), 0);
 }
 
@@ -377,7 +372,7 @@ TEST(unplugged_camera_ends_the_run)
     script = unplug_camera_during_wait;
     assert_int_equal(run_live_command("--count 100"), EXIT_DEVICE);
     expect_closed_without_leaks();
-    assert_int_equal(count_stderr_messages("the camera was removed\n"), 1);
+    assert_int_equal(count_messages("the camera was removed\n"), 1);
     assert_true(n_waits <= 21);
 }
 
@@ -388,9 +383,8 @@ TEST(reconnects_to_a_camera_that_returns)
         script = unplug_camera_during_wait;
         assert_ok(run_live_command("--count 100 --reconnect"));
         expect_closed_without_leaks();
-        assert_int_equal(count_stderr_messages("waiting for the camera"), 1);
-        assert_int_equal(count_stderr_messages("(Fake): YUYV 64x48 at 30 fps"),
-                         2);
+        assert_int_equal(count_messages("waiting for the camera"), 1);
+        assert_int_equal(count_messages("(Fake): YUYV 64x48 at 30 fps"), 2);
     }
 }
 
@@ -399,7 +393,7 @@ TEST(adapts_to_changed_camera_sizes)
     script = change_camera_size;
     assert_ok(run_live_command("--count 150"));
     expect_closed_without_leaks();
-    assert_true(count_stderr_messages("YUYV 128x48") >= 7);
+    assert_true(count_messages("YUYV 128x48") >= 7);
     assert_int_equal(blocks[149], blocks[29]);
 }
 
@@ -423,7 +417,7 @@ TEST(every_failing_call_is_handled)
         expect_closed_without_leaks();
         if (code != EXIT_OK) {
             n_failed++;
-            assert_true(count_stderr_messages("glint live: ") >= 1);
+            assert_true(count_messages("glint live: ") >= 1);
         }
     } while (n <= n_calls);
     assert_true(n_failed >= 10);

@@ -123,10 +123,9 @@ TEST(noise_is_photon_and_read_noise)
     enum { SIDE = 256, N = 3 * SIDE * SIDE };
     struct synth_item item = {
         .width = SIDE, .height = SIDE, .read_noise = 0.01, .full_well = 1000};
-    float *const rgb = malloc(N * sizeof *rgb);
+    float *const rgb = test_free_later(malloc(N * sizeof *rgb));
     const double light[] = {0, 0.1, 0.8};
 
-    assert_non_null(rgb);
     for (int k = 0; k < 3; k++) {
         double sum = 0, squares = 0, wanted = light[k] / 1000 + 1e-4;
 
@@ -142,5 +141,4 @@ TEST(noise_is_photon_and_read_noise)
         assert_true(fabs(sum / N) < 5 * sqrt(wanted / N));
         assert_true(fabs(squares / N / wanted - 1) < 0.02);
     }
-    free(rgb);
 }
