@@ -405,7 +405,7 @@ TEST(decodes_deviations_of_cameras)
             replace_bytes(&b, find_jpeg_segment(&b, 0xdb, 0), 0, filler,
                           sizeof filler);
         }
-        b = (struct bytes){realloc(b.data, b.n), b.n};
+        b = allocate_copy_of_bytes(b.data, b.n);
         image = decode_valid_frame(d, &b);
         expect_decoded_planes(&image, &c);
     }

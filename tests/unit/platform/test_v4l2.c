@@ -484,6 +484,7 @@ TEST(streams_only_when_started)
     assert_int_equal(
         glint_v4l2_open(&v4l2, &any_camera, GLINT_V4L2_AUTO, 4, &said),
         GLINT_OK);
+    camera_is_open = true;
     for (int i = 0; i < 2; i++) {
         assert_int_equal(camera.n_streamons, i);
         assert_false(camera.streams);
