@@ -78,6 +78,7 @@ struct search {
     double target2, left2;         /* squared lengths of target and residual */
     double peak;      /* max magnitude of residual, if is_measured */
     bool is_measured; /* residual, left2 and peak are measured on rays */
+    bool diverges;    /* more terms would not improve the fit */
 };
 
 /* ------------------------------------------------------------------- loops */
@@ -382,16 +383,26 @@ static double refine_fit(struct search *s)
 }
 
 /* Measures the residual on the rays and refines the fit until the residual is
- * as small as its terms allow. */
+ * as small as its terms allow. If the terms depend on each other so much that
+ * refining diverges, returns to the fit before, which gets no more terms. */
 static void refine_to_min_residual(struct search *s)
 {
     enum { ROUNDS = 3 };
-    double least = s->left2;
+    double least = s->left2, share[GLINT_MAX_TERMS];
 
     measure_residual(s);
     for (int k = 0; k < ROUNDS && s->left2 > (1 + INEXACT) * least; k++) {
+        const double before2 = s->left2;
+
+        memcpy(share, s->share, sizeof share);
         least = refine_fit(s);
         measure_residual(s);
+        if (!(s->left2 <= before2)) {
+            memcpy(s->share, share, sizeof share);
+            measure_residual(s);
+            s->diverges = true;
+            return;
+        }
     }
 }
 
@@ -631,7 +642,7 @@ static void init_search(struct search *s, double *scratch,
     s->s = samples;
     s->degrees = degrees;
     s->n_chosen = s->n_columns = s->n_planes = 0;
-    s->is_measured = false;
+    s->is_measured = s->diverges = false;
     s->row = (int)row;
     s->first_v = degrees->parity > 0;
     s->step_v = degrees->parity < 0 ? 1 : 2;
@@ -665,6 +676,8 @@ static double compute_residual_excess(const struct search *s, double rms,
 {
     const double mean = sqrt(fmax(0, s->left2) / s->s->n) / rms;
 
+    if (!isfinite(s->left2))
+        return HUGE_VAL;
     return s->is_measured ? fmax(mean, s->peak / peak) : mean;
 }
 
@@ -690,7 +703,7 @@ static double choose_terms(struct search *s, double rms, double peak)
             refine_to_min_residual(s);
             left = compute_residual_excess(s, rms, peak);
         }
-        if (left <= 1 || s->n_chosen == s->degrees->terms ||
+        if (left <= 1 || s->n_chosen == s->degrees->terms || s->diverges ||
             is_fit_hopeless(s, left))
             break;
         best = find_best_candidate(s);
@@ -725,6 +738,11 @@ double glint_regress_fit_polynomial(double *scratch,
     poly->n = s.n_chosen;
     for (int k = 0; k < s.n_chosen; k++)
         memcpy(poly->power[k], term[k]->power, GLINT_VARIABLES);
+    if (poly->n == 0) { /* the first term is 0 at all rays that have weight */
+        poly->n = 1;
+        poly->coef[0] = 0;
+        memcpy(poly->power[0], first, GLINT_VARIABLES);
+    }
     return left;
 }
 

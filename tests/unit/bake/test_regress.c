@@ -92,3 +92,40 @@ TEST(fits_nearly_dependent_powers)
     assert_near(evaluate_polynomial(&poly, x),
                 evaluate_cubic_polynomial(x[0], x[1]), 1e-8);
 }
+
+/* Rays of no weight leave a polynomial of one term, as a model requires. */
+TEST(fit_without_weights_has_a_term)
+{
+    double zero[RAYS] = {0};
+    const struct glint_regress_samples samples = {
+        RAYS, {zero, zero, zero, zero}, zero};
+    double *scratch =
+        malloc(GLINT_REGRESS_DOUBLES(RAYS, 1, 13 * 13, 1) * sizeof *scratch);
+    struct glint_poly poly;
+
+    assert_non_null(scratch);
+    glint_regress_fit_polynomial(scratch, &samples, zero, &degrees, 1e-9, 5e-9,
+                                 &poly);
+    free(scratch);
+    assert_int_equal(poly.n, 1);
+    assert_near(poly.coef[0], 0, 0);
+}
+
+static double evaluate_pole(double u, double v)
+{
+    return 1 / (1.0001 - u) + v * v;
+}
+
+/* Where terms depend on each other so much that refining the fit diverges, the
+ * fit ends before: it is never worse than no polynomial at all. */
+TEST(refining_never_enlarges_the_residual)
+{
+    struct glint_poly poly;
+
+    for (double least = 0; least < 0.9999999; least += 0.3 * (1 - least)) {
+        const double none = fmax(1e4 / 3 / 1e-9, 1e4 / 5e-9);
+
+        assert_true(fit_polynomial_on_grid(evaluate_pole, least, &poly) <=
+                    1.1 * none);
+    }
+}
