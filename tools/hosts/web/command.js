@@ -4,18 +4,23 @@
 import {COLUMNS, ghostFile, LAMP, lampFile} from "./glint.js";
 
 // Options that are read although the table of the module does not list them.
-const OTHERS = ["ghosts", "lights", "rays", "style"];
+const OTHERS = ["ghosts", "layer", "lights", "rays", "style"];
+// What the names of saved pictures end with. The command of a JPEG file gives the picture before it is compressed.
+export const ENDINGS = {png: "-glint.png", jpeg: "-glint.png", deep: "-glint16.png", layer: "-flare.png"};
 const quote = text => /^[A-Za-z0-9_.,:\/=+@-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 
-// Returns the lines of a shell. MUTED: numbers of ghosts. LAMPS null: as they are found.
-export function commandLine(name, values, muted, lamps) {
+// Returns the lines of a shell. MUTED: numbers of ghosts. LAMPS null: as they are found. FORMAT: of the file, as in index.html.
+export function commandLine(name, values, muted, lamps, format = "png") {
     const lines = lamps ? ["cat >lamps.csv <<'END'\n" + lampFile(lamps) + "END"] : [];
     if (muted.length)
         lines.push("cat >ghosts.txt <<'END'\n" + ghostFile(muted) + "END");
-    const file = name[0] === "-" ? "./" + name : name;
+    const path = name[0] === "-" ? "./" + name : name, base = path.replace(/\.[^.\/]*$/, "");
+    const file = format === "deep" ? base + "-16.png" : path;
+    if (format === "deep")
+        lines.push(`convert ${quote(path)} -strip ${quote("PNG48:" + file)}`);
     const options = Object.entries(values).map(([key, value]) => value === "yes" ? "--" + key : `--${key} ${quote(String(value))}`);
-    lines.push(["glint overlay", quote(file), "-o", quote(file.replace(/\.[^.\/]*$/, "") + "-glint.png"), "--rays exact",
-        ...options, ...lamps ? ["--lights lamps.csv"] : [], ...muted.length ? ["--ghosts ghosts.txt"] : []].join(" "));
+    lines.push(["glint overlay", quote(file), "-o", quote(base + ENDINGS[format]), "--rays exact", ...options,
+        ...format === "layer" ? ["--layer flare-alpha"] : [], ...lamps ? ["--lights lamps.csv"] : [], ...muted.length ? ["--ghosts ghosts.txt"] : []].join(" "));
     return lines.join("\n") + "\n";
 }
 
@@ -27,7 +32,7 @@ function readLamps(text) {
 // Returns {values, muted, lamps} of TEXT, lines as those of commandLine(). TABLES: of the module.
 export function readCommand(text, {options, styles}) {
     const files = {}, state = {values: {}, muted: [], lamps: null};
-    const rest = text.replaceAll(/cat >(\S+) <<'END'\n([^]*?)END\n/g, (all, name, lines) => {
+    const rest = text.replace(/^convert .*\n/m, "").replaceAll(/cat >(\S+) <<'END'\n([^]*?)END\n/g, (all, name, lines) => {
         files[name] = lines;
         return "";
     });
@@ -53,7 +58,7 @@ export function readCommand(text, {options, styles}) {
                 state.muted = [...files[value].matchAll(/^(\d+) mute$/gm)].map(([, number]) => Number(number));
         } else if (name === "style")
             Object.assign(state.values, styles.find(style => style.name === value)?.set);
-        else if (name !== "rays")
+        else if (name !== "rays" && name !== "layer")
             state.values[name] = value;
     }
     return state;

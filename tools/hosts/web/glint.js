@@ -160,11 +160,30 @@ export class Engine {
         return list;
     }
 
-    // Draws the flare of LAMPS, or of those that find() found, into RGBA.
-    draw(rgba, lamps = null) {
+    setLamps(lamps) {
         if (lamps && lamps.length <= MAX_LAMPS)
             this.rows(lamps.length).set(lamps.flatMap(lamp => COLUMNS.map(name => lamp[name] ?? LAMP[name])));
+    }
+
+    // Draws the flare of LAMPS, or of those that find() found, into RGBA.
+    draw(rgba, lamps = null) {
+        this.setLamps(lamps);
         this.with(rgba, true, at => this.check(this.c.web_draw(at, lamps ? lamps.length : FOUND)));
+    }
+
+    // Returns the samples of draw() with 16 bits, high byte first: R G B of the picture, or, if ALONE, R G B A of the flare
+    // without the picture.
+    drawDeep(rgba, lamps = null, alone = false) {
+        const length = this.length / 4 * (alone ? 8 : 6), samples = this.c.web_take(length);
+        if (!samples)
+            throw new Error("no memory for 16 bits");
+        try {
+            this.setLamps(lamps);
+            this.with(rgba, false, at => this.check(this.c.web_draw_deep(at, lamps ? lamps.length : FOUND, alone, samples)));
+            return this.bytes(samples, length).slice();
+        } finally {
+            this.c.web_free(samples);
+        }
     }
 
     // Returns up to MAX ghosts of the last picture, the brightest first.

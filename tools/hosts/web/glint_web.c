@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "formats/tones.h"
 #include "glint/area.h"
 #include "glint/bake.h"
 #include "glint/engine.h"
@@ -355,32 +356,135 @@ static bool is_lamp_row_valid(const double row[WEB_COLUMNS])
            isfinite(row[WEB_TURN]);
 }
 
-int web_draw(uint8_t *pixels, int n)
+/* Sets web.lamp to the first N rows, or to the lamps found if N is WEB_FOUND,
+ * and applies the options of light. Returns the number of lamps, or -1 on
+ * failure. */
+static int prepare_lamps(int n)
 {
     struct glint_engine_config cfg;
-    struct glint_engine_report report;
-    struct glint_image image;
 
     if (!web.engine)
-        return record_error("there is no engine");
+        return record_error("there is no engine") - 1;
     if (n < WEB_FOUND || n > GLINT_ENGINE_MAX_LAMPS)
-        return record_error("the number of lamps must be 0 to 1024");
+        return record_error("the number of lamps must be 0 to 1024") - 1;
     web.error.text[0] = '\0';
-    image = wrap_pixels_as_image(pixels);
     if (n == WEB_FOUND) {
         n = web.n_found;
         memcpy(web.lamp, web.found, (size_t)n * sizeof *web.lamp);
     } else
         for (int i = 0; i < n; i++) {
             if (!is_lamp_row_valid(web.row[i]))
-                return record_error("a lamp is out of range");
+                return record_error("a lamp is out of range") - 1;
             web.lamp[i] = read_lamp_row(web.row[i], (uint32_t)i + 1);
         }
     glint_engine_configure(&cfg, &web.options);
     glint_engine_set_light(web.engine, &cfg.light);
     glint_engine_elapsed(web.engine, 0);
+    return n;
+}
+
+int web_draw(uint8_t *pixels, int n)
+{
+    const int n_lamps = prepare_lamps(n);
+    struct glint_engine_report report;
+    struct glint_image image;
+
+    if (n_lamps < 0)
+        return 0;
+    image = wrap_pixels_as_image(pixels);
     return record_status(
-        glint_engine_draw(web.engine, web.lamp, n, &image, &report));
+        glint_engine_draw(web.engine, web.lamp, n_lamps, &image, &report));
+}
+
+/* ------------------------------------------------------------------ 16 bits */
+
+/* Draws the flare of N lamps on the picture PIXELS into RGB, linear light. */
+static enum glint_status draw_flare_alone(uint8_t *pixels, int n, float *rgb)
+{
+    const struct glint_image image = wrap_pixels_as_image(pixels);
+    struct glint_engine_report report;
+    const enum glint_status status =
+        glint_engine_expose(web.engine, web.lamp, n, &image, 1);
+
+    memset(rgb, 0, 12 * (size_t)web.width * (size_t)web.height);
+    if (status != GLINT_OK ||
+        (!glint_engine_has_veil(web.engine) &&
+         (n == 0 || !(glint_engine_exposed(web.engine)->scale > 0))))
+        return status;
+    return glint_engine_draw_layer(web.engine, web.lamp, n, GLINT_ENGINE_ALL,
+                                   rgb, &report);
+}
+
+/* Writes CODE, 0 .. 1, to TO as 16 bits; returns the address after it. */
+static uint8_t *write_code(uint8_t *to, double code)
+{
+    const unsigned value = (unsigned)(fmin(code, 1) * 65535 + 0.5);
+
+    to[0] = (uint8_t)(value >> 8);
+    to[1] = (uint8_t)value;
+    return to + 2;
+}
+
+/* the curve of sRGB, and the light of its 8-bit codes */
+struct tones {
+    struct glint_tone_curve srgb;
+    float light[256];
+};
+
+/* Writes the sum of the pixel PX and the light RGB. */
+static uint8_t *write_sum(uint8_t *to, const uint8_t *px, const float *rgb,
+                          const struct tones *tones)
+{
+    for (int c = 0; c < 3; c++) {
+        const double sum = (double)tones->light[px[c]] + (double)rgb[c];
+        const double code = px[c] / 255.0;
+
+        to = write_code(
+            to, rgb[c] > 0
+                    ? fmax(glint_tone_curve_encode(&tones->srgb, sum), code)
+                    : code);
+    }
+    return to;
+}
+
+/* Writes the light RGB divided by its largest channel, which becomes alpha. */
+static uint8_t *write_with_alpha(uint8_t *to, const float *rgb,
+                                 const struct tones *tones)
+{
+    const float max = fmaxf(rgb[0], fmaxf(rgb[1], rgb[2]));
+    const double alpha = (double)fminf(max, 1);
+
+    for (int c = 0; c < 3; c++)
+        to = write_code(
+            to, rgb[c] > 0 ? glint_tone_curve_encode(
+                                 &tones->srgb, (double)rgb[c] * (1 / alpha))
+                           : 0);
+    return write_code(to, fmax(alpha, 0));
+}
+
+int web_draw_deep(uint8_t *pixels, int n, int alone, uint8_t *samples)
+{
+    const size_t count = (size_t)web.width * (size_t)web.height;
+    const int n_lamps = prepare_lamps(n);
+    enum glint_status status;
+    struct tones tones;
+    float *rgb;
+
+    if (n_lamps < 0)
+        return 0;
+    rgb = malloc(3 * count * sizeof *rgb);
+    if (!rgb)
+        return record_error("no memory");
+    glint_tone_curve_set(&tones.srgb, GLINT_TONE_IS_SRGB, 0);
+    for (int i = 0; i < 256; i++)
+        tones.light[i] = (float)glint_tone_curve_decode(&tones.srgb, i / 255.0);
+    status = draw_flare_alone(pixels, n_lamps, rgb);
+    for (size_t i = 0; i < count && status == GLINT_OK; i++)
+        samples = alone
+                      ? write_with_alpha(samples, rgb + 3 * i, &tones)
+                      : write_sum(samples, pixels + 4 * i, rgb + 3 * i, &tones);
+    free(rgb);
+    return record_status(status);
 }
 
 int web_ghosts(double (*rows)[WEB_GHOST_COLUMNS], int max)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // page.js - the page: what a person sets, and what the workers drew of it.
-import {commandLine, readCommand} from "./command.js";
+import {commandLine, ENDINGS, readCommand} from "./command.js";
 import {LAMP} from "./glint.js";
 import {copyMetadata} from "./jpeg.js";
 import {drawSection, makeOptions} from "./widgets.js";
@@ -78,6 +78,7 @@ class Painter {
 
     // Abandons the picture being drawn.
     restart() {
+        this.saved?.(null);
         this.worker.terminate();
         this.start();
         this.worker.postMessage(this.picture);
@@ -128,6 +129,12 @@ class View extends Painter {
         this.post({kind: "find", values: values(), muted: state.muted});
     }
 
+    // Returns the file of the picture with 16 bits, or of the flare ALONE; null if that was abandoned.
+    save(alone) {
+        this.post({kind: "save", values: values(), muted: state.muted, lamps: this.lamps(), alone});
+        return new Promise(done => this.saved = done);
+    }
+
     takeFound(data) {
         photo.searched = this.searching;
         ({found, doubtful} = data);
@@ -141,10 +148,12 @@ class View extends Painter {
             return start(data);
         this.busy = false;
         this.drawing = null;
+        this.saved?.(data.png);
+        this.saved = null;
         if (data.kind === "found" && data.id === photo.id)
             this.takeFound(data);
         else if (photo && data.id === photo.id && !this.waiting)
-            data.kind === "failed" ? report(data.text, true) : this.show(data);
+            data.kind === "failed" ? report(data.text, true) : data.kind === "drawn" && this.show(data);
         else if (data.kind === "drawn" && photo && data.id === photo.id && this.isDraft)
             this.show(data); // better an old coarse picture than none
         if (this.waiting)
@@ -323,8 +332,7 @@ function showCamera() {
     $("camera").disabled = false;
     $("camera").setAttribute("aria-pressed", isLive());
     $("record").hidden = !isLive() || !recordType();
-    for (const id of ["export", "export-jpeg"])
-        $(id).disabled = isLive() || !photo;
+    $("export").disabled = isLive() || !photo;
 }
 
 const shown = {full: -1};
@@ -430,7 +438,7 @@ function showState() {
     showLamps();
     showPressed();
     if (photo && !isLive())
-        $("command").value = commandLine(photo.file.name, values(), state.muted, state.lamps);
+        $("command").value = commandLine(photo.file.name, values(), state.muted, state.lamps, $("format").value);
 }
 
 // --------------------------------------------------------------------- lamps
@@ -651,20 +659,22 @@ function begin(next) {
     showState();
 }
 
-// Saves the whole picture as TYPE, "png" or "jpeg".
-async function save(type) {
+// Saves the whole picture in the chosen format.
+async function save() {
+    const format = $("format").value, isDeep = format === "deep" || format === "layer", {file} = photo;
     report("Drawing the picture to save");
-    if (shown.full < renderMark) {
+    if (shown.full < renderMark)
         full.draw();
-        while (shown.full < renderMark && !hasError())
-            await new Promise(done => setTimeout(done, 50));
-    }
+    while ((shown.full < renderMark || full.busy) && !hasError())
+        await new Promise(done => setTimeout(done, 50));
     if (shown.full < renderMark)
         return;
-    let blob = await new Promise(done => $("after").toBlob(done, "image/" + type, 0.95));
-    if (type === "jpeg")
-        blob = await copyMetadata(photo.file, blob);
-    download(blob, photo.file.name.replace(/\.[^.]*$/, "") + "-glint." + (type === "jpeg" ? "jpg" : type));
+    let blob = isDeep ? await full.save(format === "layer") :
+        await new Promise(done => $("after").toBlob(done, "image/" + format, 0.95));
+    if (format === "jpeg")
+        blob = await copyMetadata(file, blob);
+    if (blob)
+        download(blob, file.name.replace(/\.[^.]*$/, "") + (format === "jpeg" ? "-glint.jpg" : ENDINGS[format]));
 }
 
 function download(blob, name) {
@@ -802,8 +812,8 @@ $("camera").onclick = async () => isLive() ? open(await live.off()) : startCamer
 $("record").onclick = () => live.record();
 $("undo").onclick = () => travel(past, future);
 $("redo").onclick = () => travel(future, past);
-$("export").onclick = () => save("png");
-$("export-jpeg").onclick = () => save("jpeg");
+$("export").onclick = save;
+$("format").onchange = showState;
 $("add").onclick = () => addLamp(photo.width / 2, photo.height / 2);
 $("find").onclick = () => {
     selected = -1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // sw.js - keeps copies of the page's files, which serve when the server does not answer.
-const FILES = ["./", "command.js", "glint.js", "glint.wasm", "icon.svg", "jpeg.js", "page.js", "sample.jpg", "style.css", "widgets.js",
-    "worker.js"];
+const FILES = ["./", "command.js", "glint.js", "glint.wasm", "icon.svg", "jpeg.js", "page.js", "png.js", "sample.jpg", "style.css",
+    "widgets.js", "worker.js"];
 const urls = FILES.map(file => new URL(file, location).href);
 const store = caches.open("glint");
 

@@ -7,11 +7,13 @@
 //     {kind: "picture", width, height, rgba}   the picture to come
 //     {kind: "find", id, values, muted}        -> {kind: "found", id, found, doubtful}
 //     {kind: "draw", id, values, muted, lamps, most, ghosts}   -> {kind: "drawn", id, ...}
+//     {kind: "save", id, values, muted, lamps, alone}  -> {kind: "saved", id, png}, of 16 bits
 //     {kind: "frame", ...}                     picture and draw in one, for a camera
 //
 // muted: numbers of ghosts. lamps null: as they are found. most: draws a draft of the first MOST lamps; 0: the
 // whole picture. ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
 import {init} from "./glint.js";
+import {encodePng} from "./png.js";
 
 // Options that an engine takes up from picture to picture.
 const LIGHT = ["strength", "exposure", "gain", "starburst"];
@@ -59,6 +61,15 @@ function draw(g, {id, values, muted, lamps, most, ghosts}) {
         clipped: clippedShare(rgba), memory: g.c.memory.buffer.byteLength}, [rgba.buffer]);
 }
 
+// ALONE: see Engine.drawDeep.
+async function save(g, {id, values, muted, lamps, alone}) {
+    prepare(g, values, muted);
+    if (!lamps)
+        found ??= g.find(picture.rgba);
+    const png = await encodePng(g.drawDeep(picture.rgba, lamps, alone), picture.width, picture.height);
+    postMessage({kind: "saved", id, png});
+}
+
 // Returns SEEN, the lamps of a frame. Those that hardly moved have the place and extent of the last frame, for which
 // the ghosts have been measured, and their power follows slowly, as noise changes it.
 function settle(seen) {
@@ -93,7 +104,7 @@ onmessage = ({data}) => {
                 picture = data;
                 sized = "";
             } else
-                ({find, draw, frame: drawFrame})[data.kind](g, data);
+                await ({find, draw, save, frame: drawFrame})[data.kind](g, data);
         } catch (error) {
             sized = "";
             postMessage({kind: "failed", id: data.id, text: error.message});

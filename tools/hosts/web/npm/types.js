@@ -84,6 +84,8 @@ export class Engine {
     doubtful(): [number, number][];
     /** Draws the flare of these lamps, or of those that find() found, into the picture */
     draw(picture: Pixels, lamps?: Lamp[] | null): void;
+    /** Returns the samples of draw() with 16 bits, high byte first: R, G, B of the picture, or R, G, B, A of the flare alone */
+    drawDeep(picture: Pixels, lamps?: Lamp[] | null, alone?: boolean): Uint8Array;
     /** Returns up to max ghosts of the last picture, the brightest first */
     ghosts(max: number): Ghost[];
 }
