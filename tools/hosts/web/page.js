@@ -781,7 +781,7 @@ function start(read) {
     options = makeOptions(tables.options, $("main-options"), $("more-options"), {
         value: name => values()[name], set: setOption, lens: () => lensOf(values().lens)});
     showChosen();
-    report("Open a photograph, or take the sample");
+    report("Ready");
     document.body.dataset.loaded = Math.round(performance.now());
     render();
     // The address of glint web contains a random word; the name of the photograph follows '#'.
