@@ -23,11 +23,15 @@ npm:
 wasm:
 	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi -msimd128' OUT=build/wasm32 LDFLAGS=-static \
 	        WITH_JPEG=no WITH_PNG=no WITH_JANSSON=no WITH_EXPAT=no $(wasm) $(wasm_tests)
+# The same without SIMD, whose kernels are those in C, for tests.
+wasm-plain:
+	@$(MAKE) --no-print-directory CC='clang --target=wasm32-wasi' sets_wasm32= OUT=build/wasm32-plain LDFLAGS=-static \
+	        WITH_JPEG=no WITH_PNG=no WITH_JANSSON=no WITH_EXPAT=no build/wasm32-plain/glint.wasm
 # Pictures of the module are those of the program.
 check-web: build/glint
 	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs node-typescript
 	@XDG_CACHE_HOME=$(CURDIR)/build/cache GLINT=build/glint tests/hosts/web --all
-.PHONY: web npm wasm check-web
+.PHONY: web npm wasm wasm-plain check-web
 web_o := $(patsubst %,$(OUT)/%.o,tools/hosts/web/glint_web tools/hosts/web/tables tools/glint/desk/styles platform/formats/tones web_lens)
 $(OUT)/web_lens.c: tools/hosts/web/lens_tables $(wildcard lenses/*.lens lenses/*/*.lens)
 	@mkdir -p $(@D)
@@ -35,7 +39,7 @@ $(OUT)/web_lens.c: tools/hosts/web/lens_tables $(wildcard lenses/*.lens lenses/*
 $(OUT)/web_lens.o: $(OUT)/web_lens.c
 	$(say) CC $<
 	$(Q)$(CC) -Itools/hosts -Os -c $< -o $@
-$(wasm): $(core_o) $(engine_o) $(bake_o) $(web_o)
+$(OUT)/glint.wasm: $(core_o) $(engine_o) $(bake_o) $(web_o)
 	$(say) LD $@
 	$(Q)$(CC) -mexec-model=reactor -Wl,-s,--gc-sections,-z,stack-size=1048576 $(filter %.o,$^) -o $@
 $(wasm_tests): build/wasm32/%.wasm: build/wasm32/tests/unit/kernels/%.o $(OUT)/platform/linux/sets.o $(core_o)
