@@ -125,7 +125,6 @@ TEST(refining_never_enlarges_the_residual)
     for (double least = 0; least < 0.9999999; least += 0.3 * (1 - least)) {
         const double none = fmax(1e4 / 3 / 1e-9, 1e4 / 5e-9);
 
-        assert_true(fit_polynomial_on_grid(evaluate_pole, least, &poly) <=
-                    1.1 * none);
+        assert_true(fit_on_grid(evaluate_pole, least, &poly) <= 1.1 * none);
     }
 }

@@ -4,11 +4,7 @@
  * lost and reported of metadata. If $GLINT_OIIO names the plug-in, compares
  * pixels with it.
  */
-#include <stdint.h>
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "formats/picture.h"
