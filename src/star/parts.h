@@ -46,7 +46,8 @@ struct glint_star_lamp {
      * (halo_reach) are visible. */
     int reach, halo_reach;
     /* Entry i: where r^2 is at least 2^(4 + i / 2) pixels^2, the halo is
-     * invisible beyond this distance from the nearest line, pixels. */
+     * invisible beyond this distance from the nearest line, pixels; at most
+     * entry i - 1. */
     int32_t halo_width_q8[GLINT_STAR_HALO_ROWS];
     /* Distance from the lamp, pixels, up to which the light diffracted by dirt
      * in the stop (the smear) is visible. */

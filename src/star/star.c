@@ -186,15 +186,15 @@ static int is_halo_column_visible(const struct glint_star_lamp *lamp, int row,
                                   int column, int32_t min_log2_q16)
 {
     const int next = q_smaller(row + 1, GLINT_STAR_HALO_ROWS - 1);
-    int most = 0;
+    int max_q11 = 0;
 
     for (int c = 0; c < 3; c++) {
-        most = q_larger(most, lamp->halo[row][column][c]);
-        most = q_larger(most, lamp->halo[next][column][c]);
-        most = q_larger(most, lamp->next_halo[row][column][c]);
-        most = q_larger(most, lamp->next_halo[next][column][c]);
+        max_q11 = q_larger(max_q11, lamp->halo[row][column][c]);
+        max_q11 = q_larger(max_q11, lamp->halo[next][column][c]);
+        max_q11 = q_larger(max_q11, lamp->next_halo[row][column][c]);
+        max_q11 = q_larger(max_q11, lamp->next_halo[next][column][c]);
     }
-    return most * 32 > min_log2_q16;
+    return max_q11 * 32 > min_log2_q16;
 }
 
 /* Sets the widths of LAMP's halo in which it is brighter than 2^MIN_LOG2. POWER
@@ -206,11 +206,11 @@ static void set_halo_widths(struct glint_star_lamp *lamp,
     int64_t widest_q8 = 0;
 
     for (int row = GLINT_STAR_HALO_ROWS - 1; row >= 0; row--) {
-        const int32_t least_q16 = min_log2_q16 - t->halo_log2_q16 -
-                                  power_log2_q16 + (4 << 16) + row * 32768;
+        const int32_t min_q16 = min_log2_q16 - t->halo_log2_q16 -
+                                power_log2_q16 + (4 << 16) + row * 32768;
         int n = GLINT_STAR_HALO_COLUMNS;
 
-        while (n > 0 && !is_halo_column_visible(lamp, row, n - 1, least_q16))
+        while (n > 0 && !is_halo_column_visible(lamp, row, n - 1, min_q16))
             n--;
         if (n == GLINT_STAR_HALO_COLUMNS) {
             widest_q8 = INT32_MAX;

@@ -34,9 +34,9 @@ struct place {
 /* Splits X into index and weight, clamped so that the index is below LAST. */
 static struct place compute_table_index(int32_t x_q16, int last)
 {
-    const int32_t held_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
+    const int32_t clamped_q16 = q_clamp_sat(x_q16, 0, (last << 16) - 1);
 
-    return (struct place){held_q16 >> 16, held_q16 >> 1 & 32767};
+    return (struct place){clamped_q16 >> 16, clamped_q16 >> 1 & 32767};
 }
 
 /* Returns the index of the line nearest to pixel X of a row that is DY below
@@ -151,12 +151,12 @@ static int is_part_clear(const struct square *s,
 {
     const int64_t dx = (s->x + i + n / 2) - (s->lamp->x_q8 >> 8);
     const int64_t dy = (s->y + j + n / 2) - (s->lamp->y_q8 >> 8);
-    const int64_t least_q8 = 512 * n - s->star->tables->reach_q8 / 4;
+    const int64_t min_v_q8 = 512 * n - s->star->tables->reach_q8 / 4;
     int is_same = 1, is_far = 1;
 
     for (int k = 0; k < 4; k++) {
         is_same &=
-            corner[k]->side == corner[0]->side && corner[k]->v_q8 >= least_q8;
+            corner[k]->side == corner[0]->side && corner[k]->v_q8 >= min_v_q8;
         /* A line that crosses the part is within its diagonal of each corner.
          */
         is_far &= corner[k]->v_q8 > 384 * n;
@@ -165,8 +165,8 @@ static int is_part_clear(const struct square *s,
 }
 
 /* Returns whether the halo may be interpolated between the corners: whether at
- * MIDDLE this is wrong by at most 1/64, or by a quarter of the faintest visible
- * light. */
+ * MIDDLE this is wrong by at most 1/128, or by a quarter of the faintest
+ * visible light. */
 static int is_part_bilinear(const struct square *s,
                             const struct glint_star_node *const corner[4],
                             const struct glint_star_node *middle)
@@ -175,13 +175,13 @@ static int is_part_bilinear(const struct square *s,
 
     for (int c = 0; c < 3; c++) {
         const int64_t exact_q20 = middle->light_q20[c];
-        const int64_t most_q20 =
+        const int64_t max_error_q20 =
             exact_q20 >> 5 > faintest_q20 ? exact_q20 >> 5 : faintest_q20;
-        int64_t wrong_q20 = -4 * exact_q20;
+        int64_t error_q20 = -4 * exact_q20;
 
         for (int k = 0; k < 4; k++)
-            wrong_q20 += corner[k]->light_q20[c];
-        if (wrong_q20 > most_q20 || wrong_q20 < -most_q20)
+            error_q20 += corner[k]->light_q20[c];
+        if (error_q20 > max_error_q20 || error_q20 < -max_error_q20)
             return 0;
     }
     return 1;

@@ -69,7 +69,12 @@ static int64_t count_pixels_lit_by_halo(const struct glint_star *star,
 
     for (int row = 0; row < GLINT_STAR_HALO_ROWS && r < lamp->halo_reach;
          row++) {
-        const int far = (int)(q_exp2_q16((2 << 16) + (row + 1) * 16384) >> 16);
+        /* the last row covers all larger distances */
+        const int end =
+            row == GLINT_STAR_HALO_ROWS - 1
+                ? lamp->halo_reach
+                : (int)(q_exp2_q16((2 << 16) + (row + 1) * 16384) >> 16);
+        const int far = q_smaller(end, lamp->halo_reach);
         const int next = q_smaller(row + 1, GLINT_STAR_HALO_ROWS - 1);
         const int64_t fraction_q16 =
             (compute_stripe_fraction_q16(star, lamp->halo_width_q8[row], far) +

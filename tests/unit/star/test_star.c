@@ -399,6 +399,22 @@ TEST(predicts_the_number_of_pixels)
     }
 }
 
+/* Checks the prediction for a light that is so far away and so strong that its
+ * halo covers all pixels. */
+TEST(predicts_the_pixels_of_a_distant_light)
+{
+    const struct glint_real least = {1 << 30, -30 - 20};
+    struct glint_star_tables *t = star_canvas_make_tables(0, 0, 4);
+    struct glint_star_light light = star_canvas_make_light(-12000, 41, 30);
+    double predicted;
+
+    light.radius_q8 = 0;
+    predicted = draw_down_to_faintest_light(t, &light, 1, least, linear_q20);
+    assert_true(count_lit_pixels() == WIDTH * HEIGHT);
+    assert_true(predicted > 0.5 * WIDTH * HEIGHT);
+    glint_star_tables_free(t);
+}
+
 /* ------------------------------------------------------------------ motion */
 
 /* Moves a light by 0.05 pixels per frame. Checks that neither the total light
