@@ -177,12 +177,12 @@ static void print_lens(const struct drawing *drawing, FILE *to)
 
     fprintf(to, ", %s", drawing->files.lens.table.name);
     if (line->photo_focal_mm > 0)
-        fprintf(to, " (Exif: %.3g mm)", line->photo_focal_mm);
+        fprintf(to, " (nearest to %.3g mm of Exif)", line->photo_focal_mm);
     fprintf(to, " f/%.3g", f_number);
     if (photo > 0 && fabs(photo / f_number - 1) < 0.01)
         fputs(" (Exif)", to);
     else if (photo > 0)
-        fprintf(to, " (Exif: f/%.3g)", photo);
+        fprintf(to, " (widest; Exif: f/%.3g)", photo);
     fprintf(to, ", %s, ",
             drawing->files.lens.model.data ? "baked model" : "exact rays");
 }
