@@ -64,6 +64,8 @@ struct still_source {
     /* file of the same type whose metadata will be added, and whose quality
      * and subsampling of chroma the new one gets; NULL: none */
     const struct still_file *like;
+    char *said; /* [STILL_NOTE_BYTES], a text if the quality or subsampling of
+                   LIKE cannot be written; may be NULL if LIKE is */
     const uint8_t *icc; /* NULL: none */
     uint8_t *exif;      /* NULL: none */
     size_t icc_bytes, exif_bytes;

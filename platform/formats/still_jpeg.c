@@ -4,7 +4,6 @@
 #include <setjmp.h>
 #include <stdint.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include <jerror.h>
@@ -12,7 +11,15 @@
 
 #include "posix/error.h"
 
-enum { APP0 = 0xe0, COMMENT = 0xfe, SOS = 0xda };
+enum {
+    APP0 = 0xe0,
+    COMMENT = 0xfe,
+    SOS = 0xda,
+    MAX_SCANS = 500,    /* max scans of a file; each costs a pass over it */
+    MAX_STEP = 8191,    /* max quantisation step: libjpeg-turbo divides by 8
+                           times the step, in 16 bits */
+    OUTPUT_BYTES = 4096 /* bytes that libjpeg writes at once */
+};
 
 static const char exif_head[6] = "Exif\0";
 
@@ -26,8 +33,10 @@ struct call {
     struct glint_error *error;
     const char *path;
     char *note; /* of the file that is read, or NULL */
-    unsigned char *made;
-    unsigned long made_bytes;
+    struct jpeg_progress_mgr progress;
+    struct jpeg_destination_mgr output;
+    struct still_bytes *to;
+    JOCTET buffer[OUTPUT_BYTES];
 };
 
 static void leave_libjpeg(struct call *c, enum glint_status status,
@@ -56,11 +65,13 @@ static void on_message(j_common_ptr jpeg, int level)
     struct call *const c = jpeg->client_data;
     char text[JMSG_LENGTH_MAX];
 
-    if (level >= 0 || !c->note || *c->note)
+    if (level >= 0 || !c->note)
         return;
     if (jpeg->err->msg_code == JWRN_JPEG_EOF)
         leave_libjpeg(c, GLINT_E_FORMAT,
                       "is cut off: its end marker is missing");
+    if (*c->note)
+        return;
     jpeg->err->format_message(jpeg, text);
     snprintf(c->note, STILL_NOTE_BYTES, "%.100s", text);
 }
@@ -93,6 +104,14 @@ static void start_reading(struct call *c, const struct still_file *file)
     jpeg_read_header(&c->in, TRUE);
 }
 
+static void check_scans(j_common_ptr jpeg)
+{
+    struct call *const c = jpeg->client_data;
+
+    if (c->in.input_scan_number > MAX_SCANS)
+        leave_libjpeg(c, GLINT_E_UNSUPPORTED, "has more than 500 scans");
+}
+
 static void read_rows(struct call *c, struct still_file *file)
 {
     struct still_pixels *const p = &file->pixels;
@@ -112,6 +131,8 @@ static void read_rows(struct call *c, struct still_file *file)
         longjmp(c->escape, 1);
     if (jpeg_read_icc_profile(&c->in, &file->icc, &n_icc))
         file->icc_bytes = n_icc;
+    c->progress.progress_monitor = check_scans;
+    c->in.progress = &c->progress;
     jpeg_start_decompress(&c->in);
     while (c->in.output_scanline < c->in.output_height) {
         JSAMPROW row = p->mem + (size_t)c->in.output_scanline *
@@ -141,29 +162,98 @@ static enum glint_status decode(struct still_file *file,
 
 /* ----------------------------------------------------------------- writing */
 
+static void start_output(j_compress_ptr jpeg)
+{
+    struct call *const c = jpeg->client_data;
+
+    c->output.next_output_byte = c->buffer;
+    c->output.free_in_buffer = OUTPUT_BYTES;
+}
+
+static boolean flush_output(j_compress_ptr jpeg)
+{
+    struct call *const c = jpeg->client_data;
+
+    glint_still_append(c->to, c->buffer, OUTPUT_BYTES);
+    start_output(jpeg);
+    return TRUE;
+}
+
+static void end_output(j_compress_ptr jpeg)
+{
+    struct call *const c = jpeg->client_data;
+
+    glint_still_append(c->to, c->buffer,
+                       OUTPUT_BYTES - c->output.free_in_buffer);
+}
+
+/* Returns whether libjpeg can encode with TABLE. NULL: a table that is not in
+ * front of the first scan. */
+static bool is_usable(const JQUANT_TBL *table)
+{
+    for (int i = 0; table && i < DCTSIZE2; i++)
+        if (table->quantval[i] < 1 || table->quantval[i] > MAX_STEP)
+            return false;
+    return table != NULL;
+}
+
+/* Returns whether libjpeg can encode with the tables and the subsampling of the
+ * file that c->in reads. */
+static bool is_coding_usable(const struct call *c)
+{
+    bool is_good = true;
+    int blocks = 0;
+
+    for (int i = 0; i < c->in.num_components; i++) {
+        const jpeg_component_info *const from = &c->in.comp_info[i];
+
+        blocks += from->h_samp_factor * from->v_samp_factor;
+        is_good &= is_usable(c->in.quant_tbl_ptrs[from->quant_tbl_no]);
+    }
+    return is_good &&
+           (c->in.num_components == 1 || blocks <= C_MAX_BLOCKS_IN_MCU);
+}
+
+/* Sets subsampling, and unless KEEPS_TABLES is false the quantisation tables,
+ * to those of the file that c->in reads. */
+static void copy_coding(struct call *c, bool keeps_tables)
+{
+    for (int i = 0; i < c->out.num_components; i++) {
+        const jpeg_component_info *const from = &c->in.comp_info[i];
+        jpeg_component_info *const to = &c->out.comp_info[i];
+        JQUANT_TBL **const table = &c->out.quant_tbl_ptrs[from->quant_tbl_no];
+
+        to->h_samp_factor = from->h_samp_factor;
+        to->v_samp_factor = from->v_samp_factor;
+        if (!keeps_tables)
+            continue;
+        to->quant_tbl_no = from->quant_tbl_no;
+        if (!*table)
+            *table = jpeg_alloc_quant_table((j_common_ptr)&c->out);
+        **table = *c->in.quant_tbl_ptrs[from->quant_tbl_no];
+        (*table)->sent_table = FALSE;
+    }
+}
+
 /* Sets quality and subsampling, those of the file LIKE if it is not NULL. */
 static void set_coding(struct call *c, const struct still_source *from)
 {
-    if (from->quality || !from->like)
-        jpeg_set_quality(&c->out, from->quality ? from->quality : 95, TRUE);
+    jpeg_set_quality(&c->out, from->quality ? from->quality : 95, TRUE);
     if (!from->like)
         return;
     c->out.write_JFIF_header = FALSE; /* that of LIKE will be added */
     start_reading(c, from->like);
-    for (int i = 0; i < c->out.num_components; i++) {
-        c->out.comp_info[i].h_samp_factor = c->in.comp_info[i].h_samp_factor;
-        c->out.comp_info[i].v_samp_factor = c->in.comp_info[i].v_samp_factor;
-        if (!from->quality)
-            c->out.comp_info[i].quant_tbl_no = c->in.comp_info[i].quant_tbl_no;
+    if (is_coding_usable(c)) {
+        copy_coding(c, !from->quality);
+    } else {
+        for (int i = 0; i < c->out.num_components; i++)
+            c->out.comp_info[i].h_samp_factor =
+                c->out.comp_info[i].v_samp_factor = 1;
+        snprintf(from->said, STILL_NOTE_BYTES,
+                 "libjpeg cannot write its quantisation or subsampling: "
+                 "quality %d without subsampling",
+                 from->quality ? from->quality : 95);
     }
-    for (int i = 0; i < NUM_QUANT_TBLS && !from->quality; i++)
-        if (c->in.quant_tbl_ptrs[i]) {
-            if (!c->out.quant_tbl_ptrs[i])
-                c->out.quant_tbl_ptrs[i] =
-                    jpeg_alloc_quant_table((j_common_ptr)&c->out);
-            *c->out.quant_tbl_ptrs[i] = *c->in.quant_tbl_ptrs[i];
-            c->out.quant_tbl_ptrs[i]->sent_table = FALSE;
-        }
     if (c->in.progressive_mode)
         jpeg_simple_progression(&c->out);
 }
@@ -183,7 +273,10 @@ static void write_file(struct call *c, const struct still_source *from)
     const struct still_pixels *const p = from->pixels;
 
     jpeg_create_compress(&c->out);
-    jpeg_mem_dest(&c->out, &c->made, &c->made_bytes);
+    c->output.init_destination = start_output;
+    c->output.empty_output_buffer = flush_output;
+    c->output.term_destination = end_output;
+    c->out.dest = &c->output;
     c->out.image_width = (JDIMENSION)p->width;
     c->out.image_height = (JDIMENSION)p->height;
     c->out.input_components = p->channels;
@@ -211,13 +304,11 @@ static enum glint_status encode(struct still_bytes *to, const char *path,
     struct call c;
 
     init_call(&c, path, error);
-    if (setjmp(c.escape) == 0) {
+    c.to = to;
+    if (setjmp(c.escape) == 0)
         write_file(&c, from);
-        glint_still_append(to, c.made, c.made_bytes);
-    }
     jpeg_destroy_decompress(&c.in);
     jpeg_destroy_compress(&c.out);
-    free(c.made);
     return c.status;
 }
 

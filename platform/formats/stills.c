@@ -387,15 +387,18 @@ static void append_with_metadata(struct still_bytes *to,
 
 /* Encodes FILE in its own type with all of its metadata. */
 static enum glint_status encode_same(struct still_bytes *to, const char *path,
-                                     const struct still_file *file, int quality,
+                                     const struct still_file *file,
+                                     struct glint_oiio_options *options,
                                      struct glint_error *error)
 {
     struct still_bytes made = {.mem = NULL};
-    enum glint_status status = file->codec->encode(
-        &made, path,
-        &(struct still_source){
-            .pixels = &file->pixels, .quality = quality, .like = file},
-        error);
+    enum glint_status status =
+        file->codec->encode(&made, path,
+                            &(struct still_source){.pixels = &file->pixels,
+                                                   .quality = options->quality,
+                                                   .like = file,
+                                                   .said = options->said},
+                            error);
 
     if (!status && made.is_short)
         status = report_memory_shortage(path, error);
@@ -475,7 +478,7 @@ encode_file(void **data, size_t *bytes, const char *path,
     if (!codec)
         return report_unknown_type(path, error);
     status = pixels ? encode_other(&to, path, codec, f, pixels, options, error)
-                    : encode_same(&to, path, f, options->quality, error);
+                    : encode_same(&to, path, f, options, error);
     return finish(data, bytes, &to, status, path, error);
 }
 

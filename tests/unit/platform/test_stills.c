@@ -380,6 +380,131 @@ TEST(a_png_states_its_colours)
     png->close(o.file);
 }
 
+/* ------------------------------------------------- unusual coding of JPEGs */
+
+TEST(a_jpeg_keeps_only_tables_that_can_be_written)
+{
+    static const struct {
+        unsigned step;
+        bool is_kept;
+    } tables[] = {{1, true}, {8191, true}, {0, false}, {8192, false}};
+    const struct glint_oiio *const jpeg = find("JPEG");
+
+    for (int i = 0; i < 4; i++) {
+        char more[5 + 2 * 64] = "\xff\xdb\0\x83\x10"; /* 16 bits, luma */
+        struct opened o;
+
+        for (int k = 0; k < 64; k++) {
+            more[5 + 2 * k] = (char)(tables[i].step >> 8);
+            more[6 + 2 * k] = (char)tables[i].step;
+        }
+        write_picture("a.jpg", 158, more, sizeof more);
+        o = open_file(jpeg, "a.jpg");
+        assert_string_equal(save(jpeg, &o, "b.jpg", NULL),
+                            tables[i].is_kept
+                                ? ""
+                                : "libjpeg cannot write its quantisation or "
+                                  "subsampling: quality 95 without "
+                                  "subsampling");
+        assert_int_equal(
+            has_bytes("b.jpg", more + 5, sizeof more - 5) ||
+                has_bytes("b.jpg", BYTES("\xff\xdb\0\x43\0\1\1\1\1")),
+            tables[i].is_kept);
+        jpeg->close(o.file);
+        o = open_file(jpeg, "b.jpg");
+        jpeg->close(o.file);
+    }
+}
+
+static void add_bytes(struct bytes *to, const char *bytes, size_t n)
+{
+    assert_in_range(to->n + n, 0, sizeof to->data);
+    memcpy(to->data + to->n, bytes, n);
+    to->n += n;
+}
+
+/* Writes to a.jpg a grey picture of 8 x 8 pixels in Y'CbCr, of which each scan
+ * has one component, the last N_LAST times. LUMA: sampling factors of Y'.
+ * CHROMA: quantisation table of the others; table 1 is behind the first scan.
+ */
+static void write_scans(int luma, int chroma, int n_last)
+{
+    char table[69] = "\xff\xdb\0\x43";
+    char frame[] = "\xff\xc0\0\x11\x08\0\x08\0\x08\3\1\x11\0\2\x11\0\3\x11";
+    struct bytes file = {.n = 0};
+
+    memset(table + 5, 9, 64);
+    frame[11] = (char)luma;
+    frame[15] = frame[18] = (char)chroma;
+    add_bytes(&file, BYTES("\xff\xd8"));
+    add_bytes(&file, table, sizeof table);
+    add_bytes(&file, frame, sizeof frame);
+    for (int kind = 0; kind < 2; kind++) { /* DC, AC: code 0 is symbol 0 */
+        char codes[22] = "\xff\xc4\0\x14";
+
+        codes[4] = (char)(16 * kind);
+        codes[5] = 1;
+        add_bytes(&file, codes, sizeof codes);
+    }
+    for (int i = 0; i < 2 + n_last; i++) {
+        char scan[] = "\xff\xda\0\x08\1\1\0\0\x3f\0\x3f";
+
+        scan[5] = (char)(i < 2 ? i + 1 : 3);
+        add_bytes(&file, scan, sizeof scan - 1);
+        table[4] = 1;
+        if (i == 0)
+            add_bytes(&file, table, sizeof table);
+    }
+    add_bytes(&file, BYTES("\xff\xd9"));
+    scratch_write_file("a.jpg", file.data, file.n);
+}
+
+TEST(a_jpeg_of_many_scans_is_written)
+{
+    static const struct {
+        int luma, chroma, n_last;
+        bool is_kept;
+    } files[] = {{0x11, 0, 1, true},
+                 {0x22, 0, 490, true},
+                 {0x44, 0, 1, false},
+                 {0x11, 1, 1, false}};
+    const struct glint_oiio *const jpeg = find("JPEG");
+
+    for (int i = 0; i < 4; i++) {
+        struct opened o;
+
+        write_scans(files[i].luma, files[i].chroma, files[i].n_last);
+        o = open_file(jpeg, "a.jpg");
+        assert_string_equal(o.facts.note, "");
+        assert_int_equal(o.samples.mem[0], 128);
+        assert_int_equal(!*save(jpeg, &o, "b.jpg", NULL), files[i].is_kept);
+        jpeg->close(o.file);
+        o = open_file(jpeg, "b.jpg");
+        assert_int_equal(o.samples.mem[0], 128);
+        jpeg->close(o.file);
+    }
+}
+
+TEST(a_large_jpeg_is_written)
+{
+    static uint8_t rgb[256][256][3];
+    const struct glint_oiio_pixels pixels = {256, 256, 0, rgb};
+    struct glint_oiio_pixels again;
+    size_t bytes;
+    void *data;
+    unsigned noise = 1;
+
+    for (int i = 0; i < 256 * 256 * 3; i++)
+        (&rgb[0][0][0])[i] = (uint8_t)((noise = noise * 69069 + 1) >> 24);
+    assert_ok(find("JPEG")->encode(&data, &bytes, "a.jpg", &pixels,
+                                   (ptrdiff_t)sizeof rgb[0], &error));
+    assert_in_range(bytes, 100000, 300000); /* more than libjpeg's buffer */
+    scratch_write_file("a.jpg", data, bytes);
+    free(data);
+    assert_ok(find("JPEG")->read(&again, scratch_make_path("a.jpg"), &error));
+    free(again.rgb);
+}
+
 /* ------------------------------------------------------------------ errors */
 
 static void expect_rejected(enum glint_status status, const char *name,
@@ -415,6 +540,23 @@ TEST(damaged_files_are_rejected)
     }
     scratch_write_file("a.jpg", BYTES(cmyk));
     expect_rejected(GLINT_E_UNSUPPORTED, "a.jpg", "CMYK needs glint's image");
+    write_scans(0x11, 0, 510);
+    expect_rejected(GLINT_E_UNSUPPORTED, "a.jpg", "more than 500 scans");
+}
+
+TEST(a_cut_jpeg_is_rejected_after_a_warning)
+{
+    struct bytes file;
+    struct opened o;
+
+    /* bytes between segments, of which libjpeg warns */
+    write_picture("a.jpg", 158, BYTES("xyz"));
+    file = read_bytes("a.jpg");
+    o = open_file(find("JPEG"), "a.jpg");
+    assert_non_null(strstr(o.facts.note, "extraneous bytes"));
+    find("JPEG")->close(o.file);
+    scratch_write_file("a.jpg", file.data, file.n - 20);
+    expect_rejected(GLINT_E_FORMAT, "a.jpg", "is cut off");
 }
 
 /* --------------------------------------------------------- the same by both */
