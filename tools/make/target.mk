@@ -75,12 +75,13 @@ OUT  := build/$(if $(CROSS),$(TARGET)$(if $(DYNAMIC),-dynamic),$(ARCH)-$(notdir 
 export DEPS OUT
 
 # Libraries that glint can do without:  WITH_JPEG=yes|no  states which are used,
-# else it is whether a program with them can be built.
-has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { return 0; }\n' $(1) | \
+# else it is whether a program with them can be built. Argument 4 of has is a
+# function that the header must declare.
+has = $(shell printf '\043include <stdio.h>\n\043include <%s>\nint main(void) { return !($(or $(4),1)); }\n' $(1) | \
         $(CC) $(CPPFLAGS) $(2) -x c - $(LDFLAGS) $(3) -o /dev/null 2>/dev/null && echo yes || echo no)
 JPEG_LIBS ?= -ljpeg
-ifndef WITH_JPEG
-WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS),$(JPEG_LIBS))
+ifndef WITH_JPEG # of libjpeg-turbo; IJG's libjpeg cannot read ICC profiles
+WITH_JPEG := $(call has,jpeglib.h,$(JPEG_CPPFLAGS),$(JPEG_LIBS),jpeg_read_icc_profile)
 endif
 PNG_LIBS ?= -lpng
 ifndef WITH_PNG
