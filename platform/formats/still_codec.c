@@ -25,11 +25,22 @@ void glint_still_append(struct still_bytes *to, const void *bytes, size_t n)
     to->n += n;
 }
 
+void glint_still_add_note(struct still_file *file, const char *text)
+{
+    const size_t used = strlen(file->note);
+
+    snprintf(file->note + used, sizeof file->note - used, "%s%s",
+             used ? "; " : "", text);
+}
+
 void glint_still_note_rest(struct still_file *file, size_t bytes)
 {
-    if (bytes > 0 && !*file->note)
-        snprintf(file->note, sizeof file->note,
-                 "%zu bytes behind its picture are dropped", bytes);
+    char text[64];
+
+    snprintf(text, sizeof text, "%zu bytes behind its picture are dropped",
+             bytes);
+    if (bytes > 0)
+        glint_still_add_note(file, text);
 }
 
 enum glint_status glint_still_allocate(struct still_file *file,

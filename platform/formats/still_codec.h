@@ -7,7 +7,7 @@
 
 #include "formats/oiio.h"
 
-enum { STILL_NOTE_BYTES = 120 };
+enum { STILL_NOTE_BYTES = 160 };
 
 /* Bytes that a writer appends to. After memory was short, it stays empty. */
 struct still_bytes {
@@ -54,6 +54,7 @@ enum still_content {
     STILL_EXIF,    /* Exif */
     STILL_COLOURS, /* ICC profile, primaries, transfer curve */
     STILL_EXTRA,   /* about other pictures in the file, which are not kept */
+    STILL_BOUND,   /* invalid after a change of pixels: signatures */
     STILL_OTHER    /* other metadata */
 };
 
@@ -104,8 +105,11 @@ extern const struct still_codec glint_still_jpeg, glint_still_png;
 /* Appends N bytes. */
 void glint_still_append(struct still_bytes *to, const void *bytes, size_t n);
 
-/* Adds to FILE's note, unless it has one, that BYTES behind the picture are
- * dropped. */
+/* Appends TEXT to FILE's note. */
+void glint_still_add_note(struct still_file *file, const char *text);
+
+/* Appends to FILE's note that BYTES behind the picture are dropped, if there
+ * are any. */
 void glint_still_note_rest(struct still_file *file, size_t bytes);
 
 /* Allocates the pixels of FILE, of which width, height, channels and

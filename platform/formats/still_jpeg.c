@@ -386,6 +386,8 @@ static enum still_content classify(const struct still_piece *piece)
                    : STILL_OTHER;
     case APP0 + 14: /* Adobe's: how the pixels are coded */
         return STILL_CODING;
+    case APP0 + 11: /* JUMBF, of which C2PA signs the pixels */
+        return STILL_BOUND;
     }
     return (piece->marker > APP0 && piece->marker <= APP0 + 15) ||
                    piece->marker == COMMENT

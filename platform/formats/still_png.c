@@ -255,7 +255,8 @@ static enum still_content classify(const struct still_piece *piece)
         {"iCCP", STILL_COLOURS}, {"gAMA", STILL_COLOURS},
         {"cHRM", STILL_COLOURS}, {"sRGB", STILL_COLOURS},
         {"cICP", STILL_COLOURS}, {"mDCv", STILL_COLOURS},
-        {"cLLi", STILL_COLOURS},
+        {"cLLi", STILL_COLOURS}, {"tIME", STILL_OTHER},
+        {"sCAL", STILL_OTHER},   {"sTER", STILL_OTHER},
     };
 
     if (!(piece->name[0] & 0x20)) /* a critical chunk */
@@ -263,7 +264,9 @@ static enum still_content classify(const struct still_piece *piece)
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++)
         if (strcmp(piece->name, chunks[i].name) == 0)
             return chunks[i].content;
-    return STILL_OTHER;
+    /* The fourth letter states whether an unknown chunk stays valid if pixels
+     * change. */
+    return piece->name[3] & 0x20 ? STILL_OTHER : STILL_BOUND;
 }
 
 static void describe(const struct still_file *file,

@@ -143,9 +143,27 @@ static uint8_t *copy_exif_upright(const struct still_file *file)
 
 /* ----------------------------------------------------------------- reading */
 
-/* Finds metadata in FILE. Adds to its note what it has of other pictures. */
+/* Appends to FILE's note that PIECE with CONTENT is dropped. */
+static void note_dropped_piece(struct still_file *file,
+                               const struct still_piece *piece,
+                               enum still_content content)
+{
+    char text[64];
+
+    if (content == STILL_EXTRA) {
+        glint_still_add_note(file, "only its first picture is written, without "
+                                   "gain map, video and preview");
+        return;
+    }
+    snprintf(text, sizeof text, "%s, valid only for its pixels, is dropped",
+             piece->marker ? "APP11 (C2PA, JUMBF)" : piece->name);
+    glint_still_add_note(file, text);
+}
+
+/* Finds metadata in FILE. Appends to its note content that is dropped. */
 static void scan_metadata(struct still_file *file)
 {
+    bool is_noted[STILL_OTHER + 1] = {false};
     const struct still_codec *const codec = file->codec;
     const size_t head = codec->exif_head_bytes;
     struct still_piece piece;
@@ -160,10 +178,10 @@ static void scan_metadata(struct still_file *file)
             file->exif_bytes = piece.data_bytes - head;
         }
         file->has_other |= content == STILL_OTHER;
-        if (content == STILL_EXTRA)
-            snprintf(file->note, sizeof file->note,
-                     "only its first picture is written, without gain map, "
-                     "video and preview");
+        if ((content == STILL_EXTRA || content == STILL_BOUND) &&
+            !is_noted[content])
+            note_dropped_piece(file, &piece, content);
+        is_noted[content] = true;
     }
 }
 

@@ -31,6 +31,8 @@ static const char index_jpeg[] = "\xff\xe2\x00\x08MPF\0ab";
 static const char text_png[] = "\0\0\0\x07tEXta\0wordsCRC4";
 static const char gamma_png[] = "\0\0\0\x04gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05";
 static const char bits_png[] = "\0\0\0\x03sBIT\5\6\5CRC4";
+static const char signed_png[] = "\0\0\0\4caBXabcdCRC4";
+static const char signed_jpeg[] = "\xff\xeb\0\7abcde";
 static const char moving_png[] = "\0\0\0\x08"
                                  "acTL\0\0\0\x02\0\0\0\0CRC4";
 
@@ -296,24 +298,28 @@ TEST(a_jpeg_becomes_a_png_with_exif)
     stills->close(b.file);
 }
 
-TEST(what_belongs_to_other_pictures_is_reported)
+TEST(what_is_dropped_is_reported)
 {
+    static const char first_only[] = "only its first picture";
     static const struct {
         const char *name, *more;
         size_t head, n;
+        const char *note;
     } files[] = {
-        {"a.jpg", claims_jpeg, 2, sizeof claims_jpeg - 1},
-        {"a.jpg", index_jpeg, 2, sizeof index_jpeg - 1},
-        {"a.png", moving_png, 33, sizeof moving_png - 1},
+        {"a.jpg", claims_jpeg, 2, sizeof claims_jpeg - 1, first_only},
+        {"a.jpg", index_jpeg, 2, sizeof index_jpeg - 1, first_only},
+        {"a.png", moving_png, 33, sizeof moving_png - 1, first_only},
+        {"a.png", signed_png, 33, sizeof signed_png - 1, "caBX, valid only"},
+        {"a.jpg", signed_jpeg, 2, sizeof signed_jpeg - 1, "APP11 (C2PA"},
     };
 
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 5; i++) {
         const struct glint_oiio *const stills = find(files[i].name);
         struct opened o;
 
         write_picture(files[i].name, files[i].head, files[i].more, files[i].n);
         o = open_file(stills, files[i].name);
-        assert_non_null(strstr(o.facts.note, "only its first picture"));
+        assert_non_null(strstr(o.facts.note, files[i].note));
         save(stills, &o, files[i].name, NULL);
         assert_false(has_bytes(files[i].name, files[i].more, files[i].n));
         stills->close(o.file);
@@ -329,14 +335,20 @@ TEST(bytes_behind_a_picture_are_reported)
         struct opened o;
         FILE *f;
 
-        write_picture(names[i], 2, "", 0);
+        if (i == 0)
+            write_picture("a.jpg", 2, BYTES(index_jpeg));
+        else
+            write_picture("a.png", 33, "", 0);
         f = fopen(scratch_make_path(names[i]), "ab");
         assert_non_null(f);
         fwrite(text_png, 1, sizeof text_png - 1, f);
         fclose(f);
         o = open_file(stills, names[i]);
-        assert_string_equal(o.facts.note,
-                            "19 bytes behind its picture are dropped");
+        assert_string_equal(
+            o.facts.note,
+            i ? "19 bytes behind its picture are dropped"
+              : "19 bytes behind its picture are dropped; only its first "
+                "picture is written, without gain map, video and preview");
         save(stills, &o, names[i], NULL);
         assert_false(has_bytes(names[i], BYTES("words")));
         stills->close(o.file);
@@ -362,21 +374,48 @@ TEST(a_png_keeps_its_chunks)
     png->close(o.file);
 }
 
+/* Writes to a.png the N bytes MORE in place of its chunk sRGB. */
+static void write_png_of_colours(const char *more, size_t n)
+{
+    struct bytes file;
+    const char *srgb;
+
+    write_picture("a.png", 33, more, n);
+    file = read_bytes("a.png");
+    srgb = find_bytes(&file, BYTES("\0\0\0\1sRGB"));
+    assert_non_null(srgb);
+    memmove(file.data + (srgb - file.data), srgb + 13,
+            file.n - 13 - (size_t)(srgb - file.data));
+    scratch_write_file("a.png", file.data, file.n - 13);
+}
+
 TEST(a_png_states_its_colours)
 {
+    static const char colours[] =
+        "\0\0\0\x04gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05"
+        "\0\0\0\x20"
+        "cHRM\0\0\x7a\x26\0\0\x80\x84\0\0\xfa\0\0\0\x80\xe8"
+        "\0\0\x75\x30\0\0\xea\x60\0\0\x3a\x98\0\0\x17\x70"
+        "CRC4"
+        "\0\0\0\4cICP\x09\x10\0\1CRC4";
+    static const double primaries[4][2] = {
+        {0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}};
     const struct glint_oiio *const png = find("PNG");
     struct opened o;
-    struct glint_samples s;
 
-    write_deep_png(3);
-    o = open_file(png, "deep.png"); /* an sRGB chunk, which wins */
-    s = o.samples;
-    assert_true(o.facts.gamma == 0);
-    save(png, &o, "b.png", &s);
-    png->close(o.file);
-    write_picture("a.png", 33, BYTES(gamma_png));
+    write_picture("a.png", 33, BYTES(gamma_png)); /* sRGB wins */
     o = open_file(png, "a.png");
     assert_true(o.facts.gamma == 0 && !o.facts.has_primaries);
+    png->close(o.file);
+    write_png_of_colours(BYTES(colours));
+    o = open_file(png, "a.png");
+    assert_float_equal(o.facts.gamma, 2.2, 1e-4);
+    assert_true(o.facts.has_primaries);
+    for (int i = 0; i < 8; i++)
+        assert_float_equal(o.facts.primaries[i / 2][i % 2],
+                           primaries[i / 2][i % 2], 1e-9);
+    assert_int_equal(o.facts.cicp[0], 9);
+    assert_int_equal(o.facts.cicp[1], 16);
     png->close(o.file);
 }
 
