@@ -17,7 +17,7 @@
 #include "formats/samples.h"
 
 /* Version of this interface. glint rejects plug-ins of other versions. */
-#define GLINT_OIIO_VERSION 7
+#define GLINT_OIIO_VERSION 8
 
 /* A picture as R G B, rows without padding, the top row first, rotated by the
  * orientation that the file states. Colours are multiplied by alpha, and alpha
@@ -48,11 +48,9 @@ struct glint_oiio_facts {
                     tables; 0: unknown */
     const char *metadata; /* metadata that the file has, for messages: "Exif",
                              "Exif and XMP" ..., or "" */
-    /* camera settings of Exif, 0: unknown: f-number and focal length, mm, of a
-     * lens for 35 mm film with the same field and entrance pupil; of the lens
-     * itself if Exif does not relate it to 35 mm film and it is not that of a
-     * compact camera or telephone */
-    double f_number, focal_mm;
+    /* camera settings as Exif states them, 0: unknown: focal length, mm, of
+     * the lens, and of a lens for 35 mm film with the same field */
+    double f_number, focal_mm, film_focal_mm;
     /* Text that lists content that glint cannot preserve, or "". */
     char note[160];
 };

@@ -754,6 +754,28 @@ static void set_colours_of_file(struct glint_kept *k,
 
 /* --------------------------------------------------------------- plug-in */
 
+static double drop_implausible_focal_length(double mm)
+{
+    return mm >= 0.1 && mm <= 10000 ? mm : 0;
+}
+
+/* Sets the camera settings of K from those of Exif in FACTS. */
+static void set_camera(struct glint_kept *k,
+                       const struct glint_oiio_facts *facts)
+{
+    /* A lens of a shorter focal length is that of a sensor much smaller than 35
+     * mm film. */
+    const double min_lens_mm = 15;
+    const double lens_mm = drop_implausible_focal_length(facts->focal_mm);
+    const double film_mm = drop_implausible_focal_length(facts->film_focal_mm);
+
+    if (film_mm == 0 && lens_mm < min_lens_mm)
+        return;
+    k->focal_mm = film_mm > 0 ? film_mm : lens_mm;
+    k->f_number =
+        facts->f_number * (lens_mm > 0 && film_mm > 0 ? film_mm / lens_mm : 1);
+}
+
 static enum glint_status open_file_by_plugin(struct glint_kept *k,
                                              const char *type,
                                              struct glint_error *error)
@@ -770,8 +792,7 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
     k->oiio = oiio;
     k->is_float = glint_sample_is_float(k->samples.colour[0].sample);
     k->metadata = facts.metadata;
-    k->f_number = facts.f_number;
-    k->focal_mm = facts.focal_mm;
+    set_camera(k, &facts);
     if (*facts.note)
         append_to_notes(k->note, facts.note);
     set_colours_of_file(k, &facts);

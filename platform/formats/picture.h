@@ -48,7 +48,10 @@ struct glint_kept {
     /* Text that lists content of the file that glint does not know or cannot
      * preserve, or "". */
     char note[GLINT_KEPT_NOTES];
-    /* camera settings, as in glint_oiio_facts */
+    /* camera settings, 0: unknown: f-number and focal length, mm, of a lens for
+     * 35 mm film with the same field and entrance pupil; of the lens itself if
+     * Exif does not relate it to 35 mm film and it is not that of a compact
+     * camera or telephone */
     double f_number, focal_mm;
 
     /* Private. */

@@ -78,6 +78,8 @@ static int is_same_type(const struct glint_oiio_file *file, const char *path)
 
 /* -------------------------------------------------------------------- Exif */
 
+enum { EXIF_SHORT = 3, EXIF_LONG = 4, EXIF_RATIONAL = 5 }; /* types of tags */
+
 /* Returns N bytes at offset AT of Exif as a number in its byte order, 0 after
  * its end. */
 static uint32_t read_exif_number(const uint8_t *exif, size_t bytes, size_t at,
@@ -92,21 +94,27 @@ static uint32_t read_exif_number(const uint8_t *exif, size_t bytes, size_t at,
     return value;
 }
 
-/* Returns the offset in Exif of the two bytes of the orientation, or 0 if it
- * has none. Sets END to the offset behind the entries of the directory of the
- * picture. */
-static size_t find_orientation(const uint8_t *exif, size_t bytes, size_t *end)
+/* Returns the offset in Exif of the value, or of its offset, of TAG with TYPE
+ * in the directory at offset FIRST; 0 if it has none. Sets END to the offset
+ * behind the entries of the directory. */
+static size_t find_exif_tag(const uint8_t *exif, size_t bytes, size_t first,
+                            unsigned tag, unsigned type, size_t *end)
 {
-    const size_t first = read_exif_number(exif, bytes, 4, 4);
     const size_t n = read_exif_number(exif, bytes, first, 2);
     size_t found = 0;
 
     *end = first + 2 + 12 * n;
     for (size_t at = first + 2; at < *end && at + 12 <= bytes; at += 12)
-        if (read_exif_number(exif, bytes, at, 2) == 0x0112 &&
-            read_exif_number(exif, bytes, at + 2, 2) == 3)
+        if (read_exif_number(exif, bytes, at, 2) == tag &&
+            read_exif_number(exif, bytes, at + 2, 2) == type)
             found = at + 8;
     return found;
+}
+
+static size_t find_orientation(const uint8_t *exif, size_t bytes, size_t *end)
+{
+    return find_exif_tag(exif, bytes, read_exif_number(exif, bytes, 4, 4),
+                         0x0112, EXIF_SHORT, end);
 }
 
 static int get_orientation(const struct still_file *file)
@@ -121,23 +129,79 @@ static int get_orientation(const struct still_file *file)
     return value >= 1 && value <= 8 ? (int)value : 1;
 }
 
-/* Returns a malloc'ed copy of FILE's Exif for an upright picture, without the
- * directory of its preview; NULL if memory is short. */
-static uint8_t *copy_exif_upright(const struct still_file *file)
+/* Returns the value of TAG, a fraction, in the directory at offset FIRST, or 0.
+ */
+static double read_exif_fraction(const struct still_file *file, size_t first,
+                                 unsigned tag)
+{
+    const uint8_t *const exif = file->exif;
+    const size_t bytes = file->exif_bytes;
+    size_t end,
+        at = find_exif_tag(exif, bytes, first, tag, EXIF_RATIONAL, &end);
+    uint32_t divisor;
+
+    at = at ? read_exif_number(exif, bytes, at, 4) : bytes;
+    divisor = read_exif_number(exif, bytes, at + 4, 4);
+    return divisor ? read_exif_number(exif, bytes, at, 4) / (double)divisor : 0;
+}
+
+static void describe_camera(const struct still_file *file,
+                            struct glint_oiio_facts *facts)
+{
+    const uint8_t *const exif = file->exif;
+    const size_t bytes = file->exif_bytes;
+    size_t end, at;
+
+    if (!exif)
+        return;
+    at = find_exif_tag(exif, bytes, read_exif_number(exif, bytes, 4, 4), 0x8769,
+                       EXIF_LONG, &end);
+    if (!at)
+        return;
+    at = read_exif_number(exif, bytes, at, 4);
+    facts->f_number = read_exif_fraction(file, at, 0x829d);
+    facts->focal_mm = read_exif_fraction(file, at, 0x920a);
+    at = find_exif_tag(exif, bytes, at, 0xa405, EXIF_SHORT, &end);
+    facts->film_focal_mm = at ? read_exif_number(exif, bytes, at, 2) : 0;
+}
+
+/* Removes the preview, which is in the directory whose offset is at AT, from
+ * Exif. */
+static void remove_preview(uint8_t *exif, size_t *bytes, size_t at)
+{
+    const size_t first = read_exif_number(exif, *bytes, at, 4);
+    size_t end, start, n;
+
+    start = find_exif_tag(exif, *bytes, first, 0x0201, EXIF_LONG, &end);
+    n = find_exif_tag(exif, *bytes, first, 0x0202, EXIF_LONG, &end);
+    start = start ? read_exif_number(exif, *bytes, start, 4) : 0;
+    n = n ? read_exif_number(exif, *bytes, n, 4) : 0;
+    memset(exif + at, 0, 4);
+    if (start < at + 4 || start > *bytes || n > *bytes - start)
+        return;
+    memset(exif + start, 0, n);
+    if (start + n == *bytes)
+        *bytes = start;
+}
+
+/* Returns a malloc'ed copy of FILE's Exif for an upright picture, without
+ * preview, and sets BYTES to its size; NULL if memory is short. */
+static uint8_t *copy_exif_upright(const struct still_file *file, size_t *bytes)
 {
     uint8_t *const exif = malloc(file->exif_bytes);
     size_t end, at;
 
     if (!exif)
         return NULL;
-    memcpy(exif, file->exif, file->exif_bytes);
-    at = find_orientation(exif, file->exif_bytes, &end);
+    *bytes = file->exif_bytes;
+    memcpy(exif, file->exif, *bytes);
+    at = find_orientation(exif, *bytes, &end);
     if (at) {
         exif[at] = exif[0] == 'I';
         exif[at + 1] = exif[0] != 'I';
     }
-    if (file->exif_bytes >= 4 && end <= file->exif_bytes - 4)
-        memset(exif + end, 0, 4);
+    if (*bytes >= 4 && end <= *bytes - 4)
+        remove_preview(exif, bytes, end);
     return exif;
 }
 
@@ -257,6 +321,7 @@ static enum glint_status open_file(struct glint_oiio_file **file,
     *facts = (struct glint_oiio_facts){
         .icc = f->icc, .icc_bytes = f->icc_bytes, .metadata = name_metadata(f)};
     snprintf(facts->note, sizeof facts->note, "%s", f->note);
+    describe_camera(f, facts);
     if (f->codec->describe)
         f->codec->describe(f, facts);
     fill_samples(samples, f);
@@ -472,8 +537,7 @@ static enum glint_status encode_other(struct still_bytes *to, const char *path,
         from.icc_bytes = file->icc_bytes;
     }
     if (file && file->exif && file->exif_bytes <= codec->exif_max_bytes) {
-        from.exif = exif = copy_exif_upright(file);
-        from.exif_bytes = file->exif_bytes;
+        from.exif = exif = copy_exif_upright(file, &from.exif_bytes);
         if (!exif)
             return report_memory_shortage(path, error);
     }

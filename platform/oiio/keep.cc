@@ -586,24 +586,16 @@ void describe_png_in_facts(struct glint_oiio_facts &facts, const bytes &whole)
         facts.primaries[(i / 2 + 3) % 4][i % 2] = read_big32(primaries, 4 * i);
 }
 
-/* A lens of a shorter focal length, mm, is that of a sensor much smaller than
- * 35 mm film. */
-constexpr double least_lens_mm = 15;
-
 void describe_camera_in_facts(struct glint_oiio_facts &facts,
                               const ImageSpec &spec)
 {
     const auto get = [&](const char *name) {
         return static_cast<double>(spec.get_float_attribute(name, 0));
     };
-    const double lens_mm = get("Exif:FocalLength");
-    const double film_mm = get("Exif:FocalLengthIn35mmFilm");
 
-    if (!(film_mm > 0) && !(lens_mm >= least_lens_mm))
-        return;
-    facts.focal_mm = film_mm > 0 ? film_mm : lens_mm;
-    facts.f_number =
-        get("FNumber") * (lens_mm > 0 && film_mm > 0 ? film_mm / lens_mm : 1);
+    facts.f_number = get("FNumber");
+    facts.focal_mm = get("Exif:FocalLength");
+    facts.film_focal_mm = get("Exif:FocalLengthIn35mmFilm");
 }
 
 void append_note(char (&notes)[160], const char *text)

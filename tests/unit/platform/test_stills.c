@@ -298,6 +298,99 @@ TEST(a_jpeg_becomes_a_png_with_exif)
     stills->close(b.file);
 }
 
+static char *add_number(char *at, unsigned long value, int bytes)
+{
+    while (bytes-- > 0) {
+        *at++ = (char)(value & 255);
+        value >>= 8;
+    }
+    return at;
+}
+
+static char *add_tag(char *at, unsigned tag, unsigned type, unsigned long value)
+{
+    at = add_number(at, tag, 2);
+    at = add_number(at, type, 2);
+    return add_number(add_number(at, 1, 4), value, 4);
+}
+
+enum { CAMERA_BYTES = 143 };
+
+/* Sets TO to a segment with Exif: orientation 6, camera settings VALUES
+ * (f-number and focal length, fractions; focal length for 35 mm film) and a
+ * preview. */
+static void make_camera_exif(char to[CAMERA_BYTES],
+                             const unsigned long values[5])
+{
+    char *at = to + 18;
+
+    memcpy(to,
+           "\xff\xe1\0\x8d"
+           "Exif\0\0II*\0\x08\0\0",
+           18);
+    at = add_number(at, 2, 2); /* offset 8 */
+    at = add_tag(at, 0x0112, 3, 6);
+    at = add_tag(at, 0x8769, 4, 38);
+    at = add_number(at, 96, 4);
+    at = add_number(at, 3, 2); /* offset 38 */
+    at = add_tag(at, 0x829d, 5, 80);
+    at = add_tag(at, 0x920a, 5, 88);
+    at = add_tag(at, 0xa405, 3, values[4]);
+    at = add_number(at, 0, 4);
+    for (int i = 0; i < 4; i++) /* offset 80 */
+        at = add_number(at, values[i], 4);
+    at = add_number(at, 2, 2); /* offset 96 */
+    at = add_tag(at, 0x0201, 4, 126);
+    at = add_tag(at, 0x0202, 4, 7);
+    at = add_number(at, 0, 4);
+    memcpy(at, "PREVIEW", 7);
+    assert_int_equal(at + 7 - to, CAMERA_BYTES);
+}
+
+TEST(a_preview_is_cut_from_exif)
+{
+    static const unsigned long values[5] = {1, 1, 1, 1, 1};
+    char camera[CAMERA_BYTES];
+    struct opened o;
+
+    make_camera_exif(camera, values);
+    write_picture("a.jpg", 2, camera, sizeof camera);
+    o = open_file(find("JPEG"), "a.jpg");
+    assert_true(has_bytes("a.jpg", BYTES("PREVIEW")));
+    save(find("PNG"), &o, "b.png", &o.samples);
+    assert_true(has_bytes("b.png", BYTES("\0\0\0\x7e"
+                                         "eXIf")));
+    assert_false(has_bytes("b.png", BYTES("PREVIEW")));
+    find("JPEG")->close(o.file);
+}
+
+TEST(exif_states_the_camera)
+{
+    static const struct {
+        unsigned long values[5];
+        double f_number, focal_mm;
+    } cameras[] = {
+        {{28, 10, 50, 1, 0}, 2.8, 50}, {{2, 1, 4, 1, 28}, 14, 28},
+        {{2, 1, 0, 1, 90}, 2, 90},     {{2, 1, 78, 10, 0}, 0, 0},
+        {{2, 1, 10, 0, 0}, 0, 0},      {{2, 1, 10001, 1, 0}, 0, 0},
+        {{2, 1, 10001, 1, 90}, 2, 90}, {{2, 1, 1, 4000, 90}, 2, 90},
+        {{2, 1, 50, 1, 20000}, 2, 50},
+    };
+    struct glint_kept kept;
+
+    find("JPEG");
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras; i++) {
+        char camera[CAMERA_BYTES];
+
+        make_camera_exif(camera, cameras[i].values);
+        write_picture("a.jpg", 2, camera, sizeof camera);
+        assert_ok(glint_kept_open(&kept, scratch_make_path("a.jpg"), &error));
+        assert_float_equal(kept.f_number, cameras[i].f_number, 1e-5);
+        assert_float_equal(kept.focal_mm, cameras[i].focal_mm, 1e-5);
+        glint_kept_close(&kept);
+    }
+}
+
 TEST(what_is_dropped_is_reported)
 {
     static const char first_only[] = "only its first picture";
