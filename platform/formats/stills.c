@@ -329,64 +329,34 @@ static enum glint_status open_file(struct glint_oiio_file **file,
     return GLINT_OK;
 }
 
-/* Returns the position in the file's pixels of the upright pixel (X, Y). */
-static size_t find_upright_pixel(const struct still_pixels *p, int orientation,
-                                 int x, int y)
-{
-    const bool is_turned = orientation >= 5;
-    int across = is_turned ? y : x, down = is_turned ? x : y;
-
-    if (orientation == 2 || orientation == 3 || orientation == 7 ||
-        orientation == 8)
-        across = p->width - 1 - across;
-    if (orientation == 3 || orientation == 4 || orientation == 6 ||
-        orientation == 7)
-        down = p->height - 1 - down;
-    return (size_t)down * (size_t)p->width + (size_t)across;
-}
-
-/* Returns sample C of pixel I in 8 bits. */
-static unsigned get_8_bits(const struct still_pixels *p, size_t i, int c)
-{
-    const size_t at = i * (size_t)p->channels + (size_t)c;
-    uint16_t wide;
-
-    if (p->sample_bytes == 1)
-        return p->mem[at];
-    memcpy(&wide, p->mem + 2 * at, 2);
-    return (wide * 255U + 32767) / 65535;
-}
-
 static enum glint_status read_pixels(struct glint_oiio_pixels *pixels,
                                      const char *path,
                                      struct glint_error *error)
 {
     struct still_file *file = NULL;
     enum glint_status status = read_file(&file, path, error);
-    const struct still_pixels *p;
-    uint8_t *rgb;
-    int orientation;
+    struct glint_samples from, to = {.n_colours = 3,
+                                     .pixel_bytes = 3,
+                                     .colour = {{GLINT_SAMPLE_U8, 0},
+                                                {GLINT_SAMPLE_U8, 1},
+                                                {GLINT_SAMPLE_U8, 2}},
+                                     .maximum = UINT8_MAX};
 
     if (!file)
         return status;
-    p = &file->pixels;
-    orientation = get_orientation(file);
-    *pixels = (struct glint_oiio_pixels){
-        .width = orientation >= 5 ? p->height : p->width,
-        .height = orientation >= 5 ? p->width : p->height};
-    pixels->rgb = rgb = malloc((size_t)p->width * (size_t)p->height * 3);
-    if (!rgb)
+    fill_samples(&from, file);
+    /* Like OpenImageIO, multiplies codes by alpha, not linear light. */
+    glint_colours_set_bt709(&from.colours, GLINT_TONE_IS_LINEAR, 0, "codes");
+    to.colours = from.colours;
+    to.width = glint_samples_get_width(&from);
+    to.height = glint_samples_get_height(&from);
+    to.mem = malloc((size_t)to.width * (size_t)to.height * to.pixel_bytes);
+    if (to.mem)
+        glint_samples_convert(&to, &from);
+    else
         status = report_memory_shortage(path, error);
-    for (int y = 0; y < pixels->height && rgb; y++)
-        for (int x = 0; x < pixels->width; x++) {
-            const size_t i = find_upright_pixel(p, orientation, x, y);
-            const unsigned alpha =
-                p->channels % 2 ? 255 : get_8_bits(p, i, p->channels - 1);
-
-            for (int c = 0; c < 3; c++)
-                *rgb++ = (uint8_t)(get_8_bits(p, i, p->channels < 3 ? 0 : c) *
-                                   alpha / 255);
-        }
+    *pixels = (struct glint_oiio_pixels){
+        .width = to.width, .height = to.height, .rgb = to.mem};
     close_still(file);
     return status;
 }

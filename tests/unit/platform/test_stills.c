@@ -722,12 +722,12 @@ TEST(pixels_equal_those_of_the_plugin)
         oiio->close(b.file);
         stills->close(c.file);
         stills->close(d.file);
-        if (i == 2) /* The plug-in multiplies by alpha in linear light. */
-            break;
         assert_ok(stills->read(&p, scratch_make_path(names[i]), &error));
         assert_ok(oiio->read(&q, scratch_make_path(names[i]), &error));
         assert_int_equal(p.width, q.width);
-        assert_memory_equal(p.rgb, q.rgb, WIDTH * HEIGHT * 3);
+        for (int k = 0; k < WIDTH * HEIGHT * 3; k++) /* 1: rounding of alpha */
+            assert_in_range(((uint8_t *)p.rgb)[k] - ((uint8_t *)q.rgb)[k] + 1,
+                            i == 2 ? 0 : 1, i == 2 ? 2 : 1);
         free(p.rgb);
         free(q.rgb);
     }
