@@ -7,12 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "formats/stills.h"
 #include "glint/options.h"
 #include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/input.h"
+#include "posix/process.h"
 
 /* Returns the offset behind the GIF sub-blocks that begin at offset AT, or N if
  * the data end before. */
@@ -782,10 +784,14 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
 {
     struct glint_oiio_facts facts;
     const struct glint_oiio *oiio;
+    const char *const stated = glint_process_get_setting("GLINT_OIIO");
     enum glint_status status = find_functions(&oiio, type, k->path, error);
 
     if (status)
         return status;
+    /* ERROR then has the cause why the plug-in was not loaded. */
+    if (oiio == glint_stills_find(type) && stated && access(stated, F_OK) == 0)
+        append_to_notes(k->note, error->text);
     status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
     if (status)
         return status;
