@@ -324,11 +324,12 @@ static void set_part_fractions_of_total(const struct glint_explain *e,
 
 static void set_ghost_numbers(struct glint_explain *e)
 {
-    const struct glint_setup *s = e->frame->setup;
+    const int n = glint_frame_count_pupil_regions(e->frame);
 
-    e->n_ghosts = s->n_ghosts - s->n_parts;
-    for (int k = 0; k < s->n_ghosts; k++)
-        e->ghost_of[k] = glint_frame_find_ghost_number(s, k);
+    for (int k = 0; k < n; k++) {
+        e->ghost_of[k] = glint_frame_find_ghost_number(e->frame, k);
+        e->n_ghosts += e->ghost_of[k] == k;
+    }
 }
 
 static int count_picture_tiles(const struct glint_frame *f)
@@ -422,7 +423,7 @@ assign_lights_to_lamps(struct glint_explain *e,
 
 static enum glint_status allocate_parts(struct glint_explain *e)
 {
-    const size_t n_all = (size_t)e->frame->setup->n_ghosts + 1;
+    const size_t n_all = (size_t)glint_frame_count_pupil_regions(e->frame) + 1;
     const size_t n_lights = (size_t)e->n_lights + 1;
 
     e->ghost_of = malloc(n_all * sizeof *e->ghost_of);

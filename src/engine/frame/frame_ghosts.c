@@ -11,14 +11,30 @@ bool glint_frame_is_part_of_ghost(const struct glint_setup *s, int ghost,
            s->ghost[ghost].j == s->ghost[number].j;
 }
 
-int glint_frame_find_ghost_number(const struct glint_setup *s, int ghost)
+static struct glint_ghost get_ghost(const struct glint_frame *f, int ghost)
 {
-    int number = ghost;
+    const struct glint_lens *const lens = f->lens;
 
-    if (ghost >= s->n_ghosts - s->n_parts)
-        for (number = 0; !glint_frame_is_part_of_ghost(s, ghost, number);)
-            number++;
-    return number;
+    return lens ? (struct glint_ghost){(int)lens->ghost[ghost].i,
+                                       (int)lens->ghost[ghost].j}
+                : f->setup->ghost[ghost];
+}
+
+int glint_frame_find_ghost_number(const struct glint_frame *f, int ghost)
+{
+    const int n_parts =
+        f->lens ? (int)f->lens->header->n_parts : f->setup->n_parts;
+    const struct glint_ghost part = get_ghost(f, ghost);
+
+    if (ghost < glint_frame_count_pupil_regions(f) - n_parts)
+        return ghost;
+    for (int number = 0; number < ghost; number++) {
+        const struct glint_ghost at = get_ghost(f, number);
+
+        if (at.i == part.i && at.j == part.j)
+            return number;
+    }
+    return ghost;
 }
 
 /* Marks the ghost with index GHOST as drawn in the frame. If GHOST is one pupil
@@ -26,7 +42,7 @@ int glint_frame_find_ghost_number(const struct glint_setup *s, int ghost)
  * been marked before. */
 static bool mark_ghost_seen(struct glint_frame *frame, int ghost)
 {
-    const int number = glint_frame_find_ghost_number(frame->setup, ghost);
+    const int number = glint_frame_find_ghost_number(frame, ghost);
 
     if (frame->lights.seen[number])
         return false;
@@ -38,7 +54,8 @@ int glint_frame_count_ghosts(struct glint_frame *frame, int n)
     int n_ghosts = 0;
 
     memset(frame->lights.seen, 0,
-           (size_t)frame->setup->n_ghosts * sizeof *frame->lights.seen);
+           (size_t)glint_frame_count_pupil_regions(frame) *
+               sizeof *frame->lights.seen);
     for (int i = 0; i < n; i++)
         n_ghosts += mark_ghost_seen(
             frame, frame->lens ? glint_flare_ghost(frame->memory.flare, i)

@@ -131,9 +131,10 @@ double glint_frame_get_light_near_black(const struct glint_frame *frame,
 bool glint_frame_is_part_of_ghost(const struct glint_setup *setup, int ghost,
                                   int number);
 
-/* Returns the number of the ghost of SETUP of which GHOST is one pupil region
- * (part), or GHOST if it is a complete ghost. */
-int glint_frame_find_ghost_number(const struct glint_setup *setup, int ghost);
+/* Returns the number of the ghost of which GHOST is one pupil region (part), or
+ * GHOST if it is a complete ghost. GHOST is an index of a ghost of the frame's
+ * model; without a model, of the setup. */
+int glint_frame_find_ghost_number(const struct glint_frame *frame, int ghost);
 
 /* Lowers max_lights until probing all ray bundles costs at most half of the
  * frame's limit of work. Returns whether max_lights changed, so that lights

@@ -195,6 +195,46 @@ TEST(every_reason_occurs)
     glint_frame_finish(&frame);
 }
 
+/* Checks a frame whose setup is that of the table, which has no pupil regions:
+ * the last ghost of the model becomes a second region of ghost 11. */
+TEST(pupil_regions_of_the_model_are_not_ghosts)
+{
+    enum { GHOST = 11 };
+    static struct glint_setup setup;
+    struct glint_engine_report report, first;
+    struct glint_model_header *header;
+    struct glint_model_ghost *ghosts;
+    struct glint_frame frame;
+    struct glint_lens lens;
+    struct glint_explain e;
+
+    make_test_frame(&frame);
+    header = malloc(frame.lens->header->bytes);
+    assert_non_null(header);
+    memcpy(header, frame.lens->header, frame.lens->header->bytes);
+    ghosts = (void *)((char *)header + header->ghost_at);
+    header->n_parts = 1;
+    ghosts[header->n_ghosts - 1].i = ghosts[GHOST].i;
+    ghosts[header->n_ghosts - 1].j = ghosts[GHOST].j;
+    lens = *frame.lens;
+    lens.header = header;
+    lens.ghost = ghosts;
+    setup = *frame.setup;
+    setup.n_ghosts = (int)header->n_ghosts - 1;
+    frame.lens = &lens;
+    frame.setup = &setup;
+    draw_explained_frame(&frame, lamps, N_LAMPS, &first);
+    assert_ok(glint_explain_open_for_frame(&e, &frame, 1));
+    assert_int_equal(e.n_ghosts, setup.n_ghosts);
+    assert_explanation_matches_report(&e, &first);
+    assert_int_equal(glint_explain_bundles(&e.ghost[GHOST]), 2 * 2 * 3);
+    glint_explain_close(&e);
+    draw_explained_frame(&frame, lamps, N_LAMPS, &report);
+    assert_int_equal(report.ghosts, first.ghosts);
+    glint_frame_finish(&frame);
+    free(header);
+}
+
 TEST(explains_bundles_dropped_for_memory)
 {
     struct glint_engine_report report;
