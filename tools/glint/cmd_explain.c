@@ -3,7 +3,6 @@
  * glint explain: reports what one frame draws, what it drops and why, and the
  * cost and light of each ghost, light and wavelength.
  */
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,8 +57,11 @@ struct explain_command {
     const char *input, *output, *ghosts;
     int width, height; /* --size, pixels; 0: size of the input */
     int top;
-    /* 8-bit copy of the input on which the flare is drawn */
+    struct glint_kept kept; /* the input */
+    /* the picture on which the flare is drawn: the samples of the input, or an
+     * 8-bit copy in MEM */
     struct glint_image image;
+    uint8_t *mem;
 };
 
 static const struct option own[] = {
@@ -156,23 +158,32 @@ static int parse_options(struct tool *tool, int argc, char **argv,
 
 /* ------------------------------------------------------------------- frame */
 
+/* Loads the input and sets the lens to its camera, as overlay does; without an
+ * input makes a black image. */
 static int load_input_image(struct tool *tool, struct explain_command *c)
 {
     struct glint_error error = {""};
     enum glint_status status;
-    uint8_t *mem;
+    double white;
 
     if (c->input) {
-        status = glint_picture_load(c->input, &c->image, &error);
-        return status == GLINT_OK ? EXIT_OK
-                                  : tool_fail(tool, status, error.text);
+        status = glint_kept_open(&c->kept, c->input, &error);
+        if (status != GLINT_OK)
+            return tool_fail(tool, status, error.text);
+        drawing_line_follow_photo(&c->drawing.line, c->kept.f_number,
+                                  c->kept.focal_mm);
+        if (glint_samples_get_image(&c->kept.samples, &c->image))
+            return EXIT_OK;
+        status = glint_samples_make_proxy(&c->kept.samples, &c->image, &white);
+        c->mem = c->image.plane[0];
+        return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);
     }
     c->image = (struct glint_image){
         .format = GLINT_RGB24, .width = c->width, .height = c->height};
-    mem = calloc(3 * (size_t)c->width, (size_t)c->height);
-    if (!mem)
+    c->mem = calloc(3 * (size_t)c->width, (size_t)c->height);
+    if (!c->mem)
         return tool_fail(tool, GLINT_E_MEMORY, NULL);
-    glint_image_place(&c->image, mem);
+    glint_image_place(&c->image, c->mem);
     return EXIT_OK;
 }
 
@@ -352,19 +363,6 @@ static int check_outputs_differ_from_inputs(const struct tool *tool,
     return file_conflicts_check_outputs(tool, &files);
 }
 
-/* Sets the lens to the camera of the input, as overlay does. An input that is
- * not a picture is reported later. */
-static void follow_input_photo(struct explain_command *c)
-{
-    struct glint_error error;
-    struct glint_kept kept;
-
-    if (!c->input || glint_kept_open(&kept, c->input, &error) != GLINT_OK)
-        return;
-    drawing_line_follow_photo(&c->drawing.line, kept.f_number, kept.focal_mm);
-    glint_kept_close(&kept);
-}
-
 static int explain_frame(struct tool *tool, struct explain_command *c)
 {
     const bool linear = is_linear(c);
@@ -377,11 +375,10 @@ static int explain_frame(struct tool *tool, struct explain_command *c)
     code = check_outputs_differ_from_inputs(tool, c);
     c->drawing.line.settings.unbaked =
         settings_choose_method_without_model(&c->drawing.line.settings);
-    follow_input_photo(c);
-    if (code == EXIT_OK)
-        code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)
         code = load_input_image(tool, c);
+    if (code == EXIT_OK)
+        code = drawing_open(tool, &c->drawing);
     if (code == EXIT_OK)
         code = drawing_allocate(tool, &c->drawing, c->image.width,
                                 c->image.height);
@@ -419,7 +416,8 @@ int cmd_explain(int argc, char **argv)
         tool_stop_threads(&tool);
     }
     drawing_close(&c->drawing);
-    free(c->image.plane[0]);
+    free(c->mem);
+    glint_kept_close(&c->kept);
     free(c);
     return code;
 }
