@@ -3,6 +3,7 @@
  * glint explain: reports what one frame draws, what it drops and why, and the
  * cost and light of each ghost, light and wavelength.
  */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -115,6 +116,12 @@ static int check_options(struct tool *tool, const struct explain_command *c)
         c->drawing.line.n_hand == 0 && c->drawing.line.n_at == 0 &&
         !c->drawing.line.settings.options.lights)
         return tool_usage(tool, "--size needs a --light or --lights FILE");
+    for (int i = 0; i < c->drawing.line.n_at && is_linear(c); i++)
+        if (isinf(c->drawing.line.at[i].ev))
+            return tool_usage(tool,
+                              "--light-at X,Y,off removes a lamp found in "
+                              "the picture, and --size searches for "
+                              "none");
     return -1;
 }
 
