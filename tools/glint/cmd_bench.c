@@ -186,16 +186,16 @@ static void print_bench_table(const struct bench *b, double floor_ms)
     printf("memory floor %.3f ms (%dx%d %s, %d rounds); stages are multiples "
            "of it\n",
            floor_ms, b->width, b->height, format_words[b->format], b->rounds);
-    printf("lens                        size light th by    sets        ms   "
+    printf("lens                        size th sets        ms   "
            "ratio     plan transfer     bin    draw    prims    MiB\n");
     for (int i = 0; i < b->n_cases; i++) {
         const struct bench_case *const t = b->cases[i];
         const struct glint_engine_report *const r = &t->report;
         const double ms = canvas_find_median(t->ms[WHOLE], b->rounds);
 
-        printf("%-22s %4dx%-4d %5d %2d %-5s %-5s %8.3f %7.1f ",
-               t->lens.table.name, b->width, b->height, 1, get_thread_count(b),
-               "edges", b->tool->kernels, ms, ms / floor_ms);
+        printf("%-22s %4dx%-4d %2d %-5s %8.3f %7.1f ", t->lens.table.name,
+               b->width, b->height, get_thread_count(b), b->tool->kernels, ms,
+               ms / floor_ms);
         for (int k = PLAN; k < WHOLE; k++)
             printf(" %*.2f", k == TRANSFER ? 8 : 7,
                    canvas_find_median(t->ms[k], b->rounds) / floor_ms);
@@ -211,11 +211,11 @@ static void write_case_json(struct json_writer *json, const struct bench *b,
     const double ms = canvas_find_median(t->ms[WHOLE], b->rounds);
 
     json_write(json,
-               "\n{lens: %s, width: %d, height: %d, format: %s, lights: %d, "
-               "threads: %d, raster: %s, kernels: %s, quality: %.3f, "
+               "\n{lens: %s, width: %d, height: %d, format: %s, "
+               "threads: %d, kernels: %s, quality: %.3f, "
                "ms: %.4f, ratio: %.3f",
                t->lens.table.name, b->width, b->height, format_words[b->format],
-               1, get_thread_count(b), "edges", b->tool->kernels,
+               get_thread_count(b), b->tool->kernels,
                r->quality >= 0 ? r->quality : b->base.options.quality, ms,
                ms / floor_ms);
     for (int k = PLAN; k < WHOLE; k++)
