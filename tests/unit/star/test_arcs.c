@@ -291,6 +291,16 @@ TEST(wide_lamp_widens_fans)
     }
 }
 
+/* Halos are tabulated for radii of 8 and 16 pixels. */
+TEST(halos_are_interpolated_between_tabulated_radii)
+{
+    const int narrow = measure_spike_width_px(0.03, 0, 8);
+    const int between = measure_spike_width_px(0.03, 0, 11.3);
+    const int wide = measure_spike_width_px(0.03, 0, 16);
+
+    assert_true(between > narrow && between < wide);
+}
+
 /* Checks that blades of curvature 1 have the tables of a circle, and that
  * blades of almost that curvature have an almost even halo. */
 TEST(round_blades_become_a_circle)
