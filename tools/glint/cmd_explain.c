@@ -35,7 +35,7 @@ static const char help[] =
     "of\n"
     "glint render with --size, whose brightness is in units of the lamps' "
     "power.\n"
-    "A lens without a cached model is drawn by exact rays. A model adds the\n"
+    "A lens table is drawn by exact rays. A model (--rays model) adds the\n"
     "fraction of the drawing cost (estimated instructions, all of them with\n"
     "--json). With --scene it first lists the state of each object (drawn,\n"
     "hidden, behind the camera, off-screen, occluded, below a pixel) and "

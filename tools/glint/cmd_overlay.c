@@ -421,7 +421,7 @@ static void disable_bake_and_metering(struct settings *s)
     GLINT_OPTION_GIVEN(o, exposure) = true;
 }
 
-/* Returns how to draw with a lens that has no model. A picture is drawn by
+/* Returns how to draw with a lens table. A picture is drawn by
  * exact rays unless an option needs a model. A video or sequence needs a model,
  * which is baked when a lamp is detected, unless an option needs it before. */
 static enum settings_unbaked

@@ -20,7 +20,7 @@ struct opened_lens {
     /* lens table; for a model only its name and film are set */
     struct glint_prescription table;
     struct model_file model; /* baked model; closed if rays are exact */
-    /* whether the lens is a table without a model, which SETTINGS forbid to
+    /* whether the lens is a table whose model the settings forbid to open or
      * bake */
     bool is_unbaked;
     struct glint_setup setup;

@@ -109,9 +109,10 @@ static int check_path_count(const struct tool *tool,
     return EXIT_LENS;
 }
 
-/* Opens the model of LENS, named NAME, for lights up to DEG off the axis. Bakes
- * a missing model, unless settings->unbaked requests exact rays or waits for a
- * lamp; then sets lens->is_unbaked. Returns an exit code. */
+/* Opens the model of LENS, named NAME, for lights up to DEG off the axis, and
+ * bakes it if it is missing. Instead sets lens->is_unbaked if settings->unbaked
+ * requests exact rays, or if it waits for a lamp and the model is missing.
+ * Returns an exit code. */
 static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
                               const struct settings *settings, const char *name,
                               double deg)
@@ -122,8 +123,9 @@ static int find_or_bake_model(const struct tool *tool, struct opened_lens *lens,
 
     if (deg > options.max_deg)
         options.max_deg = 89;
-    lens->is_unbaked = settings->unbaked != SETTINGS_BAKE &&
-                       !model_is_cached(&lens->table, &options);
+    lens->is_unbaked = settings->unbaked == SETTINGS_TRACE ||
+                       (settings->unbaked != SETTINGS_BAKE &&
+                        !model_is_cached(&lens->table, &options));
     if (!lens->is_unbaked)
         return model_open_cached(tool, &lens->table, name, options,
                                  &settings->coating, &lens->model);

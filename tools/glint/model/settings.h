@@ -17,8 +17,9 @@
 /* Max number of lamps on the command line; files may have more */
 enum { SETTINGS_MAX_LAMPS = 1024 };
 
-/* What to do with a lens table that has no model. BAKE: bake the model. TRACE:
- * trace exact rays. SEARCH: bake the model once a lamp is detected. */
+/* How a lens table is drawn. BAKE: by its model, which is baked unless it is
+ * cached. TRACE: by exact rays. SEARCH: by its model, which is baked once a
+ * lamp is detected. */
 enum settings_unbaked { SETTINGS_BAKE, SETTINGS_TRACE, SETTINGS_SEARCH };
 
 struct settings {
@@ -47,7 +48,7 @@ struct settings {
     /* f-number of the camera of the input picture, to which the stop of a lens
      * without a model is set unless --f-number is given; 0: unknown */
     double photo_f_number;
-    /* what to do with a table without a model, an enum settings_unbaked */
+    /* how a table is drawn, an enum settings_unbaked */
     int unbaked;
     /* "FILE:LINE" of the f-number; NULL: from the command line */
     const char *f_number_from;
@@ -100,8 +101,8 @@ int settings_get_selected_ghost(const struct settings *settings);
 /* Returns whether a veil, light spread over the whole image, is drawn. */
 bool settings_has_veil(const struct settings *settings);
 
-/* Returns how a command that draws a single image opens a table without a
- * model: with exact rays, unless an option requests or needs a model. */
+/* Returns how a command that draws a single image draws a table: by exact rays,
+ * unless an option requests or needs a model. */
 enum settings_unbaked
 settings_choose_method_without_model(const struct settings *settings);
 
