@@ -659,6 +659,13 @@ function begin(next) {
     showState();
 }
 
+// canvas.toBlob() would wait for idle time, up to 7 s after a click.
+function encode(canvas, type) {
+    const copy = new OffscreenCanvas(canvas.width, canvas.height);
+    copy.getContext("2d").drawImage(canvas, 0, 0);
+    return copy.convertToBlob({type, quality: 0.95});
+}
+
 // Saves the whole picture in the chosen format.
 async function save() {
     const format = $("format").value, isDeep = format === "deep" || format === "layer", {file} = photo;
@@ -669,8 +676,7 @@ async function save() {
         await new Promise(done => setTimeout(done, 50));
     if (shown.full < renderMark)
         return;
-    let blob = isDeep ? await full.save(format === "layer") :
-        await new Promise(done => $("after").toBlob(done, "image/" + format, 0.95));
+    let blob = isDeep ? await full.save(format === "layer") : await encode($("after"), "image/" + format);
     if (format === "jpeg")
         blob = await copyMetadata(file, blob);
     if (blob)
