@@ -12,9 +12,9 @@ void glint_still_append(struct still_bytes *to, const void *bytes, size_t n)
 {
     uint8_t *more;
 
-    if (to->n + n > to->room && !to->is_short) {
-        to->room = 2 * (to->n + n);
-        more = realloc(to->mem, to->room);
+    if (to->n + n > to->capacity && !to->is_short) {
+        to->capacity = 2 * (to->n + n);
+        more = realloc(to->mem, to->capacity);
         to->is_short = !more;
         if (more)
             to->mem = more;

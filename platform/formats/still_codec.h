@@ -11,9 +11,9 @@ enum { STILL_NOTE_BYTES = 160 };
 
 /* Bytes that a writer appends to. After memory was short, it stays empty. */
 struct still_bytes {
-    uint8_t *mem; /* malloc'ed */
-    size_t n, room;
-    bool is_short; /* true: memory was short */
+    uint8_t *mem;       /* malloc'ed */
+    size_t n, capacity; /* bytes */
+    bool is_short;      /* true: memory was short */
 };
 
 /* Pixels without gaps, samples in this machine's byte order. */
@@ -24,7 +24,7 @@ struct still_pixels {
     uint8_t *mem;
 };
 
-/* What struct glint_oiio_file is in these files. */
+/* An open PNG or JPEG file, which is cast to struct glint_oiio_file. */
 struct still_file {
     const struct still_codec *codec;
     const char *path;

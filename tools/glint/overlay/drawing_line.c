@@ -110,9 +110,9 @@ static bool record_brightness_option(struct drawing_line *line, int option)
 /* Max focal lengths, mm for 35 mm film, for the short and middle position of
  * the default lens: geometric means of those of the positions, 57.2, 93.0 and
  * 143.1 mm */
-static const double most_short_mm = 72.9, most_mid_mm = 115.4;
+static const double max_short_mm = 72.9, max_mid_mm = 115.4;
 /* Larger f-numbers in a file are errors. */
-static const double most_photo_f_number = 100;
+static const double max_photo_f_number = 100;
 
 void drawing_line_follow_photo(struct drawing_line *line, double f_number,
                                double focal_mm)
@@ -123,13 +123,13 @@ void drawing_line_follow_photo(struct drawing_line *line, double f_number,
         return;
     if (line->style || tool_is_model(s->options.lens))
         return;
-    s->photo_f_number = f_number < most_photo_f_number ? f_number : 0;
+    s->photo_f_number = f_number < max_photo_f_number ? f_number : 0;
     if (GLINT_OPTION_GIVEN(&s->options, lens) || !(focal_mm > 0))
         return;
     line->photo_focal_mm = focal_mm;
-    s->options.lens = focal_mm <= most_short_mm ? "nikon-zoom-short"
-                      : focal_mm <= most_mid_mm ? "nikon-zoom-mid"
-                                                : "nikon-zoom-long";
+    s->options.lens = focal_mm <= max_short_mm ? "nikon-zoom-short"
+                      : focal_mm <= max_mid_mm ? "nikon-zoom-mid"
+                                               : "nikon-zoom-long";
 }
 
 void drawing_line_end_file(struct drawing_line *line)
