@@ -903,9 +903,8 @@ static void print_exact_ray_notice(const struct drawing *d)
     if (tool->quiet || !d->line.is_still || n == 0)
         return;
     fprintf(stderr,
-            "glint %s: %d light%s; draws the flare of %s by exact rays%s\n",
-            tool->name, n, n == 1 ? "" : "s", d->files.lens.table.name,
-            d->files.lens.is_unbaked ? ", as it has no baked model" : "");
+            "glint %s: %d light%s; draws the flare of %s by exact rays\n",
+            tool->name, n, n == 1 ? "" : "s", d->files.lens.table.name);
 }
 
 void drawing_start_flare(struct drawing *drawing)
