@@ -115,8 +115,9 @@ struct glint_engine_camera {
      * model: &glint_frame_traces of libglint-bake.a. NULL: a model is
      * required. */
     const struct glint_frame_rays *rays;
-    /* Tints of the ghosts, [ghosts of the setup], or NULL; must outlive the
-     * engine. */
+    /* Tints of the ghosts and their parts, [ghosts of the model, parts
+     * included; without a model, ghosts of the setup], or NULL; must outlive
+     * the engine. */
     const struct glint_tint *tints;
     /* Dirt on the front element, made by glint_front_make(); must outlive the
      * engine. NULL: the engine makes the dirt from front_dirt, of which it

@@ -291,6 +291,7 @@ static enum glint_status init_engine(struct glint_engine *e,
 {
     struct glint_engine_optics *const o = &e->optics;
     enum glint_status status = GLINT_OK;
+    int n;
 
     o->camera = c->camera;
     o->setup = c->camera.setup ? c->camera.setup : &o->own;
@@ -299,11 +300,12 @@ static enum glint_status init_engine(struct glint_engine *e,
             glint_engine_setup(&o->own, c->model, &o->camera, &o->dirt, error);
     if (status == GLINT_OK)
         status = make_front_dirt(o, &c->camera, error);
-    if (status == GLINT_OK &&
-        c->drawing.only_ghost >= o->setup->n_ghosts - o->setup->n_parts) {
+    n = c->model ? (int)(c->model->header->n_ghosts - c->model->header->n_parts)
+                 : o->setup->n_ghosts;
+    if (status == GLINT_OK && c->drawing.only_ghost >= n) {
         snprintf(error->text, sizeof error->text,
                  "only_ghost must be less than %d, the lens's number of ghosts",
-                 o->setup->n_ghosts - o->setup->n_parts);
+                 n);
         status = GLINT_E_ARGUMENT;
     }
     if (status != GLINT_OK)

@@ -485,6 +485,33 @@ TEST(rejects_invalid_configurations)
     }
 }
 
+/* Checks a setup of the lens table with a model, whose ghosts may have several
+ * pupil regions (parts): tints and only_ghost are those of the model. */
+TEST(ghosts_are_those_of_the_model)
+{
+    const struct glint_model_header *const h = opened.lens.model.lens.header;
+    struct glint_tint *const tints =
+        test_free_later(calloc(h->n_ghosts, sizeof *tints));
+    const int n = (int)(h->n_ghosts - h->n_parts);
+    static uint8_t px[BYTES], plain[BYTES];
+    static struct glint_setup setup;
+
+    assert_ok(glint_setup_init(&setup, &opened.lens.table, 8, 0,
+                               (const double[]){650, 532, 450}, 3, &error));
+    cfg.camera.setup = &setup;
+    cfg.camera.tints = tints;
+    cfg.drawing.parts = GLINT_ENGINE_GHOSTS;
+    open_engine();
+    draw_flare_of_found_lamps(0, px);
+    draw_lamp_picture(plain);
+    assert_memory_equal(px, plain, BYTES);
+    setup.n_ghosts = n + 1;
+    cfg.drawing.only_ghost = n;
+    glint_engine_destroy(engine);
+    assert_int_equal(glint_engine_create(&engine, &cfg, &error),
+                     GLINT_E_ARGUMENT);
+}
+
 /* Checks a program compiled for an older library, whose configuration struct is
  * shorter: missing members must get their defaults, whatever the memory behind
  * the struct contains. */
