@@ -6,7 +6,7 @@
 import {execFileSync} from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
-import {ghostFile, init, lampFile} from "../../tools/hosts/web/glint.js";
+import {init, lampFile} from "../../tools/hosts/web/glint.js";
 
 const [program, folder, first, count, ...modules] = process.argv.slice(2);
 
@@ -91,17 +91,16 @@ let failed = 0;
 for (let k = +first; k < +first + +count; k++) {
     state = (k + 1) * 2654435761 >>> 0;
     const w = whole(33, 160), h = whole(25, 120), rgba = picture(w, h), o = options(), deep = k % 4 === 3;
-    const muted = draw() < 0.2 ? [whole(0, 8), whole(0, 8)] : [];
+    if (draw() < 0.3)
+        o.ghosts = `${whole(0, 8)} mute\n${whole(0, 8)} gain ${within(0, 3).toFixed(2)} tint 1,${within(0, 2).toFixed(2)},0.5\n${draw() < 0.3 ? "3 solo\n" : ""}`;
     const line = ["overlay", input, "-o", output, "-q", "--rays", "exact",
-        ...Object.entries(o).flatMap(([key, value]) => value === "yes" ? ["--" + key] : ["--" + key, value])];
+        ...Object.entries(o).flatMap(([key, value]) => value === "yes" ? ["--" + key] : ["--" + key, key === "ghosts" ? txt : value])];
     fs.writeFileSync(input, makePpm(rgba, w, h, deep));
-    if (muted.length) {
-        fs.writeFileSync(txt, ghostFile(muted));
-        line.push("--ghosts", txt);
-    }
+    if (o.ghosts)
+        fs.writeFileSync(txt, o.ghosts);
     try {
         for (const {glint} of engines) {
-            glint.options(o, muted);
+            glint.options(o);
             glint.size(w, h);
         }
         let lamps = null;

@@ -322,7 +322,11 @@ try {
     await compare("a style");
     await page.click("#ghost-box summary");
     await page.click('#ghosts button[aria-label^="Mute"]', {timeout: 0});
-    await compare("a ghost left out");
+    await page.locator('#ghosts input[type="color"]').nth(1).fill("#ff8000");
+    await compare("a ghost left out, and one tinted");
+    check("the command tints it", / tint 1,0.2159,0\n/.test(await page.inputValue("#command")));
+    await page.locator("#ghosts button[data-word=solo]").nth(1).click();
+    await compare("a tinted ghost alone");
     await page.selectOption("#format", "deep");
     await compare("a picture of 16 bits");
     await page.selectOption("#format", "layer");

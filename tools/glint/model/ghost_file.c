@@ -10,6 +10,7 @@
 #include "options/timed_text.h"
 #include "options/tool.h"
 #include "posix/error.h"
+#include "posix/input.h"
 #include "posix/output.h"
 
 enum { MOST_BYTES = 1 << 20 };
@@ -183,7 +184,7 @@ enum glint_status ghost_file_parse(struct glint_tint **tints, const char *name,
         .setup = setup, .lens = lens, .n = setup->n_ghosts - setup->n_parts};
     struct text_lines lines;
     enum glint_status status =
-        text_lines_open(&lines, name, text, bytes, error);
+        text_lines_open_text(&lines, name, text, bytes, error);
 
     if (status == GLINT_OK && !allocate_ghost_tints(&r))
         status = glint_error_report(error, GLINT_E_MEMORY, name, "%s",
@@ -207,7 +208,17 @@ enum glint_status ghost_file_read(struct glint_tint **tints, const char *path,
                                   const struct glint_setup *setup,
                                   const char *lens, struct glint_error *error)
 {
-    return ghost_file_parse(tints, path, NULL, MOST_BYTES, setup, lens, error);
+    uint8_t *data = NULL;
+    size_t bytes = 0;
+    enum glint_status status =
+        glint_input_read_whole_file(&data, &bytes, path, MOST_BYTES, error);
+
+    *tints = NULL;
+    if (status == GLINT_OK)
+        status = ghost_file_parse(tints, path, (const char *)data, bytes, setup,
+                                  lens, error);
+    free(data);
+    return status;
 }
 
 void ghost_file_write_line(char *text, size_t room, int ghost,

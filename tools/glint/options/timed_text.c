@@ -27,6 +27,26 @@ static const char numerals[] = "0123456789+-.eE";
 
 /* ----------------------------------------------------------------- sources */
 
+enum glint_status text_lines_open_text(struct text_lines *lines,
+                                       const char *name, const char *text,
+                                       size_t bytes, struct glint_error *error)
+{
+    *lines = (struct text_lines){.name = name};
+    if (bytes && memchr(text, '\0', bytes))
+        return glint_error_report(error, GLINT_E_FORMAT, name,
+                                  "not a text file");
+    lines->mem = calloc(bytes + 1, 1);
+    if (!lines->mem)
+        return glint_error_report(error, GLINT_E_MEMORY, name, "%s",
+                                  text_no_memory);
+    if (bytes)
+        memcpy(lines->mem, text, bytes);
+    lines->rest = lines->mem;
+    if (strncmp(lines->mem, "\xef\xbb\xbf", 3) == 0)
+        lines->rest += 3; /* UTF-8 byte order mark, which some editors write */
+    return GLINT_OK;
+}
+
 enum glint_status text_lines_open(struct text_lines *lines, const char *name,
                                   const char *text, size_t bytes,
                                   struct glint_error *error)
@@ -39,17 +59,8 @@ enum glint_status text_lines_open(struct text_lines *lines, const char *name,
         status = glint_input_read_whole_file(&data, &bytes, name, bytes, error);
         text = (const char *)data;
     }
-    if (status == GLINT_OK && bytes && memchr(text, '\0', bytes))
-        status =
-            glint_error_report(error, GLINT_E_FORMAT, name, "not a text file");
-    if (status == GLINT_OK && !(lines->mem = calloc(bytes + 1, 1)))
-        status = glint_error_report(error, GLINT_E_MEMORY, name, "%s",
-                                    text_no_memory);
-    if (lines->mem && bytes)
-        memcpy(lines->mem, text, bytes);
-    lines->rest = lines->mem;
-    if (lines->mem && strncmp(lines->mem, "\xef\xbb\xbf", 3) == 0)
-        lines->rest += 3; /* UTF-8 byte order mark, which some editors write */
+    if (status == GLINT_OK)
+        status = text_lines_open_text(lines, name, text, bytes, error);
     free(data);
     return status;
 }

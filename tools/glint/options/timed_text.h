@@ -47,10 +47,13 @@ struct text_lines {
 
 /* ------------------------------------------------------------------- lines */
 
-/* Opens a copy of TEXT[BYTES]. If TEXT is NULL, opens the file NAME, which must
- * have at most BYTES bytes (0: any size). NAME must outlive LINES. Errors:
- * GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT if the text contains a zero
- * byte. */
+/* Open a copy of TEXT[BYTES]. If TEXT is NULL, text_lines_open() opens the file
+ * NAME, which must have at most BYTES bytes (0: any size). NAME must outlive
+ * LINES. Errors: GLINT_E_IO, GLINT_E_MEMORY, and GLINT_E_FORMAT if the text
+ * contains a zero byte. */
+enum glint_status text_lines_open_text(struct text_lines *lines,
+                                       const char *name, const char *text,
+                                       size_t bytes, struct glint_error *error);
 enum glint_status text_lines_open(struct text_lines *lines, const char *name,
                                   const char *text, size_t bytes,
                                   struct glint_error *error);

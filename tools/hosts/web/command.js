@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
 // command.js - the command line that gives the picture of the page: printed, and read.
-import {COLUMNS, ghostFile, LAMP, lampFile} from "./glint.js";
+import {COLUMNS, LAMP, lampFile} from "./glint.js";
 
 // Options that are read although the table of the module does not list them.
-const OTHERS = ["ghosts", "layer", "lights", "rays", "style"];
+const OTHERS = ["layer", "lights", "rays", "style"];
 // What the names of saved pictures end with. The command of a JPEG file gives the picture before it is compressed.
 export const ENDINGS = {png: "-glint.png", jpeg: "-glint.png", deep: "-glint16.png", layer: "-flare.png"};
 const quote = text => /^[A-Za-z0-9_.,:\/=+@-]+$/.test(text) ? text : "'" + text.replaceAll("'", "'\\''") + "'";
 
-// Returns the lines of a shell. MUTED: numbers of ghosts. LAMPS null: as they are found. FORMAT: of the file, as in index.html.
-export function commandLine(name, values, muted, lamps, format = "png") {
+// Returns the lines of a shell. LAMPS null: as they are found. FORMAT: of the file, as in index.html.
+export function commandLine(name, {ghosts, ...values}, lamps, format = "png") {
     const lines = lamps ? ["cat >lamps.csv <<'END'\n" + lampFile(lamps) + "END"] : [];
-    if (muted.length)
-        lines.push("cat >ghosts.txt <<'END'\n" + ghostFile(muted) + "END");
+    if (ghosts)
+        lines.push("cat >ghosts.txt <<'END'\n" + ghosts + "END");
     const path = name[0] === "-" ? "./" + name : name, base = path.replace(/\.[^.\/]*$/, "");
     const file = format === "deep" ? base + "-16.png" : path;
     if (format === "deep")
         lines.push(`convert ${quote(path)} -strip ${quote("PNG48:" + file)}`);
     const options = Object.entries(values).map(([key, value]) => value === "yes" ? "--" + key : `--${key} ${quote(String(value))}`);
     lines.push(["glint overlay", quote(file), "-o", quote(base + ENDINGS[format]), "--rays exact", ...options,
-        ...format === "layer" ? ["--layer flare-alpha"] : [], ...lamps ? ["--lights lamps.csv"] : [], ...muted.length ? ["--ghosts ghosts.txt"] : []].join(" "));
+        ...format === "layer" ? ["--layer flare-alpha"] : [], ...lamps ? ["--lights lamps.csv"] : [], ...ghosts ? ["--ghosts ghosts.txt"] : []].join(" "));
     return lines.join("\n") + "\n";
 }
 
@@ -29,9 +29,9 @@ function readLamps(text) {
     return rows.map(row => Object.fromEntries(COLUMNS.map(name => [name, Number(row[head.indexOf(name)] ?? LAMP[name])])));
 }
 
-// Returns {values, muted, lamps} of TEXT, lines as those of commandLine(). TABLES: of the module.
+// Returns {values, lamps} of TEXT, lines as those of commandLine(). TABLES: of the module.
 export function readCommand(text, {options, styles}) {
-    const files = {}, state = {values: {}, muted: [], lamps: null};
+    const files = {}, state = {values: {}, lamps: null};
     const rest = text.replace(/^convert .*\n/m, "").replaceAll(/cat >(\S+) <<'END'\n([^]*?)END\n/g, (all, name, lines) => {
         files[name] = lines;
         return "";
@@ -55,11 +55,31 @@ export function readCommand(text, {options, styles}) {
             if (name === "lights")
                 state.lamps = readLamps(files[value]);
             else
-                state.muted = [...files[value].matchAll(/^(\d+) mute$/gm)].map(([, number]) => Number(number));
+                state.values.ghosts = files[value];
         } else if (name === "style")
             Object.assign(state.values, styles.find(style => style.name === value)?.set);
         else if (name !== "rays" && name !== "layer")
             state.values[name] = value;
     }
     return state;
+}
+
+// The words that a file of ghosts gives GHOST, a number: {solo, mute, gain, tint}. TEXT: of the file.
+export function readGhost(text, ghost) {
+    const words = {};
+    for (const line of text.split("\n")) {
+        const [name, ...rest] = line.replace(/#.*/, "").trim().split(/\s+/);
+        while (name === String(ghost) && rest.length) {
+            const word = rest.shift();
+            words[word] = word === "gain" || word === "tint" ? rest.shift() : true;
+        }
+    }
+    return words;
+}
+
+// Returns TEXT with WORDS for GHOST.
+export function writeGhost(text, ghost, words) {
+    const others = text.split("\n").filter(line => line.trim() && line.trim().split(/[\s#]/)[0] !== String(ghost));
+    const own = Object.entries(words).filter(([, value]) => value).map(([word, value]) => value === true ? word : word + " " + value);
+    return [...others, ...own.length ? [[ghost, ...own].join(" ")] : []].map(line => line + "\n").join("");
 }

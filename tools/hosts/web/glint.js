@@ -34,8 +34,8 @@ async function load(url) {
 export async function init(wasm) {
     wasm ??= await load(new URL("glint.wasm", import.meta.url));
     const module = wasm instanceof WebAssembly.Module ? wasm : await WebAssembly.compile(wasm);
-    // The library prints nothing; its C library refers to these.
-    const files = {fd_close: () => ENOSYS, fd_seek: () => ENOSYS, fd_write: () => ENOSYS};
+    // The module uses no files; its C library refers to these.
+    const files = Object.fromEntries(["fd_close", "fd_read", "fd_seek", "fd_write", "poll_oneoff"].map(name => [name, () => ENOSYS]));
     const instance = await WebAssembly.instantiate(module, {wasi_snapshot_preview1: files});
     instance.exports._initialize();
     return new Engine(instance.exports);
@@ -93,10 +93,9 @@ export class Engine {
         }
     }
 
-    // Sets all options: those of VALUES, and the defaults of others. MUTED: numbers of ghosts to leave out.
-    options(values, muted = []) {
+    // Sets all options: those of VALUES, and the defaults of others. The option ghosts is the text of its file.
+    options(values) {
         this.c.web_reset();
-        muted.forEach(ghost => this.check(this.c.web_mute(ghost)));
         for (const [name, value] of Object.entries(values))
             this.set(name, value);
     }
@@ -205,6 +204,3 @@ export function lampFile(lamps) {
     return "frame,id," + COLUMNS.join() + "\n" +
         lamps.map((lamp, i) => `*,${i + 1},` + COLUMNS.map(name => lamp[name]).join() + "\n").join("");
 }
-
-// The ghosts MUTED as a file of glint overlay --ghosts.
-export const ghostFile = muted => muted.map(ghost => ghost + " mute\n").join("");

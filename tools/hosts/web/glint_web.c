@@ -13,6 +13,7 @@
 #include "glint/explain.h"
 #include "glint/options.h"
 #include "glint/quality.h"
+#include "model/ghost_file.h"
 
 /* default roundness of the aperture blades, as in glint overlay; --stop may set
  * another one */
@@ -27,8 +28,7 @@ static struct {
     char *text[GLINT_N_OPTIONS]; /* values of text options */
 
     struct glint_prescription table;
-    /* factors on the light of the ghosts: 0 or 1 */
-    struct glint_tint tint[GLINT_MAX_GHOSTS];
+    struct glint_tint *tints; /* of the option ghosts; NULL: none */
     struct glint_dirt *dirt;
     struct glint_setup setup;
     struct glint_projection projection;
@@ -79,23 +79,13 @@ void web_reset(void)
         web.text[i] = NULL;
     }
     glint_options_defaults(&web.options);
-    for (int i = 0; i < GLINT_MAX_GHOSTS; i++)
-        web.tint[i] =
-            (struct glint_tint){{16384, 16384, 16384}, glint_real_of(1)};
-}
-
-int web_mute(int ghost)
-{
-    if (ghost < 0 || ghost >= GLINT_MAX_GHOSTS)
-        return record_error("no ghost has this number");
-    web.tint[ghost].gain = (struct glint_real){0, 0};
-    return 1;
 }
 
 bool web_has_option(const struct glint_option *row)
 {
-    return row->scope != GLINT_OPTION_PROGRAM &&
-           row != glint_option(GLINT_OPTION_OF_rays);
+    return row == glint_option(GLINT_OPTION_OF_ghosts) ||
+           (row->scope != GLINT_OPTION_PROGRAM &&
+            row != glint_option(GLINT_OPTION_OF_rays));
 }
 
 static const struct web_lens *find_web_lens(const char *name)
@@ -143,6 +133,8 @@ static void close_web_engine(void)
     web.n_found = 0;
     glint_dirt_free(web.dirt);
     web.dirt = NULL;
+    free(web.tints);
+    web.tints = NULL;
 }
 
 /* Applies the films of --coating to the table. */
@@ -223,6 +215,16 @@ static int set_up_camera(struct glint_engine_camera *camera)
                                             &web.error));
 }
 
+/* Sets the tints of ghosts that the option ghosts defines. */
+static int apply_ghosts_option(void)
+{
+    const char *const text = web.options.ghosts;
+
+    return !text || record_status(ghost_file_parse(&web.tints, "ghosts", text,
+                                                   strlen(text), &web.setup,
+                                                   web.table.name, &web.error));
+}
+
 int web_size(int width, int height)
 {
     const struct glint_options *const o = &web.options;
@@ -241,12 +243,12 @@ int web_size(int width, int height)
     glint_engine_defaults(&cfg, width, height);
     cfg.camera.iris.roundness = PHOTO_ROUNDNESS;
     glint_engine_configure(&cfg, o);
-    if (!set_up_camera(&cfg.camera))
+    if (!set_up_camera(&cfg.camera) || !apply_ghosts_option())
         return 0;
     cfg.search.more_lamps = GLINT_ENGINE_MAX_LAMPS;
     cfg.camera.setup = &web.setup;
     cfg.camera.rays = &glint_frame_traces;
-    cfg.camera.tints = web.tint;
+    cfg.camera.tints = web.tints;
     cfg.camera.projection = &web.projection;
     if (!(cfg.camera.sensor_width_mm > 0)) {
         cfg.camera.sensor_width_mm = web.table.film_width_mm;

@@ -56,7 +56,8 @@ WEB_EXPORT(web_free) void web_free(void *mem);
 WEB_EXPORT(web_error) const char *web_error(void);
 
 /* Returns whether web_set() accepts the option ROW: files, scenes and --budget
- * are for programs, and rays are always exact. */
+ * are for programs, and rays are always exact. The option ghosts is the text of
+ * its file. */
 struct glint_option;
 bool web_has_option(const struct glint_option *row);
 
@@ -72,10 +73,6 @@ WEB_EXPORT(web_reset) void web_reset(void);
 
 /* Sets option NAME to TEXT, as on a command line. */
 WEB_EXPORT(web_set) int web_set(const char *name, const char *text);
-
-/* Leaves out a ghost, which has the number that glint explain prints.
- * web_reset() restores all ghosts. */
-WEB_EXPORT(web_mute) int web_mute(int ghost);
 
 /* Opens the lens of the options and makes an engine for pictures of WIDTH x
  * HEIGHT. */

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // page.js - the page: what a person sets, and what the workers drew of it.
-import {commandLine, ENDINGS, readCommand} from "./command.js";
+import {commandLine, ENDINGS, readCommand, readGhost, writeGhost} from "./command.js";
 import {LAMP} from "./glint.js";
 import {copyMetadata} from "./jpeg.js";
-import {drawSection, makeOptions} from "./widgets.js";
+import {drawSection, makeOptions, title} from "./widgets.js";
 
 const $ = id => document.getElementById(id);
 const MAX_PIXELS = 40e6;
@@ -21,7 +21,7 @@ const FIRST_LENS = "nikon-zoom-short";
 
 let tables = null;
 let photo = null; // {id, file, width, height, searched: the search that found FOUND}
-let state = {values: {}, muted: [], lamps: null, style: ""}; // muted: numbers of ghosts; lamps null: as found
+let state = {values: {}, lamps: null, style: ""}; // lamps null: as found
 let found = [], doubtful = []; // lamps, and positions of regions that may be lamps
 let selected = -1;
 let past = [], future = [];
@@ -91,10 +91,10 @@ class Painter {
     }
 
     // LAMPS null: those that the worker finds. MOST: see worker.js.
-    send(values, muted, lamps, most, ghosts = 0) {
+    send(values, lamps, most, ghosts = 0) {
         if (lamps && most) // the strongest, and the one being changed
             lamps = [...lamps].sort((a, b) => (b === lamps[selected]) - (a === lamps[selected]) || b.power - a.power);
-        this.post({kind: "draw", values, muted, lamps: lamps && scaleLamps(lamps, this.k), most, ghosts});
+        this.post({kind: "draw", values, lamps: lamps && scaleLamps(lamps, this.k), most, ghosts});
     }
 }
 
@@ -111,7 +111,7 @@ class View extends Painter {
         if (!this.isDraft)
             reportProgress("Drawing the whole picture");
         this.mark = this.drawing = renderMark;
-        this.send(values(), state.muted, this.lamps(), this.most);
+        this.send(values(), this.lamps(), this.most);
     }
 
     lamps() {
@@ -126,12 +126,12 @@ class View extends Painter {
             this.restart();
         this.drawing = null;
         this.searching = searchKey();
-        this.post({kind: "find", values: values(), muted: state.muted});
+        this.post({kind: "find", values: values()});
     }
 
     // Returns the file of the picture with 16 bits, or of the flare ALONE; null if that was abandoned.
     save(alone) {
-        this.post({kind: "save", values: values(), muted: state.muted, lamps: this.lamps(), alone});
+        this.post({kind: "save", values: values(), lamps: this.lamps(), alone});
         return new Promise(done => this.saved = done);
     }
 
@@ -188,16 +188,15 @@ class Gallery extends Painter {
     next() {
         if (this.busy || coarse.busy || full.busy || !photo || !photo.searched || !lamps().length)
             return;
-        const all = {...values(), ghost: undefined}, key = JSON.stringify([photo.id, all, state.lamps]);
+        const {ghost, ghosts, ...all} = values(), key = JSON.stringify([photo.id, all, state.lamps]);
         this.button = null;
         if ($("ghost-box").open && this.listed !== key) {
-            delete all.ghost;
             this.listed = key;
-            return this.send(all, [], lamps(), this.most, GHOSTS);
+            return this.send(all, lamps(), this.most, GHOSTS);
         }
         this.button = [...$("lenses").children].find(one => one.dataset.seen === "true" && Number(one.dataset.thumb) !== photo.id);
         if (this.button)
-            this.send({lens: this.button.dataset.name}, [], lamps(), this.most);
+            this.send({lens: this.button.dataset.name}, lamps(), this.most);
     }
 
     take(data) {
@@ -265,7 +264,7 @@ class Live extends Painter {
         this.fresh = false;
         this.context.drawImage(this.video, 0, 0, width, height);
         const rgba = new Uint8Array(this.context.getImageData(0, 0, width, height).data.buffer);
-        this.post({kind: "frame", values: values(), muted: state.muted, lamps: state.lamps, most: this.most, width, height, rgba}, [rgba.buffer]);
+        this.post({kind: "frame", values: values(), lamps: state.lamps, most: this.most, width, height, rgba}, [rgba.buffer]);
     }
 
     take(data) {
@@ -394,7 +393,7 @@ function travel(from, to) {
     render();
 }
 
-function setOption(name, value) {
+function setOption(name, value, mark = name) {
     const next = {...state.values};
     if (value === null)
         delete next[name];
@@ -405,9 +404,9 @@ function setOption(name, value) {
     if (name === "exposure")
         delete next.strength;
     if (name === "lens") // ranges of another lens
-        for (const other of ["f-number", "zoom", "focus", "ghost"])
+        for (const other of ["f-number", "zoom", "focus", "ghost", "ghosts"])
             delete next[other];
-    change({values: next, muted: name === "lens" ? [] : state.muted}, name);
+    change({values: next}, mark);
     if (["lens", "strength", "exposure"].includes(name))
         options.forEach(option => option.show());
 }
@@ -438,7 +437,7 @@ function showState() {
     showLamps();
     showPressed();
     if (photo && !isLive())
-        $("command").value = commandLine(photo.file.name, values(), state.muted, state.lamps, $("format").value);
+        $("command").value = commandLine(photo.file.name, values(), state.lamps, $("format").value);
 }
 
 // --------------------------------------------------------------------- lamps
@@ -545,16 +544,22 @@ function showGhosts(list) {
         const row = document.createElement("div"), label = document.createElement("span");
         row.className = "bar";
         label.textContent = `${ghost.number}: ${(100 * ghost.share).toFixed(1)} %`;
-        row.append(label, ...["Solo", "Mute"].map(word => {
+        row.append(label, ...["solo", "mute"].map(word => {
             const button = document.createElement("button");
             button.type = "button";
-            button.textContent = word;
-            button.dataset.ghost = ghost.number;
-            button.setAttribute("aria-label", `${word} ghost ${ghost.number}`);
-            button.onclick = () => word === "Solo" ? setOption("ghost", isSolo(ghost.number) ? null : String(ghost.number)) :
-                change({muted: isMuted(ghost.number) ? state.muted.filter(one => one !== ghost.number) : [...state.muted, ghost.number]});
+            button.textContent = title(word);
+            Object.assign(button.dataset, {ghost: ghost.number, word});
+            button.setAttribute("aria-label", `${title(word)} ghost ${ghost.number}`);
+            button.onclick = () => setGhost(ghost.number, {solo: false, mute: false, [word]: !ghostOf(ghost.number)[word]});
             return button;
         }));
+        const tint = document.createElement("input");
+        tint.type = "color";
+        tint.title = "Tint";
+        tint.dataset.ghost = ghost.number;
+        tint.setAttribute("aria-label", `Tint ghost ${ghost.number}`);
+        tint.oninput = () => setGhost(ghost.number, {tint: tint.value === WHITE ? null : lightOf(tint.value)}, "tint" + ghost.number);
+        row.append(tint);
         const outline = () => {
             const style = $("box").style;
             for (const side of ["left", "top"])
@@ -572,12 +577,26 @@ function showGhosts(list) {
     showPressed();
 }
 
-const isSolo = number => values().ghost === String(number);
-const isMuted = number => state.muted.includes(number);
+const ghostOf = number => readGhost(values().ghosts ?? "", number);
+
+function setGhost(number, patch, mark = "") {
+    setOption("ghosts", writeGhost(values().ghosts ?? "", number, {...ghostOf(number), ...patch}) || null, mark);
+}
+
+const WHITE = "#ffffff";
+
+// Returns the light R,G,B of COLOUR, #rrggbb in sRGB.
+const lightOf = colour => [1, 3, 5].map(at => parseInt(colour.slice(at, at + 2), 16) / 255)
+    .map(v => Number((v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4).toFixed(4))).join();
+
+const colourOf = light => "#" + light.split(",").map(v => Math.min(1, v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055))
+    .map(v => Math.round(255 * v).toString(16).padStart(2, "0")).join("");
 
 function showPressed() {
     for (const button of $("ghosts").querySelectorAll("button"))
-        button.setAttribute("aria-pressed", (button.textContent === "Solo" ? isSolo : isMuted)(Number(button.dataset.ghost)));
+        button.setAttribute("aria-pressed", Boolean(ghostOf(button.dataset.ghost)[button.dataset.word]));
+    for (const tint of $("ghosts").querySelectorAll("input"))
+        tint.value = colourOf(ghostOf(tint.dataset.ghost).tint ?? "1,1,1");
 }
 
 // -------------------------------------------------------------------- opening
@@ -772,7 +791,7 @@ function makeStyles() {
         button.dataset.name = button.textContent = style.name;
         button.title = style.about;
         button.onclick = () => {
-            change({values: {...style.set}, muted: [], style: style.name});
+            change({values: {...style.set}, style: style.name});
             options.forEach(option => option.show());
             showChosen();
         };

@@ -4,12 +4,12 @@
 
 // Options shown first, and those not shown.
 const MAIN = ["strength", "f-number", "stop", "starburst", "coating", "veil", "haze", "dust", "front-dust"];
-const HIDDEN = ["lens", "memory", "half"];
+const HIDDEN = ["lens", "memory", "half", "ghosts"];
 const GROUPS = ["lamps", "lens", "brightness", "speed"];
 const COATINGS = ["mixed", "table", "none", "v-coat", "broadband-3", "broadband-4"];
 const STEPS = 1000; // of a slider
 
-const title = name => name[0].toUpperCase() + name.slice(1).replaceAll("-", " ");
+export const title = name => name[0].toUpperCase() + name.slice(1).replaceAll("-", " ");
 
 function element(name, attributes = {}, ...children) {
     const made = document.createElement(name);

@@ -5,13 +5,13 @@
 //     {kind: "module", module}                 the compiled glint.wasm
 //     {kind: "tables"}                         -> {kind: "tables", options, styles, lenses}
 //     {kind: "picture", width, height, rgba}   the picture to come
-//     {kind: "find", id, values, muted}        -> {kind: "found", id, found, doubtful}
-//     {kind: "draw", id, values, muted, lamps, most, ghosts}   -> {kind: "drawn", id, ...}
-//     {kind: "save", id, values, muted, lamps, alone}  -> {kind: "saved", id, png}, of 16 bits
+//     {kind: "find", id, values}               -> {kind: "found", id, found, doubtful}
+//     {kind: "draw", id, values, lamps, most, ghosts}  -> {kind: "drawn", id, ...}
+//     {kind: "save", id, values, lamps, alone} -> {kind: "saved", id, png}, of 16 bits
 //     {kind: "frame", ...}                     picture and draw in one, for a camera
 //
-// muted: numbers of ghosts. lamps null: as they are found. most: draws a draft of the first MOST lamps; 0: the
-// whole picture. ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
+// lamps null: as they are found. most: draws a draft of the first MOST lamps; 0: the whole picture.
+// ghosts: how many of them to list. Replies may also be {kind: "failed", id, text}.
 import {init} from "./glint.js";
 import {encodePng} from "./png.js";
 
@@ -33,9 +33,9 @@ function clippedShare(rgba) {
     return 4 * n / rgba.length;
 }
 
-function prepare(g, values, muted) {
-    g.options(values, muted);
-    const key = JSON.stringify([values, muted], (name, value) => LIGHT.includes(name) ? undefined : value);
+function prepare(g, values) {
+    g.options(values);
+    const key = JSON.stringify(values, (name, value) => LIGHT.includes(name) ? undefined : value);
     if (key === sized)
         return;
     sized = "";
@@ -44,15 +44,15 @@ function prepare(g, values, muted) {
     sized = key;
 }
 
-function find(g, {id, values, muted}) {
-    prepare(g, values, muted);
+function find(g, {id, values}) {
+    prepare(g, values);
     found ??= g.find(picture.rgba);
     postMessage({kind: "found", id, found, doubtful: g.doubtful()});
 }
 
-function draw(g, {id, values, muted, lamps, most, ghosts}) {
+function draw(g, {id, values, lamps, most, ghosts}) {
     const started = performance.now(), rgba = picture.rgba.slice();
-    prepare(g, most ? {...values, ...DRAFT} : values, muted);
+    prepare(g, most ? {...values, ...DRAFT} : values);
     if (!lamps)
         found ??= g.find(picture.rgba);
     g.draw(rgba, most ? (lamps ?? found).slice(0, most) : lamps);
@@ -62,8 +62,8 @@ function draw(g, {id, values, muted, lamps, most, ghosts}) {
 }
 
 // ALONE: see Engine.drawDeep.
-async function save(g, {id, values, muted, lamps, alone}) {
-    prepare(g, values, muted);
+async function save(g, {id, values, lamps, alone}) {
+    prepare(g, values);
     if (!lamps)
         found ??= g.find(picture.rgba);
     const png = await encodePng(g.drawDeep(picture.rgba, lamps, alone), picture.width, picture.height);
@@ -81,11 +81,11 @@ function settle(seen) {
 }
 
 function drawFrame(g, frame) {
-    const {id, values, muted, width, height, rgba, most} = frame, started = performance.now();
+    const {id, values, width, height, rgba, most} = frame, started = performance.now();
     if (!picture || picture.width !== width || picture.height !== height)
         sized = "";
     picture = frame;
-    prepare(g, {...values, ...DRAFT}, muted);
+    prepare(g, {...values, ...DRAFT});
     const lamps = frame.lamps ?? settle(g.find(rgba));
     g.draw(rgba, lamps.slice(0, most));
     postMessage({kind: "drawn", id, rgba, width, height, lamps, ms: performance.now() - started}, [rgba.buffer]);

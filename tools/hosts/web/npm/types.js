@@ -70,8 +70,8 @@ export type Pixels = Uint8Array | Uint8ClampedArray;
 /** A lens and the memory of its pictures */
 export class Engine {
     private constructor();
-    /** Sets all options: those of values, and the defaults of others. muted: numbers of ghosts to leave out */
-    options(values: Options, muted?: number[]): void;
+    /** Sets all options: those of values, and the defaults of others. ghosts: the text of the file */
+    options(values: Options): void;
     /** Sets one option; strength, exposure, gain and starburst also between size() and draw() */
     set<Name extends keyof Options>(name: Name, value: NonNullable<Options[Name]>): void;
     /** Opens the lens of the options, for pictures of this size */
