@@ -55,8 +55,10 @@ async function drop(name, data, type) {
 
 async function open(file) {
     fs.copyFileSync(root + "/" + file, work + "/photo.jpg");
+    await wait(() => document.querySelector("#sign").hidden); // Otherwise an older picture may be the first one.
     await drop("photo.jpg", base64(work + "/photo.jpg"), "image/jpeg");
     await wait(() => document.body.dataset.first);
+    await page.selectOption("#format", "png");
 }
 
 // Presses Tab until the element SELECTOR has the focus.
@@ -294,7 +296,13 @@ try {
     show("first paint", await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime.toFixed(0)) + " ms, ready after " +
         await page.evaluate(() => document.body.dataset.loaded) + " ms");
     await printTimes();
+    check("a JPEG photograph is saved as JPEG unless another format is chosen", await page.inputValue("#format") === "jpeg");
+    check("the style of the defaults is marked", await page.getAttribute('#styles button[data-name="natural"]', "aria-pressed") === "false" &&
+        await page.click("#undo").then(() => page.click("#undo")).then(() => page.getAttribute('#styles button[data-name="natural"]', "aria-pressed")) === "true");
     await open("tests/data/bridge.jpg");
+    check("a sign tells a draft", await page.isVisible("#sign"));
+    await wait(() => document.querySelector("#sign").hidden);
+    check("it ends with the whole picture", (await status()).includes("drawn in"));
     await compare("lamps as they are found");
     show("memory of the module that drew this", (await page.evaluate(() => document.body.dataset.memory) / 2 ** 20).toFixed(0) + " MiB");
 
@@ -320,6 +328,12 @@ try {
     check("the list shows the photograph with each lens", true);
     await page.click('#styles button[data-name="toy"]');
     await compare("a style");
+    await page.click("#undo");
+    check("undo shows the lens that it restores", await page.evaluate(() => {
+        const [list, lens] = ["#lenses", "#lenses [aria-checked=true]"].map(one => document.querySelector(one).getBoundingClientRect());
+        return lens.top >= list.top - 1 && lens.bottom <= list.bottom + 1;
+    }));
+    await page.click("#redo");
     await page.click("#ghost-box summary");
     await page.click('#ghosts button[aria-label^="Mute"]', {timeout: 0});
     await page.locator('#ghosts input[type="color"]').nth(1).fill("#ff8000");

@@ -21,7 +21,7 @@ const FIRST_LENS = "nikon-zoom-short";
 
 let tables = null;
 let photo = null; // {id, file, width, height, searched: the search that found FOUND}
-let state = {values: {}, lamps: null, style: ""}; // lamps null: as found
+let state = {values: {}, lamps: null}; // lamps null: as found
 let found = [], doubtful = []; // lamps, and positions of regions that may be lamps
 let selected = -1;
 let past = [], future = [];
@@ -156,6 +156,7 @@ class View extends Painter {
             data.kind === "failed" ? report(data.text, true) : data.kind === "drawn" && this.show(data);
         else if (data.kind === "drawn" && photo && data.id === photo.id && this.isDraft)
             this.show(data); // better an old coarse picture than none
+        showSign();
         if (this.waiting)
             this.draw();
         gallery.next();
@@ -366,7 +367,9 @@ function reportProgress(text) {
 
 const searchKey = () => JSON.stringify([photo.id, ...["threshold", "headroom", "max-lights"].map(name => values()[name])]);
 const lensOf = name => tables.lenses.find(lens => lens.name === name);
-const values = () => ({lens: FIRST_LENS, ...state.values});
+const withLens = values => ({lens: FIRST_LENS, ...values});
+const values = () => withLens(state.values);
+const isStyle = ({set}) => JSON.stringify(Object.entries(withLens(set)).sort()) === JSON.stringify(Object.entries(values()).sort());
 
 // Changes the state by CHANGE; a run of changes with one MARK is one step of undo.
 let lastMark = "";
@@ -389,7 +392,7 @@ function travel(from, to) {
     state = JSON.parse(from.pop());
     lastMark = "";
     selected = -1;
-    options.forEach(option => option.show());
+    showOptions();
     render();
 }
 
@@ -411,6 +414,11 @@ function setOption(name, value, mark = name) {
         options.forEach(option => option.show());
 }
 
+// Shows a sign on the picture while it is a draft.
+function showSign() {
+    $("sign").hidden = !photo || isLive() || hasError() || shown.full >= renderMark;
+}
+
 // Shows the state, and has it drawn.
 function render() {
     renderMark++;
@@ -418,6 +426,7 @@ function render() {
     if (hasError())
         report("");
     showState();
+    showSign();
     if (!photo || isLive()) // which draws the next frame in this state
         return;
     clearTimeout(fullTimer);
@@ -429,7 +438,7 @@ function showState() {
     $("undo").disabled = !past.length;
     $("redo").disabled = !future.length;
     for (const button of $("styles").children)
-        button.setAttribute("aria-pressed", button.dataset.name === state.style);
+        button.setAttribute("aria-pressed", isStyle(tables.styles.find(style => style.name === button.dataset.name)));
     for (const button of $("lenses").children) {
         button.setAttribute("aria-checked", button.dataset.name === values().lens);
         button.tabIndex = button.dataset.name === values().lens ? 0 : -1;
@@ -645,6 +654,8 @@ function show(file, bitmap, opened) {
     };
     if (isLive())
         live.off();
+    if (["png", "jpeg"].includes($("format").value))
+        $("format").value = file.type === "image/jpeg" ? "jpeg" : "png";
     begin({file, width, height, opened});
     showCamera();
     coarse.open(pixels);
@@ -653,6 +664,7 @@ function show(file, bitmap, opened) {
     full.open(pixels);
     gallery.open(pixels);
     full.search();
+    showSign();
 }
 
 // Makes NEXT the photograph, without lamps.
@@ -777,8 +789,9 @@ $("lenses").onkeydown = event => {
     event.preventDefault();
 };
 
-// Scrolls the list of lenses to the chosen one.
-function showChosen() {
+// Shows the values of options, and scrolls the list of lenses to the chosen one.
+function showOptions() {
+    options.forEach(option => option.show());
     const list = $("lenses"), button = [...list.children].find(one => one.dataset.name === values().lens);
     if (button)
         list.scrollTop = button.offsetTop - list.offsetTop;
@@ -791,9 +804,8 @@ function makeStyles() {
         button.dataset.name = button.textContent = style.name;
         button.title = style.about;
         button.onclick = () => {
-            change({values: {...style.set}, style: style.name});
-            options.forEach(option => option.show());
-            showChosen();
+            change({values: {...style.set}});
+            showOptions();
         };
         $("styles").append(button);
     }
@@ -805,7 +817,7 @@ function start(read) {
     makeLenses();
     options = makeOptions(tables.options, $("main-options"), $("more-options"), {
         value: name => values()[name], set: setOption, lens: () => lensOf(values().lens)});
-    showChosen();
+    showOptions();
     report("Ready");
     document.body.dataset.loaded = Math.round(performance.now());
     render();
@@ -859,9 +871,8 @@ $("copy").onclick = () => {
 };
 $("apply").onclick = () => {
     try {
-        change({style: "", ...readCommand($("command").value, tables)});
-        options.forEach(option => option.show());
-        showChosen();
+        change(readCommand($("command").value, tables));
+        showOptions();
     } catch (error) {
         report(error.message, true);
     }
