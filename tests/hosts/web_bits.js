@@ -21,7 +21,7 @@ const within = (low, high) => low + draw() * (high - low);
 const whole = (low, high) => Math.floor(within(low, high + 1));
 const one = list => list[whole(0, list.length - 1)];
 
-// A night picture: a sloping ground, noise, and lamps that clip, with halos.
+// A night picture: a sloping ground, noise, and lamps that clip, with halos. One of five is monochrome but for a code.
 function picture(w, h) {
     const rgba = new Uint8Array(4 * w * h).fill(255);
     const base = [within(0, 60), within(0, 60), within(0, 90)], slope = within(-40, 60), noise = within(0, 20);
@@ -37,6 +37,9 @@ function picture(w, h) {
                 }
                 rgba[4 * (y * w + x) + c] = Math.max(0, Math.min(255, Math.round(v)));
             }
+    if (draw() < 0.2)
+        for (let i = 0; i < rgba.length; i += 4)
+            rgba.fill(rgba[i + 1], i, i + 3), rgba[i + 2] ^= draw() < 0.5;
     return rgba;
 }
 
@@ -92,7 +95,7 @@ for (let k = +first; k < +first + +count; k++) {
     state = (k + 1) * 2654435761 >>> 0;
     const w = whole(33, 160), h = whole(25, 120), rgba = picture(w, h), o = options(), deep = k % 4 === 3;
     if (draw() < 0.3)
-        o.ghosts = `${whole(0, 8)} mute\n${whole(0, 8)} gain ${within(0, 3).toFixed(2)} tint 1,${within(0, 2).toFixed(2)},0.5\n${draw() < 0.3 ? "3 solo\n" : ""}`;
+        o.ghosts = `${whole(0, 8)} mute\n${whole(0, 8)} gain ${within(0, 3).toFixed(2)} tint 1,${within(0, 2).toFixed(2)},0.5\n${draw() < 0.3 ? "9 solo\n" : ""}`;
     const line = ["overlay", input, "-o", output, "-q", "--rays", "exact",
         ...Object.entries(o).flatMap(([key, value]) => value === "yes" ? ["--" + key] : ["--" + key, key === "ghosts" ? txt : value])];
     fs.writeFileSync(input, makePpm(rgba, w, h, deep));

@@ -32,7 +32,7 @@ check-web: build/glint
 	@tools/make/deps "the page's module" $(WEB_PACKAGES) nodejs node-typescript
 	@XDG_CACHE_HOME=$(CURDIR)/build/cache GLINT=build/glint tests/hosts/web --all
 .PHONY: web npm wasm wasm-plain check-web
-web_o := $(patsubst %,$(OUT)/%.o,tools/hosts/web/glint_web tools/hosts/web/tables tools/glint/desk/styles tools/glint/model/ghost_file \
+web_o := $(patsubst %,$(OUT)/%.o,tools/hosts/web/glint_web tools/hosts/web/tables tools/glint/desk/styles tools/glint/model/ghost_file tools/glint/overlay/grey \
          tools/glint/options/numbers tools/glint/options/timed_text platform/formats/tones platform/posix/error web_lens)
 $(OUT)/web_lens.c: tools/hosts/web/lens_tables $(wildcard lenses/*.lens lenses/*/*.lens)
 	@mkdir -p $(@D)

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "overlay/drawing.h"
+#include "overlay/grey.h"
 
 struct overlay_file {
     /* 8-bit picture in which lamps are detected: the file's samples, or a
@@ -122,106 +123,23 @@ static int open_picture_file(const struct tool *tool, struct overlay_file *file,
 
 /* ------------------------------------------------------------------ drawing */
 
-/* Max difference between the channels of a grey pixel, 8-bit codes: for 99 % of
- * the pixels, and for all pixels. Not 0, because JPEG compression and colour
- * profiles add such differences. */
-enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
-
-static int compute_max_channel_difference(const uint8_t px[3])
-{
-    const int low = px[0] < px[1] ? px[0] : px[1];
-    const int high = px[0] < px[1] ? px[1] : px[0];
-
-    return (px[2] > high ? px[2] : high) - (px[2] < low ? px[2] : low);
-}
-
-/* Returns whether IMAGE is a monochrome photograph. All pixels are grey within
- * AT_MOST_GREY and 99 % within NEARLY_GREY. At least a tenth of all pixels are
- * neither nearly black nor nearly white; otherwise IMAGE is a drawing, whose
- * flare has colours. */
-static bool is_image_monochrome(const struct glint_image *image)
-{
-    const int64_t all = (int64_t)image->width * image->height;
-    int64_t n = 0, n_tinged = 0;
-
-    for (int y = 0; y < image->height; y++) {
-        const uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
-
-        for (int x = 0; x < image->width; x++, px += 3) {
-            const int codes = compute_max_channel_difference(px);
-
-            if (codes > AT_MOST_GREY)
-                return false;
-            n_tinged += codes > NEARLY_GREY;
-            n += px[1] >= 8 && px[1] < 248;
-        }
-    }
-    return 10 * n >= all && 100 * n_tinged <= all;
-}
-
-static void copy_green_channel(const struct glint_image *grey,
-                               const struct glint_image *from)
-{
-    for (int y = 0; y < from->height; y++) {
-        uint8_t *to = grey->plane[0] + y * grey->stride_bytes[0];
-        const uint8_t *px = from->plane[0] + y * from->stride_bytes[0];
-
-        for (int x = 0; x < from->width; x++, px += 3)
-            to[x] = px[1];
-    }
-}
-
-/* Adds to all channels of IMAGE the amount by which GREY exceeds the green
- * channel. */
-static void add_grey_difference(const struct glint_image *image,
-                                const struct glint_image *grey)
-{
-    for (int y = 0; y < image->height; y++) {
-        uint8_t *px = image->plane[0] + y * image->stride_bytes[0];
-        const uint8_t *from = grey->plane[0] + y * grey->stride_bytes[0];
-
-        for (int x = 0; x < image->width; x++, px += 3) {
-            const int more = from[x] - px[1];
-
-            for (int c = 0; c < 3; c++) {
-                const int sum = px[c] + more;
-
-                px[c] = (uint8_t)(sum < 0 ? 0 : sum > 255 ? 255 : sum);
-            }
-        }
-    }
-}
-
 /* Draws scene and flare in grey on a monochrome picture. */
 static enum glint_status draw_on_grey_image(struct overlay_file *f,
                                             struct drawing *drawing,
                                             int32_t elapsed_us)
 {
-    struct glint_image grey = {.format = GLINT_GREY,
-                               .transfer = f->image.transfer,
-                               .width = f->image.width,
-                               .height = f->image.height};
+    struct glint_image grey;
     uint8_t *const mem =
         malloc(glint_image_bytes(GLINT_GREY, f->image.width, f->image.height));
     enum glint_status status;
 
     if (!mem)
         return GLINT_E_MEMORY;
-    glint_image_place(&grey, mem);
-    grey.range = GLINT_RANGE_FULL;
-    copy_green_channel(&grey, &f->image);
+    grey = grey_copy_green(&f->image, mem);
     status = drawing_draw_flare(drawing, &grey, elapsed_us);
-    add_grey_difference(&f->image, &grey);
+    grey_add_difference(&f->image, &grey);
     free(mem);
     return status;
-}
-
-/* Replaces each of N pixels RGB, linear light, by its luminance. */
-static void convert_to_grey(float *rgb, size_t n)
-{
-    for (; n > 0; n--, rgb += 3)
-        rgb[0] = rgb[1] = rgb[2] =
-            0.2126F * rgb[0] + 0.7152F * rgb[1] + 0.0722F * rgb[2];
 }
 
 static struct glint_samples *get_samples_to_draw_on(struct overlay_file *f)
@@ -306,7 +224,7 @@ static enum glint_status draw_scene_on_samples(struct overlay_file *file,
     if (status != GLINT_OK)
         return status;
     if (is_grey)
-        convert_to_grey(layer.rgb, n);
+        grey_convert_light(layer.rgb, n);
     for (size_t i = 0; i < n; i++) {
         const float *const from = layer.rgb + 3 * i;
         const double rgb[3] = {file->white * (double)from[0],
@@ -360,7 +278,7 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
     if (status != GLINT_OK)
         return status;
     if (is_grey)
-        convert_to_grey(file->layer, n);
+        grey_convert_light(file->layer, n);
     if (is_composite && is_lit)
         glint_samples_add_light(get_samples_to_draw_on(file), file->layer);
     return is_composite && drawing_has_marks(&drawing->line)
@@ -406,7 +324,7 @@ static enum glint_status draw_flare_on_file(void *ctx, struct drawing *drawing,
         drawing->line.settings.options.layer == GLINT_LAYER_COMPOSITE &&
         !(drawing->files.scene.is_open &&
           get_samples_to_draw_on(file)->n_colours == 3) &&
-        is_image_monochrome(image);
+        grey_is_monochrome(image);
 
     drawing->run.is_measured = file->kept.is_float;
     drawing->run.white = file->white;

@@ -14,6 +14,7 @@
 #include "glint/options.h"
 #include "glint/quality.h"
 #include "model/ghost_file.h"
+#include "overlay/grey.h"
 
 /* default roundness of the aperture blades, as in glint overlay; --stop may set
  * another one */
@@ -320,15 +321,29 @@ static struct glint_engine_lamp read_lamp_row(const double row[WEB_COLUMNS],
     return known;
 }
 
+/* Returns the picture PIXELS, or a grey copy of a monochrome photograph, as
+ * glint overlay finds lamps in it and draws on it. The caller frees *COPY. */
+static struct glint_image choose_image(uint8_t *pixels, uint8_t **copy)
+{
+    const struct glint_image image = wrap_pixels_as_image(pixels);
+
+    *copy = grey_is_monochrome(&image)
+                ? malloc((size_t)web.width * (size_t)web.height)
+                : NULL;
+    return *copy ? grey_copy_green(&image, *copy) : image;
+}
+
 int web_find(uint8_t *pixels)
 {
     struct glint_image image;
+    uint8_t *copy;
 
     if (!web.engine)
         return 0;
-    image = wrap_pixels_as_image(pixels);
+    image = choose_image(pixels, &copy);
     web.n_found = glint_engine_find(web.engine, &image, 0, web.found,
                                     GLINT_ENGINE_MAX_LAMPS);
+    free(copy);
     for (int i = 0; i < web.n_found; i++)
         write_lamp_row(web.row[i], &web.found[i]);
     return web.n_found;
@@ -389,13 +404,19 @@ int web_draw(uint8_t *pixels, int n)
 {
     const int n_lamps = prepare_lamps(n);
     struct glint_engine_report report;
+    const struct glint_image whole = wrap_pixels_as_image(pixels);
+    enum glint_status status;
     struct glint_image image;
+    uint8_t *copy;
 
     if (n_lamps < 0)
         return 0;
-    image = wrap_pixels_as_image(pixels);
-    return record_status(
-        glint_engine_draw(web.engine, web.lamp, n_lamps, &image, &report));
+    image = choose_image(pixels, &copy);
+    status = glint_engine_draw(web.engine, web.lamp, n_lamps, &image, &report);
+    if (copy)
+        grey_add_difference(&whole, &image);
+    free(copy);
+    return record_status(status);
 }
 
 /* ------------------------------------------------------------------ 16 bits */
@@ -467,7 +488,9 @@ static uint8_t *write_with_alpha(uint8_t *to, const float *rgb,
 int web_draw_deep(uint8_t *pixels, int n, int alone, uint8_t *samples)
 {
     const size_t count = (size_t)web.width * (size_t)web.height;
-    const int n_lamps = prepare_lamps(n);
+    const struct glint_image image = wrap_pixels_as_image(pixels);
+    const bool is_grey = !alone && grey_is_monochrome(&image);
+    int n_lamps = prepare_lamps(n);
     enum glint_status status;
     struct tones tones;
     float *rgb;
@@ -477,10 +500,15 @@ int web_draw_deep(uint8_t *pixels, int n, int alone, uint8_t *samples)
     rgb = malloc(3 * count * sizeof *rgb);
     if (!rgb)
         return record_error("no memory");
+    if (n == WEB_FOUND) /* in colour, as glint overlay finds them at 16 bits */
+        n_lamps = glint_engine_find(web.engine, &image, 0, web.lamp,
+                                    GLINT_ENGINE_MAX_LAMPS);
     glint_tone_curve_set(&tones.srgb, GLINT_TONE_IS_SRGB, 0);
     for (int i = 0; i < 256; i++)
         tones.light[i] = (float)glint_tone_curve_decode(&tones.srgb, i / 255.0);
     status = draw_flare_alone(pixels, n_lamps, rgb);
+    if (is_grey)
+        grey_convert_light(rgb, count);
     for (size_t i = 0; i < count && status == GLINT_OK; i++)
         samples = alone
                       ? write_with_alpha(samples, rgb + 3 * i, &tones)

@@ -93,10 +93,10 @@ WEB_EXPORT(web_doubtful) int web_doubtful(int i, double xy[2]);
  * call. */
 WEB_EXPORT(web_draw) int web_draw(uint8_t *pixels, int n);
 
-/* Draws as web_draw() does, with 16 bits: sets SAMPLES to the picture with the
- * flare, R G B, or, if ALONE is not 0, to the flare as glint overlay --layer
- * flare-alpha writes it, R G B A. Samples have the high byte first. PIXELS does
- * not change. */
+/* Draws as web_draw() does, with 16 bits, or finds lamps if N = WEB_FOUND: sets
+ * SAMPLES to the picture with the flare, R G B, or, if ALONE is not 0, to the
+ * flare as glint overlay --layer flare-alpha writes it, R G B A. Samples have
+ * the high byte first. PIXELS does not change. */
 WEB_EXPORT(web_draw_deep)
 int web_draw_deep(uint8_t *pixels, int n, int alone, uint8_t *samples);
 
