@@ -117,6 +117,8 @@ TEST(a4_points_inside_a_triangle_are_hit)
 
         for (int i = 0; i < 9; i++)
             s->scene.triangle[0].place[i / 3][i % 3] *= size;
+        reference_close(&s->twin);
+        assert_ok(reference_open(&s->twin, &s->scene));
         for (int i = 0; i < 20000; i++) {
             const double u = rng_unit(&seed) * 2 - .5;
             const double w = rng_unit(&seed) * 2 - .5;
@@ -496,4 +498,69 @@ TEST(shadow_catcher_removes_occluded_light)
     assert_true(fabs((double)trace_ray_in_text(text, 1, 1, 0, -1, -1, 0).cover -
                      .6) < 1e-6);
     assert_true(trace_ray_in_text(text, 3, 1, 0, 0, -1, 0).cover == 0);
+}
+
+/* Returns whether RAY hits triangle T nearer than *T_MAX, which it sets: by the
+ * plane of T and the sides of its edges. */
+static bool hits_triangle_by_sides(const struct glint_described_triangle *tri,
+                                   const struct twin_ray *ray, double *t_max)
+{
+    double a[3], b[3], n[3], at[3], side[3], t;
+
+    vec_add_scaled(tri->place[1], -1, tri->place[0], a);
+    vec_add_scaled(tri->place[2], -1, tri->place[0], b);
+    vec_cross(a, b, n);
+    vec_add_scaled(tri->place[0], -1, ray->from, at);
+    t = vec_dot(at, n) / vec_dot(ray->toward, n);
+    if (!(t > 0 && t < *t_max))
+        return false;
+    vec_add_scaled(ray->from, t, ray->toward, at);
+    for (int k = 0; k < 3; k++) {
+        vec_add_scaled(tri->place[(k + 1) % 3], -1, tri->place[k], a);
+        vec_add_scaled(at, -1, tri->place[k], b);
+        vec_cross(a, b, side);
+        if (vec_dot(side, n) < 0)
+            return false;
+    }
+    *t_max = t;
+    return true;
+}
+
+/* Checks that bounding spheres hide no triangle: rays of a mesh whose first
+ * triangle is not the first of a sphere, from outside and from inside, hit what
+ * they hit if all triangles are tested. */
+TEST(bounding_spheres_hide_no_triangle)
+{
+    char text[16000] = "hand left\nmaterial m phong 1 0 0\n";
+    struct stage *s;
+    uint32_t seed = 7;
+    int met = 0;
+
+    for (int i = 0; i < 100; i++) {
+        const double x = 2 * rng_signed(&seed), y = 2 * rng_signed(&seed);
+
+        snprintf(
+            text + strlen(text), sizeof text - strlen(text),
+            "triangle t%d %.3f %.3f %.3f %.3f %.3f 5 %.3f %.3f 5 material m\n",
+            i, x, y, 4 + rng_signed(&seed), x + 1, y, x, y + rng_signed(&seed));
+    }
+    s = open_reference_for_text(text);
+    s->scene.object[5].kind = GLINT_DESCRIBED_MESH; /* of triangles 5 to 94 */
+    s->scene.object[5].n_triangles = 90;
+    for (int i = 0; i < 4000; i++) {
+        const struct twin_ray ray =
+            make_ray(0, 0, i % 2 ? 4.5 : 0, .5 * rng_signed(&seed),
+                     .5 * rng_signed(&seed), i % 2 ? rng_signed(&seed) : 1);
+        double nearest = 1e9;
+        bool is = false;
+
+        for (int k = 5; k < 95; k++)
+            is |= hits_triangle_by_sides(&s->scene.triangle[k], &ray, &nearest);
+        assert_int_equal(
+            reference_intersect_object(&s->twin, 5, &ray, 1e9, &hit), is);
+        assert_true(!is || fabs(hit.t - nearest) < 1e-9);
+        met += is;
+    }
+    assert_in_range(met, 1000, 3000);
+    close_reference(s);
 }

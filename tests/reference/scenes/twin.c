@@ -47,6 +47,8 @@ enum glint_status reference_open(struct twin *twin,
         status =
             decode_picture_texels(&twin->texels[i], &scene->texture[i].image);
     if (status == GLINT_OK)
+        status = reference_bound_triangles(twin);
+    if (status == GLINT_OK)
         status = reference_allocate_media_maps(twin);
     if (status != GLINT_OK)
         reference_close(twin);
@@ -58,6 +60,7 @@ void reference_close(struct twin *twin)
     for (int i = 0; i < GLINT_DESCRIPTION_MAX_TEXTURES; i++)
         free(twin->texels[i].rgb);
     reference_free_media_maps(twin);
+    free(twin->bound);
     *twin = (struct twin){.scene = NULL};
 }
 

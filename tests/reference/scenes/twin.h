@@ -16,9 +16,10 @@
  * lights that are not occluded. It starts one mirrored ray, and one transmitted
  * ray, which passes through at most eight surfaces. Hits of these rays get the
  * same light, but start no mirrored rays. twin_around.c adds environment light.
- * Rays are intersected with all triangles by [Moller97], with spheres and
- * planes by their equations. A ray skips the object that it starts from, or
- * only the triangle if the object is a mesh.
+ * Rays are intersected with triangles by [Moller97], with spheres and planes by
+ * their equations; a bounding sphere of each 16 triangles saves tests. A ray
+ * skips the object that it starts from, or only the triangle if the object is a
+ * mesh.
  */
 #ifndef GLINT_TOOLS_SCENES_TWIN_H
 #define GLINT_TOOLS_SCENES_TWIN_H
@@ -36,8 +37,14 @@ struct twin_texels {
     float *rgb; /* [height][width][3], linear */
 };
 
+/* A bounding sphere, in the coordinates of the triangles. */
+struct twin_bound {
+    double centre[3], radius;
+};
+
 struct twin {
     const struct glint_description *scene;
+    struct twin_bound *bound; /* of each 16 consecutive triangles */
     /* shadow rays per light: 1, 4 or 16; reference_open() sets 1 */
     int shadow_points;
     /* Number of samples of a Ward lobe; reference_open() sets 8. 1 to 32: the
@@ -149,6 +156,10 @@ struct twin_pixel reference_trace_ray(const struct twin *twin,
 /* Sets the pixel size of TWIN from VIEW; reference_render_image() does this
  * itself. */
 void reference_set_pixel_size(struct twin *twin, const struct twin_view *view);
+
+/* Allocates and computes the bounding spheres of the triangles; called by
+ * reference_open(). */
+enum glint_status reference_bound_triangles(struct twin *twin);
 
 /* Draws PIXELS[height][width]. */
 void reference_render_image(const struct twin *twin,

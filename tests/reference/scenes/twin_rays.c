@@ -4,6 +4,8 @@
  */
 #include "reference/scenes/twin.h"
 
+#include <stdlib.h>
+
 #include "glint/view.h"
 #include "reference/scenes/vec.h"
 
@@ -11,6 +13,10 @@
  * distance between its start and the mesh's origin, so that it does not hit a
  * neighbouring triangle at a shared corner. */
 #define ACNE 1e-9
+
+/* number of consecutive triangles of the description with a common bounding
+ * sphere */
+enum { RUN = 16 };
 
 /* ------------------------------------------------------ spheres and planes */
 
@@ -159,11 +165,55 @@ static bool intersect_triangle(const struct twin *twin, int i,
     return true;
 }
 
+enum glint_status reference_bound_triangles(struct twin *twin)
+{
+    const struct glint_description *s = twin->scene;
+    const int n_runs = (s->n_triangles + RUN - 1) / RUN;
+
+    twin->bound = calloc((size_t)n_runs + 1, sizeof *twin->bound);
+    if (!twin->bound)
+        return GLINT_E_MEMORY;
+    for (int i = 0; i < n_runs; i++) {
+        struct twin_bound *const b = &twin->bound[i];
+        const int n = s->n_triangles - RUN * i < RUN ? s->n_triangles - RUN * i
+                                                     : (int)RUN;
+        double square = 0;
+
+        for (int k = 0; k < 3 * n; k++)
+            vec_add_scaled(b->centre, 1. / (3 * n),
+                           s->triangle[RUN * i + k / 3].place[k % 3],
+                           b->centre);
+        for (int k = 0; k < 3 * n; k++) {
+            double to[3];
+
+            vec_add_scaled(s->triangle[RUN * i + k / 3].place[k % 3], -1,
+                           b->centre, to);
+            square = fmax(square, vec_dot(to, to));
+        }
+        b->radius = sqrt(square);
+    }
+    return GLINT_OK;
+}
+
+/* Returns whether RAY passes through sphere B nearer than the distance MOST. */
+static bool ray_passes_bound(const struct twin_bound *b,
+                             const struct twin_ray *ray, double most)
+{
+    double l[3], q[3], reach, s;
+
+    vec_add_scaled(b->centre, -1, ray->from, l);
+    s = vec_dot(l, ray->toward);
+    vec_add_scaled(l, -s, ray->toward, q);
+    reach = b->radius + ACNE * (b->radius + sqrt(vec_dot(l, l)));
+    return s > -reach && s - reach < most && vec_dot(q, q) <= reach * reach;
+}
+
 static bool intersect_mesh_object(const struct twin *twin, int object,
                                   const struct twin_ray *ray, double most,
                                   struct twin_hit *hit)
 {
     const struct glint_described_object *o = &twin->scene->object[object];
+    const int end = o->first_triangle + o->n_triangles;
     struct twin_ray local = *ray;
     double away[3];
     bool found = false;
@@ -179,10 +229,14 @@ static bool intersect_mesh_object(const struct twin *twin, int object,
         local.skip_triangle = -1;
     }
     hit->t = most;
-    for (int i = 0; i < o->n_triangles; i++)
-        if (o->first_triangle + i != local.skip_triangle)
-            found |=
-                intersect_triangle(twin, o->first_triangle + i, &local, hit);
+    for (int i = o->first_triangle, next; i < end; i = next) {
+        next = i - i % RUN + RUN < end ? i - i % RUN + RUN : end;
+        if (!ray_passes_bound(&twin->bound[i / RUN], &local, hit->t))
+            continue;
+        for (; i < next; i++)
+            if (i != local.skip_triangle)
+                found |= intersect_triangle(twin, i, &local, hit);
+    }
     if (!found)
         return false;
     vec_add_scaled(ray->from, hit->t, ray->toward, hit->place);
