@@ -233,19 +233,13 @@ int glint_choice_read(struct glint_text *text, const char *line,
     return -1;
 }
 
-bool glint_name_read(struct glint_text *text, const char *what, char *name,
-                     int bytes)
+bool glint_name_copy(struct glint_text *text, const struct glint_word *word,
+                     char *name, int bytes)
 {
-    const struct glint_word word = glint_text_next_word(text);
-    bool good = word.length > 0 && word.length < bytes;
+    bool good = word->length > 0 && word->length < bytes;
 
-    if (!word.length)
-        return glint_text_set_error(text, word.place,
-                                    "the name of the %s is "
-                                    "missing",
-                                    what);
-    for (int i = 0; good && i < word.length; i++) {
-        const char c = word.start[i];
+    for (int i = 0; good && i < word->length; i++) {
+        const char c = word->start[i];
         const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 
         good = letter ||
@@ -253,13 +247,26 @@ bool glint_name_read(struct glint_text *text, const char *what, char *name,
     }
     if (!good)
         return glint_text_set_error(
-            text, word.place,
+            text, word->place,
             "a name must be a letter followed by at most %d "
             "letters, digits, - and _",
             bytes - 2);
-    memcpy(name, word.start, (size_t)word.length);
-    name[word.length] = '\0';
+    memcpy(name, word->start, (size_t)word->length);
+    name[word->length] = '\0';
     return true;
+}
+
+bool glint_name_read(struct glint_text *text, const char *what, char *name,
+                     int bytes)
+{
+    const struct glint_word word = glint_text_next_word(text);
+
+    if (!word.length)
+        return glint_text_set_error(text, word.place,
+                                    "the name of the %s is "
+                                    "missing",
+                                    what);
+    return glint_name_copy(text, &word, name, bytes);
 }
 
 bool glint_line_check_end(struct glint_text *text, const char *line)

@@ -38,6 +38,10 @@ bool glint_clauses_read(struct glint_text *text, const char *line,
 bool glint_numbers_read(struct glint_text *text, const char *what, int n,
                         double min, double max, double *value);
 
+/* Copies WORD to NAME[BYTES]; rejects words that are not names. */
+bool glint_name_copy(struct glint_text *text, const struct glint_word *word,
+                     char *name, int bytes);
+
 /* Parses a name into NAME[BYTES]: a letter, then letters, digits, - and _. WHAT
  * names it in error texts. */
 bool glint_name_read(struct glint_text *text, const char *what, char *name,

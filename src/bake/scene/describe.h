@@ -32,6 +32,7 @@ struct glint_describer {
      * the name of that motion */
     struct glint_text_place rides;
     char rides_on[GLINT_DESCRIPTION_NAME_BYTES];
+    uint32_t named_lights; /* bit I: light I has a clause "name" */
 };
 
 /* describe_motion.c: parses the line "motion"; glint_describe_check_sensors()

@@ -350,15 +350,57 @@ static void check_sun_light(struct glint_describer *d,
             white, most / white);
 }
 
+/* Returns the index of the light NAME among the lights before LIGHT, or -1. */
+static int find_light_index(const struct glint_description *s,
+                            const struct glint_described_light *light,
+                            const char *name)
+{
+    for (int i = 0; s->light + i < light; i++)
+        if (strcmp(s->light[i].name, name) == 0)
+            return i;
+    return -1;
+}
+
+/* Sets the name of LIGHT: WORD, or without one its kind, plus a number from the
+ * second light of this kind on: "sun", "lamp", "lamp2". */
+static bool set_light_name(struct glint_describer *d,
+                           struct glint_described_light *light,
+                           const struct glint_word *word)
+{
+    const struct glint_description *s = d->scene;
+    const char *kind = light->kind == GLINT_DESCRIBED_SUN ? "sun" : "lamp";
+    bool is_used;
+
+    snprintf(light->name, sizeof light->name, "%s", kind);
+    if (!word->length) {
+        for (int n = 2; find_light_index(s, light, light->name) >= 0; n++)
+            snprintf(light->name, sizeof light->name, "%s%d", kind, n);
+        return true;
+    }
+    if (!glint_name_copy(&d->text, word, light->name, sizeof light->name))
+        return false;
+    is_used = strcmp(light->name, "camera") == 0 ||
+              find_light_index(s, light, light->name) >= 0;
+    for (int i = 0; i < s->n_objects; i++)
+        is_used |= strcmp(s->object[i].name, light->name) == 0;
+    d->named_lights |= 1u << (light - s->light);
+    return !is_used ||
+           glint_text_set_error(&d->text, word->place,
+                                "a light or object of this name is already "
+                                "defined");
+}
+
 static bool read_sun_light(struct glint_describer *d,
                            struct glint_described_light *light)
 {
+    struct glint_word name = {0};
     double white[3] = {0}, sine;
     struct glint_clause clause[] = {
         {"direction", 3, -REACH, REACH, .value = light->at, .required = true},
         {"colour", 3, 0, MAX_LIGHT, .value = light->colour},
         {"white", 3, 0, MAX_LIGHT, .value = white},
         {"radius", 1, 0.01, 30, .value = &light->radius_deg},
+        {"name", .name = &name},
         {0}};
 
     light->kind = GLINT_DESCRIBED_SUN;
@@ -374,9 +416,11 @@ static bool read_sun_light(struct glint_describer *d,
     for (int k = 0; clause[2].place.line && k < 3; k++)
         light->colour[k] = white[k] / (sine * sine);
     check_sun_light(d, light);
-    return glint_describe_normalise_vector(light->at) ||
-           glint_text_set_error(&d->text, clause[0].place,
-                                "the direction to the sun must not be 0 0 0");
+    if (!glint_describe_normalise_vector(light->at))
+        return glint_text_set_error(
+            &d->text, clause[0].place,
+            "the direction to the sun must not be 0 0 0");
+    return set_light_name(d, light, &name);
 }
 
 static bool attach_light_to_motion(struct glint_describer *d,
@@ -399,31 +443,20 @@ static bool attach_light_to_motion(struct glint_describer *d,
 static bool read_lamp_light(struct glint_describer *d,
                             struct glint_described_light *light)
 {
-    struct glint_word on = {0};
+    struct glint_word on = {0}, name = {0};
     struct glint_clause clause[] = {
         {"at", 3, -REACH, REACH, .value = light->at, .required = true},
         {"colour", 3, 0, MAX_LIGHT, .value = light->colour, .required = true},
         {"radius", 1, 0, REACH, .value = &light->radius},
         {"on", .name = &on},
+        {"name", .name = &name},
         {0}};
 
     light->kind = GLINT_DESCRIBED_LAMP;
     return glint_clauses_read(&d->text, "light lamp", clause) &&
+           set_light_name(d, light, &name) &&
            (!clause[3].place.line ||
             attach_light_to_motion(d, light, &on, clause[3].place));
-}
-
-/* Names LIGHT by its kind, plus a number from the second light of this kind on:
- * "sun", "lamp", "lamp2". */
-static void set_light_name(struct glint_description *s,
-                           struct glint_described_light *light,
-                           const char *kind)
-{
-    int n = 1;
-
-    for (const struct glint_described_light *l = s->light; l < light; l++)
-        n += l->kind == light->kind;
-    snprintf(light->name, sizeof light->name, n > 1 ? "%s%d" : "%s", kind, n);
 }
 
 bool glint_describe_parse_light(struct glint_describer *d)
@@ -447,8 +480,6 @@ bool glint_describe_parse_light(struct glint_describer *d)
                                           "a light must be a sun or a lamp");
     good = glint_word_equals(&word, "sun") ? read_sun_light(d, light)
                                            : read_lamp_light(d, light);
-    set_light_name(s, light,
-                   light->kind == GLINT_DESCRIBED_SUN ? "sun" : "lamp");
     s->n_lights++;
     return good;
 }

@@ -42,6 +42,12 @@ glint_describe_append_object(struct glint_describer *d,
                                  "an object of this name is already defined");
             return NULL;
         }
+    for (int i = 0; i < s->n_lights; i++)
+        if (d->named_lights >> i & 1 && strcmp(s->light[i].name, name) == 0) {
+            glint_text_set_error(&d->text, place,
+                                 "a light of this name is already defined");
+            return NULL;
+        }
     *o = (struct glint_described_object){.kind = kind,
                                          .turn = {1, 0, 0, 0},
                                          .material = -1,

@@ -240,8 +240,18 @@ static const struct mistake {
     {4, "light bulb at 0 0 0",
      "4:7: a light must be a sun or a lamp, not 'bulb'"},
     {5, "light lamp at 0 3 -2 color 8 7 6",
-     "5:22: light lamp accepts at, colour, radius and on, not 'color'; did you "
-     "mean 'colour'?"},
+     "5:22: light lamp accepts at, colour, radius, on and name, not 'color'; "
+     "did you mean 'colour'?"},
+    {5, "light lamp at 0 3 -2 colour 1 1 1 name 1",
+     "5:40: a name must be a letter followed by at most 30"},
+    {5, "light lamp at 0 3 -2 colour 1 1 1 name camera",
+     "5:40: a light or object of this name is already defined"},
+    {5, "light lamp at 0 3 -2 colour 1 1 1 name sun",
+     "5:40: a light or object of this name is already defined"},
+    {5, "light lamp at 0 3 -2 colour 1 1 1 name ball",
+     "10:8: a light of this name is already defined"},
+    {11, "light lamp at 0 3 -2 colour 1 1 1 name ball",
+     "11:40: a light or object of this name is already defined"},
     {5, "light lamp at 0 3 -2 at 8 7 6", "5:22: a second 'at'"},
     {5, "light lamp at 0 3 2e6 colour 8 7 6",
      "5:19: at must be -1000000 .. 1000000, not 2e+06"},
@@ -432,6 +442,23 @@ TEST(white_of_a_sun_does_not_depend_on_its_radius)
             assert_true(fabs(scene.light[0].colour[c] * sine * sine -
                              1. / (1 << c)) < 1e-12);
     }
+}
+
+/* Checks names of lights: those of `name`, and otherwise the first free one of
+ * the kind. */
+TEST(lights_have_distinct_names)
+{
+    static const char *const name[] = {"sun", "lamp2", "lamp", "lamp3",
+                                       "key-light"};
+
+    assert_ok(parse_text_with_line(
+        5, "light lamp at 0 3 -2 colour 8 7 6 name lamp2\n"
+           "light lamp at 0 3 -2 colour 8 7 6\n"
+           "light lamp at 0 3 -2 colour 8 7 6\n"
+           "light sun direction 0 1 0 white 1 1 1 name key-light"));
+    assert_int_equal(scene.n_lights, 5);
+    for (int i = 0; i < 5; i++)
+        assert_string_equal(scene.light[i].name, name[i]);
 }
 
 /* Checks that the parser warns of a sun too faint for any code or far above
