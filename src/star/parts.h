@@ -14,11 +14,13 @@ enum {
      * it ends at four times the distance of the previous zone's end. */
     GLINT_STAR_ZONES = 8,
     /* Number of rows of a band. Bands begin at multiples of it. */
-    GLINT_STAR_BAND = 8,
-    GLINT_STAR_NODES = GLINT_STAR_BAND + 1,
+    GLINT_STAR_BAND = GLINT_HALO_SIDE,
     /* Number of steps of the table of 1 / x for x = 1 .. 2. */
     GLINT_STAR_INVERSES = 128
 };
+
+STATIC_ASSERT((int)GLINT_HALO_CHANNEL == GLINT_CODES_WIDTH &&
+              (int)GLINT_HALO_LINES >= GLINT_MAX_BLADES);
 
 /* A lamp whose starburst is drawn: its position, its power in units of the
  * tables, and the distances up to which the starburst is visible. */
@@ -70,24 +72,15 @@ struct glint_star_stretch {
     int64_t (*light_q20)[GLINT_CODES_WIDTH];
 };
 
-/* A point at which a halo is evaluated. side: the line nearest to it and the
- * side of that line, as 2 index + (v < 0); v: distance from that line. */
-struct glint_star_node {
-    int side;
-    int64_t v_q8;
-    int64_t light_q20[3];
-};
-
 /* The rows of a tile that are drawn together: rows y .. y + GLINT_STAR_BAND -
  * 1, but only up to y1 - 1, and pixels x0 .. x1 - 1. */
 struct glint_star_band {
     int y, y1, x0, x1;
     int lo, hi; /* range of columns lo .. hi - 1 that may have light; all other
                    columns are 0 */
+    struct glint_halo halo; /* scratch memory */
     /* light per row, channel and column, 1 = display white */
     int64_t (*light_q20)[3][GLINT_CODES_WIDTH];
-    /* scratch memory: [GLINT_STAR_NODES][GLINT_STAR_NODES] */
-    struct glint_star_node (*node)[GLINT_STAR_NODES];
 };
 
 /* State of a worker that draws a row of tiles. */
@@ -107,8 +100,9 @@ struct glint_star {
     struct glint_star_config cfg;
     const struct glint_star_tables *tables;
     int n_lamps, is_linear;
-    int64_t faintest_q20; /* light of a lamp that is not visible, 1 = display
-                             white */
+    int32_t faintest_log2_q16; /* log2 of light that is not visible, 1 = 1/16 of
+                                  display white */
+    glint_halo_fn *add_halo;
     struct glint_star_lamp *lamp;  /* [max_lights] */
     struct glint_star_row *worker; /* [n_workers] */
     struct glint_blend_rows *rows; /* [n_workers] */

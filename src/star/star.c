@@ -34,14 +34,12 @@ static struct glint_star *allocate_star(struct glint_arena *a,
         uint16_t *const near = glint_arena_allocate(a, 2 * n, sizeof *near);
         int64_t(*const light_q20)[3][GLINT_CODES_WIDTH] =
             glint_arena_allocate(a, GLINT_STAR_BAND, sizeof *light_q20);
-        struct glint_star_node(*const node)[GLINT_STAR_NODES] =
-            glint_arena_allocate(a, GLINT_STAR_NODES, sizeof *node);
 
         if (placed)
-            s->worker[i] = (struct glint_star_row){
-                .near = near,
-                .here = near + n,
-                .band = {.light_q20 = light_q20, .node = node}};
+            s->worker[i] =
+                (struct glint_star_row){.near = near,
+                                        .here = near + n,
+                                        .band = {.light_q20 = light_q20}};
     }
     return placed;
 }
@@ -79,6 +77,7 @@ enum glint_status glint_star_init(struct glint_star **star,
     s->cfg = *cfg;
     s->tables = NULL;
     s->n_lamps = s->is_linear = 0;
+    s->add_halo = glint_choose_halo_kernel(cfg->sets);
     for (uint32_t i = 0; i < GLINT_STAR_INVERSES + 2; i++)
         s->inverse_q31[i] =
             (GLINT_STAR_INVERSES << 16) / (GLINT_STAR_INVERSES + i);
@@ -350,11 +349,8 @@ void glint_star_set_lights(struct glint_star *star,
 {
     star->tables = tables;
     star->n_lamps = 0;
-    star->faintest_q20 =
-        q_exp2_q16(
-            q_clamp_sat((int64_t)compute_real_log2_q16(faintest) + 20 * 65536,
-                        -65536, 20 * 65536)) >>
-        16;
+    star->faintest_log2_q16 =
+        q_larger(compute_real_log2_q16(faintest), -21 * 65536) + 4 * 65536;
     for (int i = 0; i < n && star->n_lamps < star->cfg.max_lights; i++)
         star->n_lamps += set_star_lamp(&star->lamp[star->n_lamps], tables,
                                        &lights[i], faintest);

@@ -34,6 +34,7 @@
 #include "glint/light.h"
 #include "glint/status.h"
 #include "glint/workers.h"
+#include "kernels/halo.h"
 #include "star/smeared.h"
 #include "tile/pass.h"
 
@@ -41,12 +42,6 @@ enum {
     GLINT_STAR_PROFILE = 128, /* number of steps of a line profile */
     GLINT_STAR_CORE = 48, /* number of lattice steps from the centre of the core
                              table to its rim */
-    /* Number of rows of a halo table: two per octave of r^2, where r is the
-     * distance from the lamp. The first row is for r^2 = 2^4 pixels^2. */
-    GLINT_STAR_HALO_ROWS = 45,
-    /* Number of columns of a halo table: four per octave of 1 + 4 v / reach,
-     * where v is the distance from the nearest line. */
-    GLINT_STAR_HALO_COLUMNS = 49,
     /* number of halo tables for extended lamps; table i is for a radius of 2^(i
      * - 1) pixels */
     GLINT_STAR_WIDE = 9,
@@ -61,17 +56,11 @@ struct glint_star_line {
     int32_t cos_q30, sin_q30;
     int32_t cot_q16;    /* cos / sin of the angle, clamped to +-2^12 */
     int32_t across_q16; /* 1 / sin of the angle, at most 2^12 */
-    /* cotangent of the angle midway between this line and the next */
-    int32_t border_q16;
     /* Profile across the line. Entry i is the light at v = i reach / 128, times
      * r^2 / (1 - (v / r)^2), where r is the distance from the lamp, in units of
      * member step of the tables. Entries from 128 on are 0. */
     uint16_t profile[GLINT_STAR_PROFILE + 2][3];
 };
-
-/* One row of a halo table, [column][channel]: log2 (_q11) of light times r^2.
- */
-typedef uint16_t glint_star_halo_row[GLINT_STAR_HALO_COLUMNS][3];
 
 /* Tables of the starburst of a light of power 1, for one stop, f-number and
  * pixel size. */
@@ -79,7 +68,6 @@ struct glint_star_tables {
     int n_lines; /* number of lines, 1 .. GLINT_MAX_BLADES; LINE is sorted by
                     angle */
     const struct glint_star_line *line;
-    int first; /* index of the line nearest to angle 0: 0 or n_lines - 1 */
     /* unit of the line profiles: light where a profile is 1 */
     struct glint_real step;
     /* For each step of the profiles, the max value over all lines and
@@ -133,6 +121,7 @@ struct glint_star_config {
                           starburst is drawn, 1 .. 64 */
     int width, height; /* size of the pictures, 1 .. GLINT_MAX_SIDE */
     int max_lights;    /* max number of lights, 1 .. GLINT_STAR_MAX_LIGHTS */
+    unsigned sets;     /* GLINT_SET_ bits of the kernels to use */
 };
 
 /* struct glint_star is opaque, in the caller's memory. */

@@ -71,7 +71,7 @@ $(call of,src/kernels/%,-O3)
 $(call of,src/kernels/ward/sum_avx2,-Wframe-larger-than=2048)# 16 vectors of texels
 $(call of,$(addprefix src/lamps/,bright_scan row_light),-O3)
 $(call of,$(addprefix src/flare/edges/,ghost_edges ghost_rows),-O3)
-$(call of,$(addprefix src/flare/edges/,edge edge_add) src/star/star_halo,-O3 -fno-tree-vectorize)# their loops are short
+$(call of,$(addprefix src/flare/edges/,edge edge_add),-O3 -fno-tree-vectorize)# their loops are short
 # Unrolling these buys nothing but bytes.
 $(call of,$(addprefix src/image/,codes quads) src/veil/veil_pass src/veil/veil_front src/tile/blend $(addprefix src/flare/,edges/sums edges_pass) \
 	$(addprefix src/lens/,transfer transfer_rays transfer_grid),-ftree-vectorize)

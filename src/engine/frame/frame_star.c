@@ -113,7 +113,8 @@ static enum glint_status allocate_star_lights(struct glint_frame *f, int n)
         .n_workers = glint_workers_count(f->cfg.workers),
         .width = f->view.width,
         .height = f->view.height,
-        .max_lights = n < GLINT_STAR_MAX_LIGHTS ? n : GLINT_STAR_MAX_LIGHTS};
+        .max_lights = n < GLINT_STAR_MAX_LIGHTS ? n : GLINT_STAR_MAX_LIGHTS,
+        .sets = f->cfg.sets};
     struct glint_star_light *light;
     size_t bytes;
     void *block;

@@ -45,8 +45,7 @@ static int32_t round_and_clamp(double x, double most)
 
 /* ------------------------------------------------------------------- lines */
 
-static void set_line_direction(struct glint_star_line *line, double angle,
-                               double border)
+static void set_line_direction(struct glint_star_line *line, double angle)
 {
     const double c = cos(angle), s = sin(angle);
     const double held_s = fmax(fabs(s), 1.0 / 4096);
@@ -55,8 +54,6 @@ static void set_line_direction(struct glint_star_line *line, double angle,
     line->sin_q30 = (int32_t)lrint(s * 0x1p30);
     line->cot_q16 = round_and_clamp(fabs(s) < 1e-9 ? 0 : 65536 * c / s, 0x1p28);
     line->across_q16 = round_and_clamp(65536 / held_s, 0x1p28);
-    line->border_q16 =
-        round_and_clamp(65536 * cos(border) / fmax(sin(border), 1e-9), 0x1p28);
 }
 
 /* Sets RGB to the profile of a line at V, averaged over the area of a pixel, by
@@ -95,7 +92,6 @@ static void make_line_tables(struct glint_star_tables *t,
                              const struct window *window)
 {
     const double reach = t->reach_q8 / 256.0;
-    const double half = 0.5 * GLINT_PI / psf->n_lines;
     double peak = 0x1p-60, rgb[3];
 
     for (int i = 0; i < psf->n_lines; i++) {
@@ -107,7 +103,7 @@ static void make_line_tables(struct glint_star_tables *t,
     for (int i = 0; i < psf->n_lines; i++) {
         const double angle = glint_psf_compute_line_angle(psf, i);
 
-        set_line_direction(&line[i], angle, fmod(angle + half, GLINT_PI));
+        set_line_direction(&line[i], angle);
         for (int k = 0; k < GLINT_STAR_PROFILE; k++) {
             filter_profile_by_pixel(psf, window, angle,
                                     reach * k / GLINT_STAR_PROFILE, rgb);
@@ -119,10 +115,6 @@ static void make_line_tables(struct glint_star_tables *t,
             }
         }
     }
-    t->first =
-        glint_psf_compute_line_angle(psf, psf->n_lines - 1) + half >= GLINT_PI
-            ? psf->n_lines - 1
-            : 0;
 }
 
 /* -------------------------------------------------------------------- halo */

@@ -22,28 +22,16 @@ static int32_t clamp_line_weight_q30(int64_t x)
     return (int32_t)(x > most ? most : x < -most ? -most : x);
 }
 
-/* Sets LINE, one of N lines of a starburst, to the direction with cosine C and
- * sine S. The border to the next line is 90 / N degrees further. Returns
- * whether this border is at 180 degrees or more. */
-static int set_line_direction(struct glint_star_line *line, int32_t c_q30,
-                              int32_t s_q30, int n)
+/* Sets LINE to the direction with cosine C and sine S. */
+static void set_line_direction(struct glint_star_line *line, int32_t c_q30,
+                               int32_t s_q30)
 {
     const int64_t sine = s_q30 > 1 << 18 ? s_q30 : 1 << 18;
-    /* Lines are 180 / N degrees apart. 1 + the unit step between them, as
-     * complex numbers, points to the border at half of this angle. */
-    const int64_t hc = ((int64_t)1 << 30) + step_q30[n - 1][0];
-    const int64_t hs = step_q30[n - 1][1];
-    const int64_t c = n > 1 ? (hc * c_q30 - hs * s_q30) >> 31 : -s_q30 / 2;
-    const int64_t s = n > 1 ? (hc * s_q30 + hs * c_q30) >> 31 : c_q30 / 2;
-    const int64_t size = s < 0 ? -s : s;
 
     line->cos_q30 = c_q30;
     line->sin_q30 = s_q30;
     line->cot_q16 = clamp_line_weight_q30(c_q30 * INT64_C(65536) / sine);
     line->across_q16 = clamp_line_weight_q30((INT64_C(1) << 46) / sine);
-    line->border_q16 = clamp_line_weight_q30((s < 0 ? -c : c) * 65536 /
-                                             (size > 1 << 10 ? size : 1 << 10));
-    return s <= 0;
 }
 
 static void set_random_star_lines(struct star_any *to, uint32_t *seed)
@@ -58,8 +46,7 @@ static void set_random_star_lines(struct star_any *to, uint32_t *seed)
         struct glint_star_line *l = &to->line[k];
         const int64_t last = c;
 
-        to->tables.first =
-            set_line_direction(l, (int32_t)c, (int32_t)s, n) ? n - 1 : 0;
+        set_line_direction(l, (int32_t)c, (int32_t)s);
         for (int i = 0; i < GLINT_STAR_PROFILE; i++)
             for (int ch = 0; ch < 3; ch++) {
                 const int steps =

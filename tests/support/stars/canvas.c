@@ -2,13 +2,14 @@
 #include "support/stars/canvas.h"
 
 #include "engine/star/star_tables.h"
+#include "glint/kernels.h"
 #include "support/test.h"
 
 void star_canvas_open(struct star_canvas *c, int width, int height,
                       int tile_log2, int n_workers, uint32_t order)
 {
-    const struct glint_star_config star = {n_workers, width, height,
-                                           STAR_CANVAS_LIGHTS};
+    const struct glint_star_config star = {
+        n_workers, width, height, STAR_CANVAS_LIGHTS, glint_sets_here()};
     const size_t bytes = glint_star_count_bytes(&star);
 
     c->width = width;

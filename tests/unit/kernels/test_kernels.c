@@ -15,6 +15,8 @@
 
 #include "support/rng.h"
 #include "glint/kernels.h"
+#include "base/log2.h"
+#include "kernels/halo.h"
 #include "kernels/kernels.h"
 #include "kernels/maps/maps.h"
 #include "kernels/rays/rays.h"
@@ -494,6 +496,66 @@ static void check_convolution_kernel(glint_convolve_fn *convolve)
     }
 }
 
+/* Returns a random halo of 1 to 4 lines, at up to 2^18 pixels from a lamp. */
+static struct glint_halo make_random_halo(const glint_star_halo_row *table)
+{
+    const int32_t far = 1 << (9 + random_bits() % 18);
+    struct glint_halo h = {.dx_q8 = random_signed_below(far),
+                           .dy_q8 = random_signed_below(far),
+                           .n_lines = 1 + (int)(random_bits() % 4),
+                           .width_q8 = random_signed_below(1 << 24),
+                           .reach_q8 = 1 + abs(random_signed_below(1 << 22)),
+                           .table = table,
+                           .next = table + GLINT_STAR_HALO_ROWS};
+    const int64_t inner_q8 = 512 + abs(random_signed_below(1 << 22));
+
+    h.inner_q16 = (uint64_t)(inner_q8 * inner_q8);
+    h.reach_log2_q16 = q_log2_q16((uint64_t)h.reach_q8);
+    h.next_q15 = random_bits() % 2 ? (int32_t)(random_bits() % 32769) : 0;
+    for (int c = 0; c < 3; c++)
+        h.log2_q16[c] = random_bits() % 16
+                            ? (int32_t)(random_bits() % (70 << 16)) - (60 << 16)
+                            : INT32_MIN / 2;
+    for (int k = 0; k < h.n_lines; k++) {
+        h.cos_q30[k] = random_signed_below(1 << 30);
+        h.sin_q30[k] = abs(random_signed_below(1 << 30));
+        h.v_q38[k] =
+            h.dy_q8 * (int64_t)h.cos_q30[k] - h.dx_q8 * (int64_t)h.sin_q30[k];
+    }
+    return h;
+}
+
+static void check_halo_kernel(glint_halo_fn *add_halo)
+{
+    enum {
+        VALUES = GLINT_HALO_SIDE * GLINT_HALO_STRIDE,
+        ROWS = 2 * GLINT_STAR_HALO_ROWS
+    };
+    static glint_star_halo_row table[ROWS];
+    static int64_t want[VALUES], got[VALUES];
+    int n_lit = 0;
+
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n_y = 1 + turn % GLINT_HALO_SIDE;
+        const int x = 8 * (turn % 8);
+        struct glint_halo h;
+        int64_t first;
+
+        for (int i = 0; turn % 64 == 0 && i < ROWS; i++)
+            for (int k = 0; k < 3 * GLINT_STAR_HALO_COLUMNS; k++)
+                table[i][k / 3][k % 3] = (uint16_t)random_bits();
+        h = make_random_halo((const glint_star_halo_row *)table);
+        for (int i = 0; i < VALUES; i++)
+            want[i] = got[i] = random_signed_below(1 << 30);
+        first = want[x];
+        glint_halo_c(&h, GLINT_HALO_SIDE, n_y, want + x);
+        add_halo(&h, GLINT_HALO_SIDE, n_y, got + x);
+        EXPECT_SAME(got, want, VALUES * sizeof *got);
+        n_lit += want[x] > first;
+    }
+    EXPECT(n_lit > ROUNDS / 10);
+}
+
 static void test_kernels_are_identical(void)
 {
     static const unsigned sets[] = {GLINT_SET_SSE41, GLINT_SET_AVX2,
@@ -506,6 +568,7 @@ static void test_kernels_are_identical(void)
             continue;
         check_horner_kernel(glint_choose_horner_kernels(sets[v]));
         check_turn_kernel(glint_choose_turn_kernel(sets[v]));
+        check_halo_kernel(glint_choose_halo_kernel(sets[v]));
         check_convolution_kernel(glint_choose_convolve_kernel(sets[v]));
         check_luma_kernel(k);
         check_pixel_pair_kernel(k);

@@ -90,7 +90,7 @@ static uint64_t hash_word(uint64_t h, uint64_t x)
  * machine. */
 TEST(images_match_their_hash)
 {
-    const uint64_t want = UINT64_C(0x182d622016f28531);
+    const uint64_t want = UINT64_C(0xe3138f46f7839366);
     uint64_t h = UINT64_C(14695981039346656037);
     uint32_t seed = 2026;
     int n_lit = 0;
