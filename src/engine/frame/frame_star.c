@@ -63,13 +63,14 @@ static struct glint_star_optics make_star_optics(const struct glint_frame *f)
         .draft = glint_frame_is_draft(f)};
 }
 
-static bool are_star_optics_equal(const struct glint_star_optics *a,
-                                  const struct glint_star_optics *b)
+/* Returns whether tables made for A can be used for B. */
+static bool do_star_optics_include(const struct glint_star_optics *a,
+                                   const struct glint_star_optics *b)
 {
     return a->n_blades == b->n_blades && a->rotation_deg == b->rotation_deg &&
            a->round == b->round && a->soft == b->soft && a->smear == b->smear &&
            a->f_number == b->f_number && a->pixel_um == b->pixel_um &&
-           a->draft == b->draft;
+           a->draft == b->draft && a->has_core >= b->has_core;
 }
 
 /* Recomputes the smear, the diffraction by dirt in the stop, if the dirt has
@@ -88,7 +89,8 @@ static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
     return mark ? glint_smear_init(&s->smear, f->setup) : GLINT_OK;
 }
 
-static enum glint_status update_star_tables(struct glint_frame *f)
+static enum glint_status update_star_tables(struct glint_frame *f,
+                                            bool has_core)
 {
     struct glint_frame_star *s = &f->star;
     struct glint_star_optics optics = make_star_optics(f);
@@ -98,7 +100,8 @@ static enum glint_status update_star_tables(struct glint_frame *f)
     if (status != GLINT_OK)
         return status;
     optics.smear = s->smear.sum ? &s->smear : NULL;
-    if (s->tables && are_star_optics_equal(&s->optics, &optics) && !is_new)
+    optics.has_core = has_core;
+    if (s->tables && do_star_optics_include(&s->optics, &optics) && !is_new)
         return GLINT_OK;
     glint_star_tables_free(s->tables);
     s->tables = NULL;
@@ -140,14 +143,22 @@ static double compute_photo_airy_px(const struct glint_frame *f)
     return photo_airy * hypot(f->view.width, f->view.height);
 }
 
-enum glint_status glint_frame_star_allocate(struct glint_frame *f, int n)
+/* Allocates memory for N lamps and makes the tables; HAS_CORE: also that of the
+ * core. */
+static enum glint_status allocate_star(struct glint_frame *f, int n,
+                                       bool has_core)
 {
     enum glint_status status;
 
     if (!(f->star.share > 0) || n == 0)
         return GLINT_OK;
-    status = update_star_tables(f);
+    status = update_star_tables(f, has_core);
     return status == GLINT_OK ? allocate_star_lights(f, n) : status;
+}
+
+enum glint_status glint_frame_star_allocate(struct glint_frame *f, int n)
+{
+    return allocate_star(f, n, true);
 }
 
 size_t glint_frame_star_count_bytes(const struct glint_frame *f)
@@ -309,12 +320,15 @@ enum glint_status glint_frame_star_set_lamps(struct glint_frame *f,
 {
     struct glint_frame_star *s = &f->star;
     enum glint_status status;
+    bool has_core = false;
     int n_lights = 0;
 
     s->is_set = false;
     if (!(s->share > 0) || n == 0)
         return GLINT_OK;
-    status = glint_frame_star_allocate(f, n);
+    for (int i = 0; i < n; i++)
+        has_core = has_core || find_lamp_appearance(f, i).is_bare;
+    status = allocate_star(f, n, has_core);
     /* The sum is NULL if dirt in the stop blocks all light: no starburst. */
     if (status != GLINT_OK || (s->smear_mark && !s->smear.sum))
         return status;

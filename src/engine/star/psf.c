@@ -250,7 +250,7 @@ static void add_wave_to_near_table(struct glint_psf *p, int wave,
     }
 }
 
-static enum glint_status make_near_table(struct glint_psf *p)
+enum glint_status glint_psf_make_near_table(struct glint_psf *p)
 {
     const int n_rows = (int)(ORDERS * GLINT_PSF_STEPS / p->scale[0]) + 3;
     double *table;
@@ -302,8 +302,10 @@ static void set_fan_arcs(struct glint_psf *p, double round)
 enum glint_status glint_psf_init(struct glint_psf *psf, int n_blades,
                                  double rotation_deg, double airy_px)
 {
-    return glint_psf_init_iris(psf, n_blades, rotation_deg, airy_px, 0, 0,
-                               false);
+    const enum glint_status status =
+        glint_psf_init_iris(psf, n_blades, rotation_deg, airy_px, 0, 0, false);
+
+    return status == GLINT_OK ? glint_psf_make_near_table(psf) : status;
 }
 
 enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
@@ -342,9 +344,7 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
         move_soft_edge_to_slope_middle(psf, soft);
     if (n && !is_straight)
         set_fan_arcs(psf, round);
-    if (psf->fans && glint_fans_make_table(psf) != GLINT_OK)
-        return GLINT_E_MEMORY;
-    return make_near_table(psf);
+    return psf->fans ? glint_fans_make_table(psf) : GLINT_OK;
 }
 
 void glint_psf_finish(struct glint_psf *psf)

@@ -93,6 +93,11 @@ enum glint_status glint_psf_init_iris(struct glint_psf *psf, int n_blades,
                                       double rotation_deg, double airy_px,
                                       double round, double soft, bool draft);
 
+/* Computes the table for glint_psf_compute_light(), which glint_psf_init()
+ * makes but glint_psf_init_iris() does not. Returns GLINT_E_MEMORY on failure.
+ */
+enum glint_status glint_psf_make_near_table(struct glint_psf *psf);
+
 /* Computes the table of fans, for orders of diffraction above 12. Returns
  * GLINT_E_MEMORY on failure. */
 enum glint_status glint_fans_make_table(struct glint_psf *psf);

@@ -313,7 +313,9 @@ enum glint_status glint_star_tables_make(struct glint_star_tables **tables,
         if (o->smear)
             status = make_dirt_smear_table(t, &psf, o->smear, airy_px,
                                            (struct glint_star_smear *)(t + 1));
-        if (status == GLINT_OK)
+        if (status == GLINT_OK && o->has_core)
+            status = glint_psf_make_near_table(&psf);
+        if (status == GLINT_OK && o->has_core)
             status = glint_star_make_core_table(t, &psf, o->smear, airy_px);
     }
     glint_psf_finish(&psf);

@@ -14,6 +14,8 @@ struct glint_star_optics {
     double round, soft; /* as in struct glint_iris */
     double pixel_um;    /* side of a pixel on the sensor, um */
     bool draft;         /* true: coarser tables */
+    bool has_core;      /* false: the core table, which only lamps that the
+                           picture does not show need, is not made */
     /* diffraction by dirt in the stop, or NULL */
     const struct glint_smear *smear;
 };

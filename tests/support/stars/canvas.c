@@ -50,7 +50,8 @@ star_canvas_make_tables(int n_blades, double rotation_deg, double airy_px)
     const struct glint_star_optics o = {.n_blades = n_blades,
                                         .rotation_deg = rotation_deg,
                                         .f_number = airy_px / 0.55,
-                                        .pixel_um = 1};
+                                        .pixel_um = 1,
+                                        .has_core = true};
     struct glint_star_tables *t;
 
     assert_ok(glint_star_tables_make(&t, &o));

@@ -52,6 +52,22 @@ static double star_power_at_fade(double power, double seen_px, double level)
     return glint_real_value(frame.star.light[0].power);
 }
 
+/* Checks that the core table, which costs a third of the time for all tables of
+ * this stop, is made for the first lamp that the image does not show, and then
+ * kept. Must be the first test. */
+TEST(hidden_lamps_need_a_core_table)
+{
+    const struct glint_star_tables *tables;
+
+    star_power_at_fade(1000, 2, 1);
+    assert_true(frame.star.tables->core_per_pixel_q16 == 0);
+    star_power_at_fade(1000, -1, 1);
+    assert_true(frame.star.tables->core_per_pixel_q16 > 0);
+    tables = frame.star.tables;
+    star_power_at_fade(1000, 2, 1);
+    assert_true(frame.star.tables == tables);
+}
+
 static bool is_relatively_near(double a, double b)
 {
     return fabs(a / b - 1) < 1e-3;

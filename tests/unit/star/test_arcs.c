@@ -226,6 +226,8 @@ TEST(soft_edge_removes_distant_light)
     assert_true(glint_psf_compute_soft_edge_factor(0.1, 100) < 1e-3);
     assert_ok(glint_psf_init_iris(&hard, 8, 0, 1, 0.3, 0, false));
     assert_ok(glint_psf_init_iris(&soft, 8, 0, 1, 0.3, 0.1, false));
+    assert_ok(glint_psf_make_near_table(&hard));
+    assert_ok(glint_psf_make_near_table(&soft));
     glint_psf_compute_light(&hard, 0, 0, a);
     glint_psf_compute_light(&soft, 0, 0, b);
     assert_true(b[1] > 0.75 * a[1] && b[1] < a[1]);
@@ -242,6 +244,7 @@ static struct glint_star_tables *make_star_tables(int n_blades, double round,
     const struct glint_star_optics o = {.n_blades = n_blades,
                                         .f_number = 2 / 0.55,
                                         .pixel_um = 1,
+                                        .has_core = true,
                                         .round = round,
                                         .soft = soft};
     struct glint_star_tables *t;

@@ -31,6 +31,7 @@ static void open_stop_with_iris(struct stop *s, const struct glint_iris *iris,
                                 double airy_px)
 {
     struct glint_star_optics o = {.n_blades = 8,
+                                  .has_core = true,
                                   .rotation_deg = 10,
                                   .f_number = airy_px / 0.55,
                                   .pixel_um = 1};
