@@ -94,6 +94,34 @@ static size_t count_row_bytes(const struct still_pixels *p)
     return (size_t)p->width * (size_t)p->channels * (size_t)p->sample_bytes;
 }
 
+/* ------------------------------------------------------------------ chunks */
+
+static uint32_t read_big32(const uint8_t *at)
+{
+    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 |
+           (uint32_t)at[2] << 8 | at[3];
+}
+
+static bool next_piece(struct still_piece *piece, const uint8_t *data,
+                       size_t bytes, size_t *at)
+{
+    const size_t i = *at ? *at : SIGNATURE_BYTES;
+    size_t n;
+
+    if (i + PIECE_BYTES > bytes)
+        return false;
+    n = read_big32(data + i);
+    if (n > bytes - i - PIECE_BYTES)
+        return false;
+    *piece = (struct still_piece){.whole = data + i,
+                                  .whole_bytes = n + PIECE_BYTES,
+                                  .data = data + i + 8,
+                                  .data_bytes = n};
+    memcpy(piece->name, data + i + 4, 4);
+    *at = i + piece->whole_bytes;
+    return strcmp(piece->name, "IEND") != 0;
+}
+
 /* ----------------------------------------------------------------- reading */
 
 /* Lets libpng convert pixels to 1 to 4 channels of 8 or 16 bits. */
@@ -147,12 +175,28 @@ static void read_rows(struct call *c, struct still_file *file)
     read_icc(c, file);
 }
 
+/* Returns whether all chunks end in the file. libpng allocates and clears the
+ * memory for a chunk, up to 2 GiB, before it reads the chunk. */
+static bool has_whole_chunks(const struct still_file *file)
+{
+    struct still_piece piece = {.name = ""};
+
+    for (size_t at = 0; next_piece(&piece, file->data, file->bytes, &at);)
+        continue;
+    return strcmp(piece.name, "IEND") == 0;
+}
+
 static enum glint_status decode(struct still_file *file,
                                 struct glint_error *error)
 {
     struct call c = {
         .in = file, .path = file->path, .error = error, .is_reading = true};
 
+    if (file->bytes >= SIGNATURE_BYTES &&
+        png_sig_cmp(file->data, 0, SIGNATURE_BYTES) == 0 &&
+        !has_whole_chunks(file))
+        return glint_error_report(error, GLINT_E_FORMAT, file->path,
+                                  "is cut off");
     if (create(&c)) {
         if (setjmp(png_jmpbuf(c.png)) == 0)
             read_rows(&c, file);
@@ -214,33 +258,7 @@ static enum glint_status encode(struct still_bytes *to, const char *path,
     return c.status;
 }
 
-/* ------------------------------------------------------------------ chunks */
-
-static uint32_t read_big32(const uint8_t *at)
-{
-    return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 |
-           (uint32_t)at[2] << 8 | at[3];
-}
-
-static bool next_piece(struct still_piece *piece, const uint8_t *data,
-                       size_t bytes, size_t *at)
-{
-    const size_t i = *at ? *at : SIGNATURE_BYTES;
-    size_t n;
-
-    if (i + PIECE_BYTES > bytes)
-        return false;
-    n = read_big32(data + i);
-    if (n > bytes - i - PIECE_BYTES)
-        return false;
-    *piece = (struct still_piece){.whole = data + i,
-                                  .whole_bytes = n + PIECE_BYTES,
-                                  .data = data + i + 8,
-                                  .data_bytes = n};
-    memcpy(piece->name, data + i + 4, 4);
-    *at = i + piece->whole_bytes;
-    return strcmp(piece->name, "IEND") != 0;
-}
+/* ---------------------------------------------------------------- metadata */
 
 static enum still_content classify(const struct still_piece *piece)
 {

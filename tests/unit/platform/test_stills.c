@@ -5,6 +5,7 @@
  * pixels with it.
  */
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "formats/picture.h"
@@ -674,6 +675,20 @@ TEST(damaged_files_are_rejected)
     expect_rejected(GLINT_E_UNSUPPORTED, "a.jpg", "CMYK needs glint's image");
     write_scans(0x11, 0, 510);
     expect_rejected(GLINT_E_UNSUPPORTED, "a.jpg", "more than 500 scans");
+}
+
+TEST(a_chunk_that_states_1_gib_allocates_no_memory)
+{
+    const char chunk[] = "\x40\0\0\0tEXt";
+    struct rusage usage;
+    long before_kb;
+
+    write_picture("a.png", 33, BYTES(chunk));
+    getrusage(RUSAGE_SELF, &usage);
+    before_kb = usage.ru_maxrss;
+    expect_rejected(GLINT_E_FORMAT, "a.png", "is cut off");
+    getrusage(RUSAGE_SELF, &usage);
+    assert_in_range(usage.ru_maxrss - before_kb, 0, 65536);
 }
 
 TEST(a_cut_jpeg_is_rejected_after_a_warning)
