@@ -241,7 +241,7 @@ static enum glint_status find_display(struct glint_kms *kms,
 static void free_buffer(struct glint_kms *kms, struct glint_kms_buffer *b)
 {
     if (b->map)
-        munmap(b->map, b->dumb.bytes);
+        munmap(b->map, (size_t)b->dumb.bytes);
     if (b->fb)
         glint_ioctl(kms->fd, KMS_REMOVE_FB, &b->fb);
     if (b->dumb.handle)
@@ -273,8 +273,8 @@ static enum glint_status allocate_buffer(struct glint_kms *kms,
     b->fb = fb.fb;
     if (glint_ioctl(kms->fd, KMS_MAP_DUMB, &at) < 0)
         return report_failure(kms, "MAP_DUMB", error);
-    map = mmap(NULL, b->dumb.bytes, PROT_READ | PROT_WRITE, MAP_SHARED, kms->fd,
-               (off_t)at.offset);
+    map = mmap(NULL, (size_t)b->dumb.bytes, PROT_READ | PROT_WRITE, MAP_SHARED,
+               kms->fd, (off_t)at.offset);
     if (map == MAP_FAILED)
         return report_failure(kms, "mmap", error);
     b->map = map;
