@@ -44,12 +44,12 @@ static const struct glint_assimp *load_assimp_plugin(struct glint_error *error)
         "libassimp-dev",      "assimp"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     /* interface of the loaded plug-in, or NULL; guarded by LOCK */
-    static const struct glint_assimp *found;
+    static const void *found;
     const struct glint_assimp *face;
 
     pthread_mutex_lock(&lock);
     if (!found)
-        found = glint_plugin_load(&plugin, error);
+        glint_plugin_load(&found, &plugin, error);
     face = found;
     pthread_mutex_unlock(&lock);
     return face;

@@ -146,7 +146,8 @@ struct glint_oiio {
  * folder is searched. Otherwise searches three folders: the executable's
  * folder, ../lib/glint relative to it, and GLINT_PLUGIN_DIR, if that was
  * defined when compiling. Returns GLINT_E_UNSUPPORTED if the plug-in is not
- * found. ERROR then has the cause, but not the name of the picture.
+ * found, GLINT_E_FORMAT if it is found but cannot be loaded or is of another
+ * version. ERROR then has the cause, but not the name of the picture.
  * Thread-safe. */
 enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
                                   struct glint_error *error);

@@ -15,16 +15,16 @@ enum glint_status glint_oiio_load(const struct glint_oiio **oiio,
         GLINT_OIIO_VERSION,   "",
         "libopenimageio-dev", "oiio"};
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-    static const struct glint_oiio *found; /* functions of the loaded plug-in,
-                                              or NULL; guarded by LOCK */
+    static const void *found; /* functions of the loaded plug-in, or NULL;
+                                 guarded by LOCK */
+    enum glint_status status = GLINT_OK;
 
     pthread_mutex_lock(&lock);
-    if (!found) {
-        found = glint_plugin_load(&plugin, error);
-        if (found)
-            glint_at_death_set_library_report(found->report_abort);
-    }
+    if (!found)
+        status = glint_plugin_load(&found, &plugin, error);
     *oiio = found;
+    if (*oiio)
+        glint_at_death_set_library_report((*oiio)->report_abort);
     pthread_mutex_unlock(&lock);
-    return *oiio ? GLINT_OK : GLINT_E_UNSUPPORTED;
+    return status;
 }

@@ -7,14 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 #include "formats/stills.h"
 #include "glint/options.h"
 #include "posix/ending.h"
 #include "posix/error.h"
 #include "posix/input.h"
-#include "posix/process.h"
 
 /* Returns the offset behind the GIF sub-blocks that begin at offset AT, or N if
  * the data end before. */
@@ -162,17 +160,29 @@ static enum glint_status report_type_needs_plugin(const char *path,
                               cause.text);
 }
 
+/* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
+static void append_to_notes(char notes[GLINT_KEPT_NOTES], const char *text)
+{
+    const size_t used = strlen(notes);
+
+    snprintf(notes + used, GLINT_KEPT_NOTES - used, "%s%s", used ? "; " : "",
+             text);
+}
+
 /* Sets OIIO to the functions that read or write files of TYPE, a name or a path
  * with its extension: those of the image plug-in or, if it is missing, those of
- * the libraries that are built in. */
+ * the libraries that are built in. Appends to NOTES, which may be NULL, why a
+ * plug-in is not used. */
 static enum glint_status find_functions(const struct glint_oiio **oiio,
                                         const char *type, const char *path,
-                                        struct glint_error *error)
+                                        char *notes, struct glint_error *error)
 {
     const enum glint_status status = glint_oiio_load(oiio, error);
 
     if (status)
         *oiio = glint_stills_find(type);
+    if (status == GLINT_E_FORMAT && *oiio && notes)
+        append_to_notes(notes, error->text);
     return *oiio ? GLINT_OK : report_type_needs_plugin(path, type, error);
 }
 
@@ -183,7 +193,7 @@ static enum glint_status load_picture_by_plugin(struct loaded *loaded,
 {
     const struct glint_oiio *oiio;
     struct glint_oiio_pixels pixels;
-    enum glint_status status = find_functions(&oiio, type, path, error);
+    enum glint_status status = find_functions(&oiio, type, path, NULL, error);
 
     if (status)
         return status;
@@ -456,7 +466,7 @@ enum glint_status glint_picture_check(const char *path,
                                   type->extension);
     return type->is_native
                ? GLINT_OK
-               : find_functions(&oiio, type->extension, path, error);
+               : find_functions(&oiio, type->extension, path, NULL, error);
 }
 
 static enum glint_status
@@ -466,7 +476,7 @@ write_picture_by_plugin(struct glint_output *out,
 {
     const struct glint_oiio *oiio;
     enum glint_status status =
-        find_functions(&oiio, out->name, out->name, error);
+        find_functions(&oiio, out->name, out->name, NULL, error);
     void *data;
     size_t bytes;
 
@@ -652,15 +662,6 @@ static void update_native_file(struct glint_kept *k)
 
 /* ------------------------------------------------------------------ colours */
 
-/* Appends TEXT to NOTES, after "; " if NOTES is not empty. */
-static void append_to_notes(char notes[GLINT_KEPT_NOTES], const char *text)
-{
-    const size_t used = strlen(notes);
-
-    snprintf(notes + used, GLINT_KEPT_NOTES - used, "%s%s", used ? "; " : "",
-             text);
-}
-
 /* Sets the colours C from CICP, the codes of primaries and transfer in ITU-T
  * H.273. Returns false if the transfer is unknown. */
 static bool set_colours_by_cicp(struct glint_colours *c, const int cicp[2])
@@ -784,14 +785,11 @@ static enum glint_status open_file_by_plugin(struct glint_kept *k,
 {
     struct glint_oiio_facts facts;
     const struct glint_oiio *oiio;
-    const char *const stated = glint_process_get_setting("GLINT_OIIO");
-    enum glint_status status = find_functions(&oiio, type, k->path, error);
+    enum glint_status status =
+        find_functions(&oiio, type, k->path, k->note, error);
 
     if (status)
         return status;
-    /* ERROR then has the cause why the plug-in was not loaded. */
-    if (oiio == glint_stills_find(type) && stated && access(stated, F_OK) == 0)
-        append_to_notes(k->note, error->text);
     status = oiio->open(&k->file, &k->samples, &facts, k->path, error);
     if (status)
         return status;
@@ -866,7 +864,7 @@ enum glint_status glint_kept_check(const char *path, struct glint_error *error)
             ".tif");
     if (type->is_native)
         return GLINT_OK;
-    if (find_functions(&oiio, type->extension, path, error))
+    if (find_functions(&oiio, type->extension, path, NULL, error))
         return GLINT_E_UNSUPPORTED;
     if (!oiio->can_write(path))
         return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
@@ -1053,8 +1051,8 @@ write_kept(struct glint_kept *k, struct glint_output *out,
     struct glint_oiio_options how = {.quality = options->quality,
                                      .drop_colours = !keeps_colours};
     const struct glint_oiio *oiio;
-    enum glint_status status =
-        find_functions(&oiio, out->name, out->name, error);
+    enum glint_status status = find_functions(
+        &oiio, out->name, out->name, k->oiio ? NULL : options->said, error);
     void *data;
     size_t bytes;
 

@@ -9,6 +9,10 @@
 
 enum { STILL_NOTE_BYTES = 160 };
 
+#define STILL_NEEDS_PLUGIN                                           \
+    "needs glint's image plug-in: the package glint-oiio, or 'make " \
+    "oiio' with libopenimageio-dev"
+
 /* Bytes that a writer appends to. After memory was short, it stays empty. */
 struct still_bytes {
     uint8_t *mem;       /* malloc'ed */

@@ -119,8 +119,7 @@ static void read_rows(struct call *c, struct still_file *file)
 
     start_reading(c, file);
     if (c->in.num_components != 1 && c->in.num_components != 3)
-        leave_libjpeg(c, GLINT_E_UNSUPPORTED,
-                      "CMYK needs glint's image plug-in (OpenImageIO)");
+        leave_libjpeg(c, GLINT_E_UNSUPPORTED, "CMYK " STILL_NEEDS_PLUGIN);
     c->in.out_color_space = c->in.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
     *p = (struct still_pixels){.width = (int)c->in.image_width,
                                .height = (int)c->in.image_height,

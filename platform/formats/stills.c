@@ -27,7 +27,7 @@ static enum glint_status report_unknown_type(const char *path,
                                              struct glint_error *error)
 {
     return glint_error_report(error, GLINT_E_UNSUPPORTED, path,
-                              "needs glint's image plug-in (OpenImageIO)");
+                              STILL_NEEDS_PLUGIN);
 }
 
 static void close_still(struct still_file *file)

@@ -57,66 +57,75 @@ static void report_missing_plugin(const struct glint_plugin *plugin,
             plugin->without, plugin->library, plugin->target);
 }
 
-static const void *load_plugin_file(const struct glint_plugin *plugin,
-                                    const char *path, struct glint_error *error)
+static enum glint_status load_plugin_file(const void **face,
+                                          const struct glint_plugin *plugin,
+                                          const char *path,
+                                          struct glint_error *error)
 {
     void *const handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    const int *face;
+    const int *version;
 
-    if (!handle) {
-        /* The text of dlerror() names PATH, or a library that the plug-in
-         * needs. */
-        glint_error_report(error, GLINT_E_UNSUPPORTED, plugin->noun, "%s",
-                           dlerror());
-        return NULL;
+    /* The text of dlerror() names PATH, or a library that the plug-in needs. */
+    if (!handle)
+        return glint_error_report(
+            error, access(path, F_OK) ? GLINT_E_UNSUPPORTED : GLINT_E_FORMAT,
+            plugin->noun, "%s", dlerror());
+    version = dlsym(handle, plugin->symbol);
+    if (version && *version == plugin->version) {
+        *face = version;
+        return GLINT_OK;
     }
-    face = dlsym(handle, plugin->symbol);
-    if (face && *face == plugin->version)
-        return face;
     dlclose(handle);
-    glint_error_report(error, GLINT_E_UNSUPPORTED, path,
-                       "is not %s of this version of glint", plugin->noun);
-    return NULL;
+    return glint_error_report(
+        error, GLINT_E_FORMAT, path,
+        "is not %s of this version of glint; replace it by that of the package "
+        "%.*s or of 'make %s'",
+        plugin->noun, (int)strcspn(plugin->file, "."), plugin->file,
+        plugin->target);
 }
 
-/* Loads the plug-in from DIR. Returns NULL if it is not there or everybody may
- * write to DIR. */
-static const void *load_from_directory(const struct glint_plugin *plugin,
-                                       const char *dir,
-                                       struct glint_error *error)
+/* Loads the plug-in from DIR, unless STATUS is GLINT_OK. Returns STATUS if the
+ * plug-in is not there or everybody may write to DIR. */
+static enum glint_status load_from_directory(const void **face,
+                                             const struct glint_plugin *plugin,
+                                             const char *dir,
+                                             enum glint_status status,
+                                             struct glint_error *error)
 {
     char path[PATH_BYTES + FILE_BYTES];
     struct stat st;
 
     snprintf(path, sizeof path, "%s%s", dir, plugin->file);
-    if (stat(dir, &st) < 0 || st.st_mode & S_IWOTH)
-        return NULL;
-    return access(path, F_OK) == 0 ? load_plugin_file(plugin, path, error)
-                                   : NULL;
+    if (!status || stat(dir, &st) < 0 || st.st_mode & S_IWOTH ||
+        access(path, F_OK) < 0)
+        return status;
+    return load_plugin_file(face, plugin, path, error);
 }
 
-const void *glint_plugin_load(const struct glint_plugin *plugin,
-                              struct glint_error *error)
+enum glint_status glint_plugin_load(const void **face,
+                                    const struct glint_plugin *plugin,
+                                    struct glint_error *error)
 {
     const char *const stated = glint_process_get_setting(plugin->setting);
-    const void *face = NULL;
+    enum glint_status status = GLINT_E_UNSUPPORTED;
     char own[PATH_BYTES];
 
+    *face = NULL;
     if (stated && *stated)
-        return load_plugin_file(plugin, stated, error);
+        return load_plugin_file(face, plugin, stated, error);
     if (!find_own_directory(own))
         *own = '\0';
     report_missing_plugin(plugin, *own && is_outside_source_tree(own), error);
     if (*own) {
-        face = load_from_directory(plugin, own, error);
-        if (!face && strlen(own) + sizeof INSTALLED <= sizeof own) {
+        status = load_from_directory(face, plugin, own, status, error);
+        if (strlen(own) + sizeof INSTALLED <= sizeof own) {
             strcat(own, INSTALLED);
-            face = load_from_directory(plugin, own, error);
+            status = load_from_directory(face, plugin, own, status, error);
         }
     }
 #ifdef GLINT_PLUGIN_DIR
-    if (!face)
-        face = load_from_directory(plugin, GLINT_PLUGIN_DIR "/", error);
+    status =
+        load_from_directory(face, plugin, GLINT_PLUGIN_DIR "/", status, error);
 #endif
-    return face;
+    return status;
 }

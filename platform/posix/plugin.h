@@ -4,7 +4,7 @@
  * first needed.
  *
  *     static const struct glint_plugin images = {"glint-oiio.so", ...};
- *     const struct glint_oiio *face = glint_plugin_load(&images, &error);
+ *     status = glint_plugin_load(&face, &images, &error);
  *
  * A plug-in exports one symbol, a struct of functions that begins with its
  * version, an int. A loaded plug-in is never unloaded. */
@@ -29,14 +29,16 @@ struct glint_plugin {
     const char *target;  /* make target that builds it */
 };
 
-/* Returns the struct that PLUGIN exports. If the environment variable
+/* Sets FACE to the struct that PLUGIN exports, or to NULL on failure. If the environment variable
  * plugin->setting is set, it names the library's file, and no folder is
  * searched. Otherwise searches three folders: the folder of the program or host
  * plug-in that contains this code; ../lib/glint relative to it; and
  * GLINT_PLUGIN_DIR, if that was defined when compiling. Skips folders that
- * everybody may write to. Returns NULL, with the cause in ERROR, if the plug-in
- * is not found or rejected. Not thread-safe. */
-const void *glint_plugin_load(const struct glint_plugin *plugin,
-                              struct glint_error *error);
+ * everybody may write to. Returns GLINT_E_UNSUPPORTED if the plug-in is not
+ * found, GLINT_E_FORMAT if a file is found that cannot be loaded or is not the
+ * plug-in of this version. Not thread-safe. */
+enum glint_status glint_plugin_load(const void **face,
+                                    const struct glint_plugin *plugin,
+                                    struct glint_error *error);
 
 #endif

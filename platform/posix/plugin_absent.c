@@ -4,12 +4,13 @@
 #include "posix/error.h"
 #include "posix/plugin.h"
 
-const void *glint_plugin_load(const struct glint_plugin *plugin,
-                              struct glint_error *error)
+enum glint_status glint_plugin_load(const void **face,
+                                    const struct glint_plugin *plugin,
+                                    struct glint_error *error)
 {
-    glint_error_report(
+    *face = NULL;
+    return glint_error_report(
         error, GLINT_E_UNSUPPORTED, plugin->file,
         "this glint is linked statically and cannot load plug-ins%s",
         plugin->without);
-    return NULL;
 }

@@ -83,12 +83,14 @@ enum glint_status glint_window_open(struct glint_window *window,
                                     struct glint_error *error)
 {
     struct glint_error cause;
+    const void *sdl;
+    const enum glint_status status = glint_plugin_load(&sdl, &plugin, &cause);
 
     *window = (struct glint_window){
         .sink = {.put = show_frame, .close = close_window},
-        .sdl = glint_plugin_load(&plugin, &cause),
+        .sdl = sdl,
         .title = title};
-    if (window->sdl)
+    if (!status)
         return GLINT_OK;
     return glint_error_report(
         error, GLINT_E_DEVICE, "window",

@@ -155,7 +155,7 @@ static enum glint_status save_layer_file(const char *name,
 
     if (glint_has_extension(name, ".pfm") && layers->n == 1)
         return glint_picture_save_float(name, &floats, error);
-    status = glint_oiio_load(&oiio, error);
+    status = glint_oiio_load(&oiio, error) ? GLINT_E_UNSUPPORTED : GLINT_OK;
     if (status == GLINT_OK)
         status = oiio->encode_layers(&data, &bytes, name, layers, error);
     if (status == GLINT_OK)
