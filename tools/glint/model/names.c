@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "model/names.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "model/model_file.h"
+#include "posix/input.h"
 #include "posix/output.h"
 
 bool tool_has_magic(const char *argument, uint32_t magic)
@@ -53,6 +55,52 @@ enum glint_status tool_make_input_path(const char *text, const char *name,
     snprintf(error->text, sizeof error->text,
              "%.180s would be overwritten by -o; name another file", name);
     return GLINT_E_ARGUMENT;
+}
+
+/* Returns the index of NAME in the line LINE[BYTES] if its first word is KEY,
+ * otherwise -1. */
+static int find_name_in_line(const char *line, int bytes, const char *key,
+                             const char *name)
+{
+    const int n_key = (int)strlen(key), n_name = (int)strlen(name);
+    int i = 0;
+
+    while (i < bytes && (line[i] == ' ' || line[i] == '\t'))
+        i++;
+    if (i + n_key > bytes || memcmp(line + i, key, (size_t)n_key) != 0)
+        return -1;
+    for (i += n_key; i + n_name <= bytes; i++)
+        if ((line[i - 1] == ' ' || line[i - 1] == '\t') &&
+            memcmp(line + i, name, (size_t)n_name) == 0)
+            return i;
+    return -1;
+}
+
+void tool_add_place_of_name(const char *path, const char *key, const char *name,
+                            struct glint_error *error)
+{
+    const struct glint_error cause = *error;
+    struct glint_error other;
+    uint8_t *data = NULL;
+    size_t bytes = 0, at = 0;
+
+    if (!cause.text[0] || glint_input_read_whole_file(
+                              &data, &bytes, path, 1 << 16, &other) != GLINT_OK)
+        return;
+    for (int line = 1; at < bytes; line++) {
+        const char *const start = (const char *)data + at;
+        const char *const end = memchr(start, '\n', bytes - at);
+        const int n = end ? (int)(end - start) : (int)(bytes - at);
+        const int column = find_name_in_line(start, n, key, name);
+
+        if (column >= 0) {
+            snprintf(error->text, sizeof error->text, "%.100s:%d:%d: %.120s",
+                     path, line, column + 1, cause.text);
+            break;
+        }
+        at += (size_t)n + 1;
+    }
+    free(data);
 }
 
 void tool_copy_base_name(const char *path, char name[64])

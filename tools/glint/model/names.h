@@ -19,6 +19,12 @@ enum glint_status tool_make_input_path(const char *text, const char *name,
                                        char path[TOOL_PATH_BYTES],
                                        struct glint_error *error);
 
+/* Adds the position of the file NAME in the text PATH to the beginning of
+ * ERROR, which is about this file: "PATH:LINE:COLUMN: ". KEY: first word of the
+ * line. */
+void tool_add_place_of_name(const char *path, const char *key, const char *name,
+                            struct glint_error *error);
+
 /* Sets NAME to the name of the file PATH without folder and extension. */
 void tool_copy_base_name(const char *path, char name[64]);
 

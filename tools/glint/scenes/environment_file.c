@@ -110,9 +110,12 @@ bake_source(const char *path, const char *written,
     if (status == GLINT_OK)
         status = tool_count_bake_work(left, INT64_C(1) << 3 * options.side_log2,
                                       path, error);
-    return status == GLINT_OK
-               ? bake_picture(path, picture, &options, file, error)
-               : status;
+    if (status != GLINT_OK)
+        return status;
+    status = bake_picture(path, picture, &options, file, error);
+    if (status != GLINT_OK && picture == beside)
+        tool_add_place_of_name(path, "source", source, error);
+    return status;
 }
 
 enum glint_status environment_file_read(

@@ -84,8 +84,10 @@ static enum glint_status read_medium_mask(const struct tool *tool,
 
     if (status == GLINT_OK)
         status = glint_picture_load(beside, &image, error);
-    if (status != GLINT_OK)
+    if (status != GLINT_OK) {
+        tool_add_place_of_name(path, "pattern", s->text.mask, error);
         return status;
+    }
     mask = malloc(n * sizeof *mask);
     if (mask) {
         reduce_mask_to_texels(&image, side, mask);
@@ -110,6 +112,8 @@ static enum glint_status read_measured_rows(const struct tool *tool,
         tool_hash_into_key(&s->key, s->rows.rgb,
                            3 * sizeof(float) * (size_t)s->rows.width *
                                (size_t)s->rows.height);
+    else
+        tool_add_place_of_name(path, "data", s->text.rows, error);
     return status;
 }
 
