@@ -3,8 +3,9 @@
  * ward_table PICTURE... - measures the accuracy of Ward's reflection lobe,
  * computed by lookups, against sums over all texels. Prints the PSNR in dB by
  * alpha, lookup rule and number of samples, for sRGB codes and for linear
- * light, as the mean over all pictures. The image is a brushed ball 32 pixels
- * wide, exposed such that its median is 1/4 of white.
+ * light, as the mean over all pictures; for 8 samples and separated lights also
+ * the pictures of the lowest and highest PSNR. The image is a brushed ball 32
+ * pixels wide, exposed such that its median is 1/4 of white.
  *
  * The sums are over 512 x 512 texels in double precision. Separated lights are
  * added to the lookups in double precision, as lobes of alpha^2 + r^2 / 8,
@@ -19,6 +20,9 @@
 #include "support/models/ward_ball.h"
 
 enum { ALPHAS = 5, COLUMNS = 10, WAYS = 2 };
+
+/* column of 8 samples and separated lights */
+enum { EIGHT = 7 };
 
 static const double alphas[ALPHAS][2] = {
     {.05, .05}, {.1, .1}, {.2, .2}, {.05, .2}, {.02, .2}};
@@ -137,24 +141,26 @@ static void measure_environment_map(struct map *m, int a,
     }
 }
 
-static void print_psnr_table(double sum[ALPHAS][COLUMNS][WAYS], int way, int n)
+static void print_psnr_table(double sum[ALPHAS][COLUMNS][WAYS],
+                             double range[ALPHAS][WAYS][2], int way, int n)
 {
     printf("\n%s\n\n", way ? "Linear light:" : "Codes of sRGB:");
     printf("| alpha | published: mip, N 8 | mip, Gauss at its best bias | "
-           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 |\n"
-           "|---|---|---|---|---|\n");
+           "constant, N 8: mip, Gauss | and lights: N 1, 4, 8, 16, 32 | "
+           "N 8, lowest, highest |\n"
+           "|---|---|---|---|---|---|\n");
     for (int a = 0; a < ALPHAS; a++) {
         printf("| %g, %g |", alphas[a][0], alphas[a][1]);
         for (int c = 0; c < COLUMNS; c++)
             printf(" %.1f%s", sum[a][c][way] / n,
                    c == 0 || c == 2 || c == 4 || c >= 9 ? " |" : ",");
-        printf("\n");
+        printf(" %.1f, %.1f |\n", range[a][way][0], range[a][way][1]);
     }
 }
 
 int main(int argc, char **argv)
 {
-    static double sum[ALPHAS][COLUMNS][WAYS];
+    static double sum[ALPHAS][COLUMNS][WAYS], range[ALPHAS][WAYS][2];
 
     for (int i = 1; i < argc; i++) {
         struct map m;
@@ -170,12 +176,18 @@ int main(int argc, char **argv)
             for (int c = 0; c < COLUMNS; c++)
                 for (int w = 0; w < WAYS; w++)
                     sum[a][c][w] += db[c][w];
+            for (int w = 0; w < WAYS; w++) {
+                const double here = db[EIGHT][w];
+
+                range[a][w][0] = i > 1 ? fmin(range[a][w][0], here) : here;
+                range[a][w][1] = fmax(range[a][w][1], here);
+            }
         }
         for (int k = 0; k < 4; k++)
             free(m.data[k / 2][k % 2]);
         glint_sphere_free(&m.sphere);
     }
     for (int way = 0; way < WAYS; way++)
-        print_psnr_table(sum, way, argc - 1);
+        print_psnr_table(sum, range, way, argc - 1);
     return 0;
 }
