@@ -18,10 +18,10 @@ extern "C" {
 #endif
 
 enum {
-    GLINT_AREA_SAMPLES = 7, /* default max points of the brightest lamp */
+    GLINT_AREA_SAMPLES = 16, /* default max points of the brightest lamp */
     /* Factor on (number of points of a lamp - 1) for a still picture, relative
      * to a frame of a video. */
-    GLINT_AREA_STILL = 20,
+    GLINT_AREA_STILL = 8,
     /* Max number of points of all wide lamps of a still picture together, as a
      * multiple of max_lights (glint/dials.h). */
     GLINT_AREA_STILL_ROOM = 4,

@@ -80,13 +80,42 @@ static void trace_sample_rays(const struct glint_plan *plan,
     }
 }
 
+/* Returns the distance between the ghosts of LIGHT and of its neighbours,
+ * pixels, if LIGHT is a sample point of a wide lamp; otherwise 0. A ghost moves
+ * with its light in proportion to the ghost's distance from the picture's
+ * centre. AT: positions of sample rays of the ghost. */
+static int64_t compute_ghost_spacing_q8(const struct glint_light *light,
+                                        int32_t at_q8[ROWS][2][GLINT_RAYS])
+{
+    int64_t x = 0, y = 0;
+
+    if (light->apart_q30 <= 0 || light->sine_q30 <= 0)
+        return 0;
+    for (int row = 0; row < ROWS; row++)
+        for (int i = 0; i < GLINT_RAYS; i++) {
+            x += at_q8[row][0][i];
+            y += at_q8[row][1][i];
+        }
+    return real_integer(
+        real_times(
+            real_times(real_of(q_root((uint64_t)(x * x + y * y)), 0),
+                       real_of(light->apart_q30, -30)),
+            real_over(
+                real_of(light->cosine_q30, -30),
+                real_of((int64_t)light->sine_q30 * ROWS * GLINT_RAYS, -30))),
+        0, FARTHEST_Q8);
+}
+
 /* Returns the distance between the outlines of a ghost in two wavelengths,
  * pixels. FIRST and LAST are the ray bundles of the outermost wavelengths of
  * the first set. The distance is the root mean square over pairs of rays at the
- * same point of the pupil. */
-static int64_t compute_outline_distance_q8(
-    const struct glint_plan *plan, const struct glint_bundle_plan *first,
-    const struct glint_bundle_plan *last, struct glint_transfer *t)
+ * same point of the pupil. Sets *SPACING to the distance of the ghosts of
+ * neighbouring points of the lamp. */
+static int64_t
+compute_outline_distance_q8(const struct glint_plan *plan,
+                            const struct glint_bundle_plan *first,
+                            const struct glint_bundle_plan *last,
+                            struct glint_transfer *t, int64_t *spacing_q8)
 {
     int32_t a_q8[ROWS][2][GLINT_RAYS], b_q8[ROWS][2][GLINT_RAYS];
     /* sum of 24 squares of x and 24 squares of y, each at most 2^52 */
@@ -94,6 +123,7 @@ static int64_t compute_outline_distance_q8(
 
     trace_sample_rays(plan, first, t, a_q8);
     trace_sample_rays(plan, last, t, b_q8);
+    *spacing_q8 = compute_ghost_spacing_q8(&plan->light[first->light], a_q8);
     for (int row = 0; row < ROWS; row++)
         for (int k = 0; k < 2; k++)
             for (int i = 0; i < GLINT_RAYS; i++) {
@@ -118,11 +148,12 @@ static int64_t compute_wave_set_width(const struct glint_flare_frame *r,
 /* Returns whether set SET has enough wavelengths for a ghost of total light
  * LIGHT: the steps of brightness from wavelength to wavelength are invisible.
  * With n wavelengths, steps are invisible if LIGHT / (2 n) is below s->step, or
- * if the outlines of neighbouring wavelengths are at most s->apart_q8 apart.
- * APART: distance between the outermost outlines of the first set, pixels
+ * if the outlines of neighbouring wavelengths are at most MOST apart. APART:
+ * distance between the outermost outlines of the first set. Both are in pixels
  * _q8. */
 static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
-                                    int64_t apart, struct glint_real light)
+                                    int64_t apart, int64_t most,
+                                    struct glint_real light)
 {
     const struct glint_wave_sets *s = r->sets;
     const int64_t gaps = s->size[set] - 1;
@@ -131,7 +162,7 @@ static int are_wave_steps_invisible(const struct glint_flare_frame *r, int set,
 
     return real_less(step, s->step) ||
            apart * compute_wave_set_width(r, set) <=
-               s->apart_q8 * gaps * compute_wave_set_width(r, 0);
+               most * gaps * compute_wave_set_width(r, 0);
 }
 
 /* Returns the index of the smallest wavelength set that draws a ghost without
@@ -152,13 +183,17 @@ static int choose_smallest_wave_set(const struct glint_plan *plan,
         if (bundle[i].n_cells)
             light = real_plus(light, planned[i].irradiance);
     if (r->sets->n_sets > 1 &&
-        !are_wave_steps_invisible(r, 0, FARTHEST_Q8, light)) {
-        const int64_t apart = both ? compute_outline_distance_q8(
-                                         plan, &planned[0], &planned[n - 1], t)
-                                   : FARTHEST_Q8;
+        !are_wave_steps_invisible(r, 0, FARTHEST_Q8, 0, light)) {
+        int64_t spacing = 0;
+        const int64_t apart =
+            both ? compute_outline_distance_q8(plan, &planned[0],
+                                               &planned[n - 1], t, &spacing)
+                 : FARTHEST_Q8;
+        const int64_t most =
+            spacing > r->sets->apart_q8 ? spacing : r->sets->apart_q8;
 
         while (set < r->sets->n_sets - 1 &&
-               !are_wave_steps_invisible(r, set, apart, light))
+               !are_wave_steps_invisible(r, set, apart, most, light))
             set++;
     }
     return set;

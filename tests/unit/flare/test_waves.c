@@ -4,6 +4,8 @@
  * dispersion and brightness require, without colour steps that 31 wavelengths
  * would not have. Explicit lists of wavelengths must be used as given.
  */
+#include "glint/area.h"
+#include "glint/quality.h"
 #include "support/settings_frame.h"
 #include "support/test.h"
 
@@ -13,6 +15,9 @@ static struct tool tool = {.name = "test", .quiet = true, .n_threads = 2};
 static struct opened chosen, three, all;
 static const struct glint_lamp lamp = {
     .theta_deg = 12, .phi_deg = 33, .power = 3e6, .rgb = {1, 1, 1}};
+
+/* RMS extent of the lamp, tangent; 0: a point */
+static double extent;
 
 static struct glint_engine_report draw_lamp_frame(struct glint_frame *frame,
                                                   const struct opened *opened,
@@ -25,6 +30,7 @@ static struct glint_engine_report draw_lamp_frame(struct glint_frame *frame,
     struct glint_engine_report report;
 
     light.power *= power;
+    glint_area_set_round(&light, extent);
     assert_ok(
         make_frame_from_settings(&tool, opened, width, width * 9 / 16, frame));
     memset(rgb, 0, (size_t)width * (size_t)(width * 9 / 16) * 3);
@@ -299,6 +305,35 @@ TEST(more_wavelengths_smooth_the_outlines)
                   step[0], db[1], step[1]);
     assert_true(db[1] > 44 && db[1] > db[0] + 10);
     assert_true(step[1] <= 9 && 3 * step[1] < 2 * step[0]);
+}
+
+/* Checks that the points of a wide lamp get fewer wavelengths than the same
+ * lights as lamps of their own, as their ghosts hide the steps between
+ * wavelengths, and that a frame of a video has about the ghosts of the
+ * 121 points of a still picture. */
+TEST(points_of_a_wide_lamp_need_fewer_wavelengths)
+{
+    const int points = (int)glint_quality_at(0.5).dials.area_points;
+    struct glint_frame frame;
+    int alone, together;
+
+    alone = draw_lamp_frame(&frame, &chosen, WIDTH, 100, picture).stats.bundles;
+    glint_frame_finish(&frame);
+    extent = 0.03;
+    together = draw_lamp_frame(&frame, &chosen, WIDTH, 100 * points, picture)
+                   .stats.bundles;
+    glint_frame_finish(&frame);
+    draw_lamp_frame(&frame, &chosen, WIDTH, 20, picture);
+    glint_frame_finish(&frame);
+    chosen.settings.options.area_samples = 121;
+    draw_lamp_frame(&frame, &chosen, WIDTH, 20, truth);
+    glint_frame_finish(&frame);
+    chosen.settings.options.area_samples = 0;
+    extent = 0;
+    print_message("bundles: %d of %d; %.1f dB\n", together, points * alone,
+                  compute_psnr(picture));
+    assert_true(together < points * alone);
+    assert_true(compute_psnr(picture) > 48);
 }
 
 /* ------------------------------------------------------------ option texts */
