@@ -706,8 +706,8 @@ size_t glint_ray_field_compute_bytes(const struct ray_field_config *cfg,
                                      const struct ray_field *field)
 {
     (void)cfg;
-    return count_traced_nodes(field) *
-           ((size_t)field->n_samples * CHANNELS * sizeof(float) + 1);
+    return count_traced_nodes(field) * (size_t)field->n_samples *
+           (CHANNELS * sizeof(float) + 1);
 }
 
 /* -------------------------------------------------------------------- trace */
@@ -794,7 +794,7 @@ void glint_ray_field_trace_rays(const struct ray_field_config *cfg,
         (unsigned char *)(node + (size_t)field->n_samples * nodes * CHANNELS);
     struct glint_path path;
 
-    memset(invalid, 0, nodes);
+    memset(invalid, 0, (size_t)field->n_samples * nodes);
     for (int s = 0; s < field->n_samples; s++) {
         double d[3];
 
@@ -802,7 +802,8 @@ void glint_ray_field_trace_rays(const struct ray_field_config *cfg,
             init_field_path(cfg, field, field->sample[s].nm, &path);
         glint_ray_compute_direction(cfg, field->sample[s].at, d);
         trace_node_grid(cfg, field, &path, d,
-                        node + (size_t)s * nodes * CHANNELS, invalid);
+                        node + (size_t)s * nodes * CHANNELS,
+                        invalid + (size_t)s * nodes);
     }
 }
 
@@ -907,20 +908,30 @@ void glint_ray_place_set_weights(struct ray_place *p, const struct ray_field *f,
 }
 
 /* Sets ROW to row J of the grid, interpolated: the weighted sum over all traced
- * samples. */
-static void interpolate_node_row(const struct ray_place *p, int j, float *row)
+ * samples. Marks rays in INVALID that do not reach the sensor in a sample that
+ * has weight: near total reflection red rays do, and blue ones do not. */
+static void interpolate_node_row(const struct ray_place *p, int j, float *row,
+                                 unsigned char *invalid)
 {
     const struct ray_field *f = p->field;
-    const size_t nodes = count_traced_nodes(f);
-    const int n = (f->n_cells + 1) * CHANNELS;
-    const float *from = (const float *)p->mem + (size_t)j * (size_t)n;
+    const size_t nodes = count_traced_nodes(f), side = (size_t)f->n_cells + 1;
+    const float *from = (const float *)p->mem + (size_t)j * side * CHANNELS;
+    const unsigned char *from_invalid =
+        (const unsigned char *)((const float *)p->mem +
+                                (size_t)f->n_samples * nodes * CHANNELS) +
+        (size_t)j * side;
 
-    memset(row, 0, (size_t)n * sizeof *row);
-    for (int s = 0; s < f->n_samples; s++, from += nodes * CHANNELS) {
+    memset(row, 0, side * CHANNELS * sizeof *row);
+    memset(invalid, 0, side);
+    for (int s = 0; s < f->n_samples; s++) {
         const float w = p->weight[s];
 
-        for (int i = 0; w != 0 && i < n; i++)
+        for (size_t i = 0; w != 0 && i < side * CHANNELS; i++)
             row[i] += w * from[i];
+        for (size_t i = 0; w != 0 && i < side; i++)
+            invalid[i] |= from_invalid[i];
+        from += nodes * CHANNELS;
+        from_invalid += nodes;
     }
 }
 
@@ -936,14 +947,10 @@ void glint_ray_place_interpolate_row(const struct ray_field_config *cfg,
     const float half_w = 0.5f * (float)cfg->view.width;
     const float half_h = 0.5f * (float)cfg->view.height;
     const float nearer = 65536 * (1 - (float)f->sag[2]);
-    const unsigned char *invalid =
-        (const unsigned char *)((const float *)p->mem +
-                                (size_t)f->n_samples * count_traced_nodes(f) *
-                                    CHANNELS) +
-        (size_t)from * (size_t)(n + 1);
+    unsigned char invalid[MOST_SIDE];
     float value[MOST_SIDE * CHANNELS];
 
-    interpolate_node_row(p, from, value);
+    interpolate_node_row(p, from, value, invalid);
     for (int i = 0; i <= n; i++) {
         const float *v = value + (size_t)i * CHANNELS;
         const float y = mirror ? -v[Y] : v[Y];

@@ -328,6 +328,34 @@ TEST(barrels_that_block_only_blue_light_vignette)
     }
 }
 
+/* At this angle a ghost enters near total reflection. Red rays reach the sensor
+ * from a part of the pupil where blue ones are totally reflected. */
+TEST(rays_that_only_blue_light_loses_are_drawn_in_red)
+{
+    static const double nm[3] = {620, 540, 460};
+    const struct glint_view view = {
+        .width = 240, .height = 160, .sensor_width_mm = 36};
+    const struct glint_lamp lamp = make_white_lamp(37.7, 33);
+    struct glint_engine_report report;
+    double sum[2][3] = {{0}};
+    struct glint_error error;
+
+    load_lens(&lens, "wide/double-gauss-canon-28");
+    assert_ok(glint_prescription_set_f_number(&lens, 11, &error));
+    assert_ok(glint_setup_init(&setup, &lens, 0, 0, nm, 3, &error));
+    render_exact_flare(rgb, view, &lamp, 1, 256);
+    draw_flare_by_integers(view, &lamp, 1, other, &report);
+    for (int i = 0; i < 3 * view.width * view.height; i++) {
+        sum[0][i % 3] += rgb[i];
+        sum[1][i % 3] += other[i];
+    }
+    for (int c = 0; c < 3; c++) {
+        print_message("channel %d: %.4f of the light\n", c,
+                      sum[1][c] / sum[0][c]);
+        assert_true(fabs(sum[1][c] / sum[0][c] - 1) < 0.02);
+    }
+}
+
 /* Checks that a frame whose rays and edges exceed the memory limit is drawn in
  * several passes, with bit-identical result. The test uses one thread, as each
  * thread has a memory limit of its own. */
