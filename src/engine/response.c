@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "glint/area.h"
+#include "engine/frame/frame_parts.h"
 #include "engine/setup/spectrum.h"
 
 /* max number of values that find_largest_values() finds */
@@ -22,6 +23,10 @@ enum { EXACT_ANGLES = 4, EXACT_GRID = 6, GRID = 12 };
  * times display white, within a factor of 2^AIM_SPAN. This is in the middle
  * between saturation and the quantisation step. */
 enum { AIM_LOG2 = 4, AIM_SPAN = 6 };
+
+/* First estimate of log2 of the light of the brightest pixels of a draft, with
+ * which most drafts need no second picture. */
+enum { DRAFT_PEAK_LOG2 = -8 };
 
 /* -------------------------------------------------------- brightest pixels */
 
@@ -385,7 +390,7 @@ enum glint_status glint_response_draw_and_measure(
     struct glint_lamp *small = malloc((size_t)(n ? n : 1) * sizeof *small);
     struct proxy p;
     enum glint_status status = GLINT_OK;
-    double by, peak_log2 = 0;
+    double by, peak_log2 = glint_frame_is_draft(frame) ? DRAFT_PEAK_LOG2 : 0;
 
     *light = (struct glint_response_light){{0}, {0}};
     if (!small)
