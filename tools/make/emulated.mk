@@ -38,6 +38,8 @@ check-arm:
 	for t in aarch64 armv7; do s=$$(tests/arm/prepare $$t); \
 	        $(MAKE) --no-print-directory WERROR=-Werror TARGET=$$t \
 	                SYSROOT=$$s arm-tests glint-live build/$$t/examples/draw_flare; \
+	        [ $$t != aarch64 ] || $(MAKE) --no-print-directory WERROR=-Werror \
+	                TARGET=$$t SYSROOT=$$s build/$$t/glint; \
 	done
 	@XDG_CACHE_HOME=$(CURDIR)/build/cache $(ARM_BAKES) >/dev/null 2>&1
 	@tests/arm/check $(ARM_MODELS:%=build/models/%.glint) -- $(ARM_UNIT)
