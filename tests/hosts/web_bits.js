@@ -77,7 +77,7 @@ function makePpm(rgba, w, h, deep) {
     return Buffer.concat([Buffer.from(`P6\n${w} ${h}\n${deep ? 65535 : 255}\n`), deep ? Buffer.from([...rgb].flatMap(v => [v, v])) : rgb]);
 }
 
-// At 16 bits few samples may differ by few codes: the module's rays are not those of a program of 64 bits to the last bit.
+// At 16 bits few samples may differ by few codes: sin, cos, atan2 and hypot of two C libraries round differently.
 function compare(name, want, got, deep) {
     let differ = want.length === got.length ? 0 : Infinity;
     for (let i = want.length % 2; deep && i < want.length; i += 2) {
