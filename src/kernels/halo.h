@@ -59,9 +59,19 @@ typedef void glint_halo_fn(const struct glint_halo *halo, int n_x, int n_y,
 void glint_halo_compute_log2(const struct glint_halo *halo, uint64_t r2_q16,
                              int32_t v_q8, int32_t log2_q16[3]);
 
-/* Returns the best kernel that the GLINT_SET_ bits SETS allow. */
-glint_halo_fn *glint_choose_halo_kernel(unsigned sets);
+/* Moves N values of light, a multiple of 8, to LIGHT_Q16, clamped to 0 ..
+ * 65535, and sets them to 0. Returns 0 if all results are 0. */
+typedef int glint_move_light_fn(int64_t *light_q20, int n, uint16_t *light_q16);
+
+struct glint_star_kernels {
+    glint_halo_fn *add_halo;
+    glint_move_light_fn *move_light;
+};
+
+/* Returns the best kernels that the GLINT_SET_ bits SETS allow. */
+const struct glint_star_kernels *glint_choose_star_kernels(unsigned sets);
 
 glint_halo_fn glint_halo_c, glint_halo_avx2;
+glint_move_light_fn glint_move_light_c, glint_move_light_avx2;
 
 #endif

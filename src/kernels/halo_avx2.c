@@ -248,3 +248,36 @@ void glint_halo_avx2(const struct glint_halo *h, int n_x, int n_y,
             add_row(h, &all, y, v_q8, light_q20 + y * GLINT_HALO_STRIDE);
     }
 }
+
+/* Returns four values of light clamped to 0 .. 2^20 - 1, and sets them to 0. */
+static inline V take_clamped_light(int64_t *light_q20)
+{
+    V *const at = (V *)(void *)light_q20;
+    const V zero = _mm256_setzero_si256(), most = w_set((1 << 20) - 1);
+    const V x = _mm256_loadu_si256(at);
+    const V positive = _mm256_andnot_si256(_mm256_cmpgt_epi64(zero, x), x);
+
+    _mm256_storeu_si256(at, zero);
+    return _mm256_blendv_epi8(positive, most,
+                              _mm256_cmpgt_epi64(positive, most));
+}
+
+int glint_move_light_avx2(int64_t *light_q20, int n, uint16_t *light_q16)
+{
+    const V order = _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7);
+    __m128i any = _mm_setzero_si128();
+
+    for (int i = 0; i < n; i += 8) {
+        const V a = take_clamped_light(light_q20 + i);
+        const V b = take_clamped_light(light_q20 + i + 4);
+        /* pixels 0, 4, 1, 5, 2, 6, 3, 7 */
+        const V both = _mm256_or_si256(a, _mm256_slli_epi64(b, 32));
+        const V x = v_right(_mm256_permutevar8x32_epi32(both, order), 4);
+        const __m128i packed = _mm_packus_epi32(_mm256_castsi256_si128(x),
+                                                _mm256_extracti128_si256(x, 1));
+
+        _mm_storeu_si128((__m128i *)(void *)(light_q16 + i), packed);
+        any = _mm_or_si128(any, packed);
+    }
+    return !_mm_testz_si128(any, any);
+}

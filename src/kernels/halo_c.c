@@ -117,3 +117,15 @@ void glint_halo_c(const struct glint_halo *h, int n_x, int n_y,
         }
     }
 }
+
+int glint_move_light_c(int64_t *light_q20, int n, uint16_t *light_q16)
+{
+    int any = 0;
+
+    for (int i = 0; i < n; i++) {
+        light_q16[i] = (uint16_t)q_clamp_sat(light_q20[i] >> 4, 0, 65535);
+        any |= light_q16[i];
+        light_q20[i] = 0;
+    }
+    return any;
+}

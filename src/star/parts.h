@@ -102,7 +102,7 @@ struct glint_star {
     int n_lamps, is_linear;
     int32_t faintest_log2_q16; /* log2 of light that is not visible, 1 = 1/16 of
                                   display white */
-    glint_halo_fn *add_halo;
+    const struct glint_star_kernels *kernels;
     struct glint_star_lamp *lamp;  /* [max_lights] */
     struct glint_star_row *worker; /* [n_workers] */
     struct glint_blend_rows *rows; /* [n_workers] */

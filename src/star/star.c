@@ -77,7 +77,7 @@ enum glint_status glint_star_init(struct glint_star **star,
     s->cfg = *cfg;
     s->tables = NULL;
     s->n_lamps = s->is_linear = 0;
-    s->add_halo = glint_choose_halo_kernel(cfg->sets);
+    s->kernels = glint_choose_star_kernels(cfg->sets);
     for (uint32_t i = 0; i < GLINT_STAR_INVERSES + 2; i++)
         s->inverse_q31[i] =
             (GLINT_STAR_INVERSES << 16) / (GLINT_STAR_INVERSES + i);

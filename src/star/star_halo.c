@@ -165,7 +165,7 @@ void glint_star_add_halo_band(const struct glint_star *star,
 
         h->dx_q8 = x * 256 + 128 - lamp->x_q8;
         if (set_halo_square(h, star, lamp))
-            (n_x == SIDE ? star->add_halo : glint_halo_c)(
+            (n_x == SIDE ? star->kernels->add_halo : glint_halo_c)(
                 h, n_x, n_y, &band->light_q20[0][0][x - band->x0]);
     }
 }

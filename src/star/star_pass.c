@@ -78,20 +78,20 @@ static void add_lamps_to_row(const struct glint_star_row *r,
 
 /* Writes the accumulated light of channel C of ROW to LIGHT, clamped to 16
  * bits, and resets it to 0 in ROW. Returns nonzero if any light was nonzero. */
-static int move_accumulated_light_to_q16(const struct glint_star_stretch *row,
+static int move_accumulated_light_to_q16(const struct glint_star *star,
+                                         const struct glint_star_stretch *row,
                                          int c, uint16_t *light_q16)
 {
-    int64_t *const light_q20 = row->light_q20[c];
-    int any = 0;
+    /* Columns up to multiples of 8 have no light, and rows have room for them.
+     */
+    const int from = (row->lo - row->x0) & -8;
+    const int end = (row->hi - row->x0 + 7) & -8;
 
     for (int i = 0; i < row->x1 - row->x0; i++)
         light_q16[i] = 0;
-    for (int i = row->lo - row->x0; i < row->hi - row->x0; i++) {
-        light_q16[i] = (uint16_t)q_clamp_sat(light_q20[i] >> 4, 0, 65535);
-        any |= light_q16[i];
-        light_q20[i] = 0;
-    }
-    return any;
+    return from < end ? star->kernels->move_light(row->light_q20[c] + from,
+                                                  end - from, light_q16 + from)
+                      : 0;
 }
 
 static int move_accumulated_light_to_q20(const struct glint_star_stretch *row,
@@ -144,7 +144,7 @@ static enum glint_given write_pixel_rows(void *state,
             any |=
                 r->star->is_linear
                     ? move_accumulated_light_to_q20(&row, c, rows->light_q20[c])
-                    : move_accumulated_light_to_q16(&row, c,
+                    : move_accumulated_light_to_q16(r->star, &row, c,
                                                     rows->light->rgb_q16[c][k]);
     }
     return any ? GLINT_GIVES_LIGHT : GLINT_GIVES_NOTHING;

@@ -556,6 +556,32 @@ static void check_halo_kernel(glint_halo_fn *add_halo)
     EXPECT(n_lit > ROUNDS / 10);
 }
 
+static void check_light_kernel(glint_move_light_fn *move_light)
+{
+    int64_t *light[2] = {allocate_at_page_end(N * sizeof **light),
+                         allocate_at_page_end(N * sizeof **light)};
+    uint16_t *codes[2] = {allocate_at_page_end(N * sizeof **codes),
+                          allocate_at_page_end(N * sizeof **codes)};
+
+    for (int turn = 0; turn < ROUNDS; turn++) {
+        const int n = 8 * (1 + turn % (N / 8));
+        int any[2];
+
+        for (int i = 0; i < N; i++) {
+            light[0][i] = light[1][i] =
+                turn % 3 == 0 && i < n ? -(turn & 1)
+                                       : random_signed_below(INT64_C(1) << 31) *
+                                             (INT64_C(1) << random_bits() % 24);
+            codes[0][i] = codes[1][i] = 7;
+        }
+        any[0] = glint_move_light_c(light[0], n, codes[0]);
+        any[1] = move_light(light[1], n, codes[1]);
+        EXPECT(!any[0] == !any[1] && (turn % 3 > 0 || !any[0]));
+        EXPECT_SAME(light[0], light[1], N * sizeof **light);
+        EXPECT_SAME(codes[0], codes[1], N * sizeof **codes);
+    }
+}
+
 static void test_kernels_are_identical(void)
 {
     static const unsigned sets[] = {GLINT_SET_SSE41, GLINT_SET_AVX2,
@@ -568,7 +594,8 @@ static void test_kernels_are_identical(void)
             continue;
         check_horner_kernel(glint_choose_horner_kernels(sets[v]));
         check_turn_kernel(glint_choose_turn_kernel(sets[v]));
-        check_halo_kernel(glint_choose_halo_kernel(sets[v]));
+        check_halo_kernel(glint_choose_star_kernels(sets[v])->add_halo);
+        check_light_kernel(glint_choose_star_kernels(sets[v])->move_light);
         check_convolution_kernel(glint_choose_convolve_kernel(sets[v]));
         check_luma_kernel(k);
         check_pixel_pair_kernel(k);
