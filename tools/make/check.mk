@@ -19,7 +19,8 @@ ifeq ($(CONFIG),tsan) # what starts threads or is interrupted by signals
 UNIT := $(filter bake exact flare flare_light flare_room output at_death frame live pool,$(UNIT))
 endif
 FUZZERS := $(filter-out $(if $(filter yes,$(WITH_JPEG)),,mjpeg) \
-        $(if $(filter yes,$(WITH_JANSSON)),,recording), \
+        $(if $(filter yes,$(WITH_JANSSON)),,recording) \
+        $(if $(filter yesyes,$(WITH_JPEG)$(WITH_PNG)),,stills), \
         $(patsubst tests/fuzz/fuzz_%.c,%,$(wildcard tests/fuzz/fuzz_*.c)))
 test_bins := $(UNIT:%=$(OUT)/tests/unit/test_%)
 $(test_bins): EXTRA := $(SYSROOT:%=-L%/lib) -lcmocka
