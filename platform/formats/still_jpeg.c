@@ -207,7 +207,9 @@ static bool is_coding_usable(const struct call *c)
         const jpeg_component_info *const from = &c->in.comp_info[i];
 
         blocks += from->h_samp_factor * from->v_samp_factor;
-        is_good &= is_usable(c->in.quant_tbl_ptrs[from->quant_tbl_no]);
+        /* libjpeg checks the number only of components that a scan has. */
+        is_good = is_good && from->quant_tbl_no < NUM_QUANT_TBLS &&
+                  is_usable(c->in.quant_tbl_ptrs[from->quant_tbl_no]);
     }
     return is_good &&
            (c->in.num_components == 1 || blocks <= C_MAX_BLOCKS_IN_MCU);
