@@ -49,7 +49,7 @@ int32_t glint_scene_find_object_box(const struct glint_scene *s,
 {
     int32_t seen[3], off[3];
 
-    p->is_seen = 0;
+    p->is_seen = p->is_only_shadow = p->is_behind_catcher = 0;
     p->flat_depth = 0;
     p->z[0] = -GLINT_FAR;
     p->z[1] = GLINT_FAR;

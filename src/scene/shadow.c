@@ -435,6 +435,51 @@ struct glint_box glint_shadow_find_plane_box(const struct glint_scene *s,
                                          4);
 }
 
+/* Sets CELLS to the range of cells along AXIS, not empty, that contains the
+ * grid coordinates LO .. HI and one cell on either side. Points of the
+ * quadrilateral that are shaded lie outside it by less than 1/32 of its width,
+ * a pixel. Returns 0 if the range is out of the grid. */
+static int find_cells_between(const struct glint_shadow *shadow, int64_t lo,
+                              int64_t hi, int axis, int cells[2])
+{
+    const int64_t margin = (hi - lo) / 32 + SLACK;
+
+    cells[0] = (convert_steps_to_cells_q8(shadow, lo - margin, axis) >> 8) - 1;
+    cells[1] = (convert_steps_to_cells_q8(shadow, hi + margin, axis) >> 8) + 1;
+    cells[0] = q_larger(cells[0], 0);
+    cells[1] = q_smaller(cells[1], CELLS - 1);
+    return cells[0] <= cells[1];
+}
+
+int glint_shadow_can_fall_on(const struct glint_shadow *shadow,
+                             const int32_t corner[4][3])
+{
+    int32_t lo[2] = {INT32_MAX, INT32_MAX}, hi[2] = {INT32_MIN, INT32_MIN};
+    int across[2], down[2];
+
+    if (shadow->is_empty)
+        return 0;
+    for (int i = 0; i < 4; i++) {
+        int32_t at[3];
+
+        v3_rotate(&shadow->turn, corner[i], at);
+        if (at[2] < shadow->lowest + SLACK)
+            return 1;
+        for (int k = 0; k < 2; k++) {
+            lo[k] = q_smaller(lo[k], at[k]);
+            hi[k] = q_larger(hi[k], at[k]);
+        }
+    }
+    if (!find_cells_between(shadow, lo[0], hi[0], 0, across) ||
+        !find_cells_between(shadow, lo[1], hi[1], 1, down))
+        return 0;
+    for (int y = down[0]; y <= down[1]; y++)
+        if (shadow->bins.start[y * CELLS + across[0]] !=
+            shadow->bins.start[y * CELLS + across[1] + 1])
+            return 1;
+    return 0;
+}
+
 /* Special cell indices. NONE: the point lies outside the grid or in a cell that
  * lists no object. BEYOND: it lies below the heights for which the grid is
  * valid. */

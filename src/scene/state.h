@@ -45,8 +45,10 @@ struct glint_placed {
                           material of their own */
     int is_shown;
     /* is_split: the object is shaded at each sample of a pixel. is_catcher: it
-     * is a plane that only receives shadows. */
-    int is_split, is_catcher;
+     * is a plane that only receives shadows. is_only_shadow: it is a catcher
+     * that changes only pixels with shadows of suns with grids, and pixels of
+     * objects that may be behind it, which have is_behind_catcher. */
+    int16_t is_split, is_catcher, is_only_shadow, is_behind_catcher;
     int skin;             /* index of the object's map if it is translucent,
                              else -1 */
     int is_seen;          /* 1: the object may be visible in this frame */
@@ -433,6 +435,11 @@ void glint_shadow_build_grid(const struct glint_scene *scene,
 struct glint_box glint_shadow_find_plane_box(const struct glint_scene *scene,
                                              const struct glint_shadow *shadow,
                                              const struct glint_placed *p);
+
+/* Returns whether the sun whose grid is SHADOW may cast shadows on the flat
+ * quadrilateral with corners CORNER. */
+int glint_shadow_can_fall_on(const struct glint_shadow *shadow,
+                             const int32_t corner[4][3]);
 
 /* Returns the fraction, 0 .. 32768, of a sun's light that reaches SURFACE;
  * SHADOW is the sun's grid. PLACE is the start of shadow rays from SURFACE. */

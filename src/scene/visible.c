@@ -198,11 +198,12 @@ static inline void draw_plane_row(struct glint_scene_worker *w,
     }
 }
 
+/* Draws the part of a plane in B. */
 static void draw_plane(struct glint_scene_worker *w,
-                       const struct glint_placed *placed, uint32_t id)
+                       const struct glint_placed *placed, uint32_t id,
+                       struct glint_box b)
 {
     const struct glint_scene *s = w->scene;
-    const struct glint_box b = glint_box_intersect(w->tile, placed->box);
     const struct glint_depth *d = &placed->depth;
     const int n = s->cfg.edge_samples;
     struct deeper deeper;
@@ -275,7 +276,7 @@ static int is_object_in_front_of_plane(const struct glint_scene *s,
 /* Reduces the box of a shadow catcher to the pixels that may have shadows, or
  * objects that the catcher may hide. Keeps the box if another plane is visible
  * or a light has no shadow grid. */
-static void shrink_box_of_catcher(const struct glint_scene *s,
+static void shrink_box_of_catcher(struct glint_scene *s,
                                   struct glint_placed *plane)
 {
     struct glint_box box = {0, 0, 0, 0};
@@ -289,16 +290,20 @@ static void shrink_box_of_catcher(const struct glint_scene *s,
             box, glint_shadow_find_plane_box(s, s->lit[i].shadow, plane));
     }
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
-        const struct glint_placed *p = &s->placed[i];
+        struct glint_placed *p = &s->placed[i];
 
         if (p == plane || !p->is_seen)
             continue;
         if (p->object->kind == GLINT_OBJECT_PLANE)
             return;
-        if (!is_object_in_front_of_plane(s, p, plane))
-            box = glint_box_unite(box, p->box);
+        if (is_object_in_front_of_plane(s, p, plane))
+            continue;
+        box = glint_box_unite(box, p->box);
+        p->is_behind_catcher = 1;
     }
     plane->box = box;
+    plane->is_only_shadow =
+        s->model.header->background == GLINT_BACKGROUND_CAMERA;
     plane->is_seen = !glint_box_is_empty(box);
 }
 
@@ -307,6 +312,63 @@ void glint_scene_shrink_catcher_boxes(struct glint_scene *s)
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen && s->placed[i].object->catcher_q15)
             shrink_box_of_catcher(s, &s->placed[i]);
+}
+
+enum { BLOCK = 8 }; /* side of the blocks of a shadow catcher, pixels */
+
+/* Returns whether PLANE may change pixels of B. */
+static int can_catcher_change_pixels(const struct glint_scene *s,
+                                     const struct glint_placed *plane,
+                                     struct glint_box b)
+{
+    int32_t corner[4][3];
+
+    if (!plane->is_only_shadow || !s->model.header->shadow)
+        return 1;
+    for (uint32_t i = 0; i < s->model.header->n_objects; i++)
+        if (s->placed[i].is_behind_catcher &&
+            !glint_box_is_empty(glint_box_intersect(s->placed[i].box, b)))
+            return 1;
+    for (int k = 0; k < 4; k++) {
+        struct glint_scene_ray ray;
+        int32_t seen_q30[3], t;
+
+        /* the middles of pixels next to the corners, outside B */
+        glint_view_set_ray(
+            &s->view, glint_pixel_position_q8(s, k & 1 ? b.x1 : b.x0 - 1, 0),
+            glint_pixel_position_q8(s, k & 2 ? b.y1 : b.y0 - 1, 1), &ray,
+            seen_q30);
+        t = glint_ray_intersect_plane(&ray, plane->at, plane->centre);
+        if (t == 0 || t == GLINT_PLANE_END ||
+            q_magnitude(v3_cosine_q30(ray.toward_q30, plane->centre)) <
+                1 << 20 ||
+            !glint_ray_point_at_distance(&ray, t, corner[k]))
+            return 1;
+    }
+    for (uint32_t i = 0; i < s->n_lit; i++)
+        if (glint_shadow_can_fall_on(s->lit[i].shadow,
+                                     (const int32_t(*)[3])corner))
+            return 1;
+    return 0;
+}
+
+/* Draws a plane in the tile of W; of a shadow catcher only the blocks of pixels
+ * that it may change. */
+static void draw_visible_blocks_of_plane(struct glint_scene_worker *w,
+                                         const struct glint_placed *plane,
+                                         uint32_t id)
+{
+    const struct glint_box b = glint_box_intersect(w->tile, plane->box);
+    const int side = plane->is_only_shadow ? BLOCK : GLINT_MAX_SIDE;
+
+    for (int y = b.y0; y < b.y1; y += side)
+        for (int x = b.x0; x < b.x1; x += side) {
+            const struct glint_box block = glint_box_intersect(
+                b, (struct glint_box){x, y, x + side, y + side});
+
+            if (can_catcher_change_pixels(w->scene, plane, block))
+                draw_plane(w, plane, id, block);
+        }
 }
 
 /* -------------------------------------------------------------------- tile */
@@ -366,7 +428,8 @@ int glint_scene_look(struct glint_scene_worker *w, struct glint_box tile)
     for (uint32_t i = 0; i < s->model.header->n_objects; i++)
         if (s->placed[i].is_seen &&
             s->placed[i].object->kind == GLINT_OBJECT_PLANE)
-            draw_plane(w, &s->placed[i], glint_make_triangle_id(i, 0));
+            draw_visible_blocks_of_plane(w, &s->placed[i],
+                                         glint_make_triangle_id(i, 0));
     for (uint32_t i = 0; i < s->model.header->n_objects; i++) {
         const struct glint_placed *placed = &s->placed[i];
         const struct glint_box b = glint_box_intersect(tile, placed->box);

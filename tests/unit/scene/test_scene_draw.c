@@ -7,6 +7,7 @@
 #include "glint/flare.h"
 #include "glint/scene/account.h"
 #include "scene/state.h"
+#include "scene/visible.h"
 #include "support/model_builder.h"
 #include "support/models/scene_builder.h"
 #include "support/shuffle.h"
@@ -565,8 +566,41 @@ TEST(flat_mesh_shadows_a_lamp)
         }
 }
 
-/* Checks that two shortcuts do not change images: shadow catchers are shaded
- * only where shadows may fall, and small balls have a single depth. */
+/* Sets the direction of the sun to X, 1, Z, scaled to length 1. */
+static void set_sun_direction_upwards(double x, double z)
+{
+    const double to[3] = {x, 1, z}, length = sqrt(x * x + z * z + 1);
+
+    for (int k = 0; k < 3; k++)
+        file.light[0].toward_q30[k] =
+            (int32_t)lround(ldexp(to[k] / length, 30));
+}
+
+/* Returns the number of samples that see object I. */
+static int count_samples_of_object(struct glint_scene *s, uint32_t i)
+{
+    struct glint_scene_worker *const w = &s->worker[0];
+    const int side = 1 << s->cfg.tile_log2;
+    int n = 0;
+
+    for (int y = 0; y < HEIGHT; y += side)
+        for (int x = 0; x < WIDTH; x += side) {
+            const struct glint_box tile = glint_box_intersect(
+                (struct glint_box){0, 0, WIDTH, HEIGHT},
+                (struct glint_box){x, y, x + side, y + side});
+
+            glint_scene_look(w, tile);
+            for (int row = w->touched.y0; row < w->touched.y1; row++)
+                for (int k = glint_get_sample_index(w, w->touched.x0, row, 0);
+                     k < glint_get_sample_index(w, w->touched.x1, row, 0); k++)
+                    n += w->id[k] >> 20 == i;
+        }
+    return n;
+}
+
+/* Checks that three shortcuts do not change images: shadow catchers are shaded
+ * only in the box and in the blocks of pixels where shadows may fall, and small
+ * balls have a single depth. */
 TEST(confined_shading_equals_full_shading)
 {
     static uint8_t px[2][BYTES];
@@ -574,7 +608,7 @@ TEST(confined_shading_equals_full_shading)
         .format = GLINT_RGB24, .width = WIDTH, .height = HEIGHT};
     const struct glint_box all = {0, 0, WIDTH, HEIGHT};
     uint32_t seed = 1;
-    int less = 0, flat = 0;
+    int less = 0, flat = 0, samples[3] = {0, 0, 0};
 
     for (int i = 0; i < 40; i++) {
         struct glint_scene *s;
@@ -586,13 +620,26 @@ TEST(confined_shading_equals_full_shading)
         for (int k = 0; k < 4; k += k == 1 ? 2 : 1)
             for (int j = 0; j < 3; j++)
                 file.object[k].at[j] += rng_int_below(&seed, UNIT) - UNIT / 3;
+        /* objects in front of the catcher, under other suns */
+        for (int k = 0; i % 2 && k < 4; k += k == 1 ? 2 : 1)
+            file.object[k].at[1] += 2 * UNIT;
+        /* a ball behind it */
+        if (i % 4 == 2) {
+            file.object[0].at[1] -= 3 * UNIT;
+            file.object[0].at[2] += 3 * UNIT;
+        }
+        if (i % 2)
+            set_sun_direction_upwards(rng_signed(&seed), rng_signed(&seed));
         s = begin_scene();
         for (int k = 0; k < 2; k++) {
             fill_image_with_pattern(px[k], BYTES);
             glint_image_place(&image, px[k]);
             glint_scene_draw(s, &image);
+            samples[k] += count_samples_of_object(s, 2);
             less += k == 0 && s->placed[2].box.x1 - s->placed[2].box.x0 < WIDTH;
             flat += k == 0 && s->placed[0].flat_depth > 0;
+            s->placed[2].is_only_shadow = 0;
+            samples[2] += k == 0 ? count_samples_of_object(s, 2) : 0;
             s->placed[2].box = all;
             s->placed[2].is_seen = !file.object[2].hidden;
             for (int j = 0; j < 4; j++)
@@ -600,8 +647,11 @@ TEST(confined_shading_equals_full_shading)
         }
         assert_memory_equal(px[0], px[1], BYTES);
     }
-    print_message("%d confined, %d flat\n", less, flat);
+    print_message("%d confined, %d flat; samples of catchers: %d in blocks, %d "
+                  "in boxes, %d in all\n",
+                  less, flat, samples[0], samples[2], samples[1]);
     assert_true(less > 10 && flat > 5);
+    assert_true(samples[0] < samples[2] * 9 / 10 && samples[2] < samples[1]);
 }
 
 /* ------------------------------------------------------------------ lights */
