@@ -172,17 +172,19 @@ struct glint_engine_light {
     uint64_t reserved[16]; /* must be 0 */
 };
 
-/* Bits that select the components of a flare, and two flags. CORES: stars
+/* Bits that select the components of a flare, and three flags. CORES: stars
  * include the cores of the lamps, for layers that are drawn without the
  * picture. CODES: accuracy that suffices for pictures of 8 bits, at about half
- * the cost. */
+ * the cost. CODES_16: accuracy that suffices for pictures of 16 bits: the same
+ * as CODES has in a picture that is four stops brighter. */
 enum glint_engine_part {
     GLINT_ENGINE_GHOSTS = 1,
     GLINT_ENGINE_STAR = 2,
     GLINT_ENGINE_VEIL = 4,
     GLINT_ENGINE_ALL = 7,
     GLINT_ENGINE_CORES = 8,
-    GLINT_ENGINE_CODES = 16
+    GLINT_ENGINE_CODES = 16,
+    GLINT_ENGINE_CODES_16 = 32
 };
 
 /* How the flare is drawn. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * Draws the flare of a picture, or parts of the flare as separate layers. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,14 +35,20 @@ enum glint_status glint_engine_draw(struct glint_engine *engine,
     return status;
 }
 
+/* log2 of the factor by which the light of a picture of 16 bits is multiplied
+ * for its plan. An eighth of an 8-bit code, the light that is omitted, is then
+ * 0.2 steps of 16 bits of linear light. Light above 128 times white is
+ * clamped. */
+enum { LIFT_16_LOG2 = 4 };
+
 /* Draws the selected parts of the flare (ghosts, starbursts, veil) into RGB,
- * linear light. Ghosts and quality are chosen as for a picture of 8-bit
- * codes. */
-static enum glint_status
-draw_linear_with_8bit_plan(struct glint_frame *f,
-                           const struct glint_lamp *lamps, int n, double scale,
-                           float *rgb, struct glint_engine_report *report)
+ * linear light. Ghosts and quality are chosen as for a picture of 8-bit codes
+ * whose light is 2^LIFT_LOG2 times that of RGB. */
+static enum glint_status draw_linear_with_8bit_plan(
+    struct glint_frame *f, const struct glint_lamp *lamps, int n, double scale,
+    int lift_log2, float *rgb, struct glint_engine_report *report)
 {
+    const float unit = (float)ldexp(1, -20 - lift_log2);
     const size_t samples = 3 * (size_t)f->view.width * (size_t)f->view.height;
     struct glint_image layer =
         glint_image_over(rgb, GLINT_LINEAR_Q20, f->view.width, f->view.height);
@@ -49,13 +56,14 @@ draw_linear_with_8bit_plan(struct glint_frame *f,
 
     /* Until the conversion below, RGB contains integers, _q20. */
     f->picture.for_codes = true;
-    status = glint_frame_draw(f, lamps, n, scale, &layer, report);
+    status =
+        glint_frame_draw(f, lamps, n, ldexp(scale, lift_log2), &layer, report);
     f->picture.for_codes = false;
     for (size_t i = 0; i < samples; i++) {
         int32_t light_q20;
 
         memcpy(&light_q20, &rgb[i], sizeof light_q20);
-        rgb[i] = (float)light_q20 * 0x1p-20F;
+        rgb[i] = (float)light_q20 * unit;
     }
     return status;
 }
@@ -98,7 +106,10 @@ enum glint_status glint_engine_draw_layer(struct glint_engine *engine,
                               star, engine->expose.light.gain > 0);
     f->known = lamps;
     if (parts & GLINT_ENGINE_CODES || n == 0)
-        status = draw_linear_with_8bit_plan(f, plain, n, scale, rgb, report);
+        status = draw_linear_with_8bit_plan(f, plain, n, scale, 0, rgb, report);
+    else if (parts & GLINT_ENGINE_CODES_16)
+        status = draw_linear_with_8bit_plan(f, plain, n, scale, LIFT_16_LOG2,
+                                            rgb, report);
     else if (drawn & (GLINT_ENGINE_GHOSTS | GLINT_ENGINE_VEIL) || star > 0)
         status = glint_frame_draw_flare_alone(f, plain, n, scale, rgb, report);
     f->known = NULL;
@@ -145,7 +156,7 @@ enum glint_status glint_engine_render(struct glint_engine *engine,
         memset(rgb, 0,
                3 * (size_t)f->view.width * (size_t)f->view.height *
                    sizeof *rgb);
-        status = draw_linear_with_8bit_plan(f, lamps, n, gain, rgb, report);
+        status = draw_linear_with_8bit_plan(f, lamps, n, gain, 0, rgb, report);
     } else
         status = glint_frame_draw_flare_alone(f, lamps, n, gain, rgb, report);
     f->progress = NULL;

@@ -286,6 +286,27 @@ static double sum_layer_light(const struct glint_lamp *lamp, int32_t us,
     return sum;
 }
 
+/* Checks that a layer for 16 bits contains the ghosts of a lamp that is just
+ * too faint for a visible ghost in 8 bits, with the light that a layer of
+ * floats has, at less work. */
+TEST(layers_for_16_bits_keep_faint_ghosts)
+{
+    struct glint_lamp lamp = {12, 30, 1e5, {1, 1, 1}, {0, 0}, 0};
+    const unsigned ghosts = GLINT_ENGINE_GHOSTS;
+    double floats, codes_16;
+    int primitives;
+
+    cfg.light.by_hand = 1;
+    open_engine();
+    while (sum_layer_light(&lamp, 0, ghosts | GLINT_ENGINE_CODES) > 0)
+        lamp.power /= 2;
+    floats = sum_layer_light(&lamp, 0, ghosts);
+    primitives = report.stats.primitives;
+    codes_16 = sum_layer_light(&lamp, 0, ghosts | GLINT_ENGINE_CODES_16);
+    assert_true(floats > 0 && fabs(codes_16 / floats - 1) < 0.2);
+    assert_true(report.stats.primitives < primitives);
+}
+
 /* Checks a lamp that becomes too bright for the exposure of a video: its ghosts
  * are limited, but not its starburst, as the exposure does not change
  * starbursts. */

@@ -956,14 +956,13 @@ void drawing_end_flare(struct drawing_run *run, double start)
     run->flare_ms = 1e3 * (tool_clock_s() - start);
 }
 
-enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
+enum glint_status drawing_draw_layer(struct drawing_run *run, unsigned accuracy,
                                      float *rgb)
 {
     const double start = tool_clock_s();
-    const enum glint_status status = glint_engine_draw_layer(
-        run->engine, run->lamp, run->n_lamps,
-        is_deep ? GLINT_ENGINE_ALL : GLINT_ENGINE_ALL | GLINT_ENGINE_CODES, rgb,
-        &run->report);
+    const enum glint_status status =
+        glint_engine_draw_layer(run->engine, run->lamp, run->n_lamps,
+                                GLINT_ENGINE_ALL | accuracy, rgb, &run->report);
 
     drawing_end_flare(run, start);
     return status;

@@ -129,9 +129,9 @@ enum glint_status drawing_set_exposure(struct drawing *drawing,
                                        const struct glint_image *image);
 
 /* Draws the flare into RGB, [height][width][3] of the upright picture, linear
- * light. If IS_DEEP, RGB has the accuracy of floats, else that of 8-bit codes
- * in half the time. Returns GLINT_E_MEMORY on failure. */
-enum glint_status drawing_draw_layer(struct drawing_run *run, bool is_deep,
+ * light. ACCURACY: GLINT_ENGINE_CODES, GLINT_ENGINE_CODES_16, or 0 for that of
+ * floats. Returns GLINT_E_MEMORY on failure. */
+enum glint_status drawing_draw_layer(struct drawing_run *run, unsigned accuracy,
                                      float *rgb);
 
 /* Returns whether lamps are searched in the picture, which options can

@@ -32,11 +32,6 @@ struct overlay_file {
     float *layer;
 };
 
-static bool has_more_than_8_bits(const struct glint_samples *s)
-{
-    return s->colour[0].sample != GLINT_SAMPLE_U8;
-}
-
 static int report_file_failure(const struct tool *tool,
                                const struct overlay_file *f,
                                enum glint_status status)
@@ -256,6 +251,22 @@ static void warn_of_grey_result(const struct overlay_file *file,
                 tool->name, file->from);
 }
 
+/* Returns the accuracy that the flare of FILE needs: a flag of
+ * glint_engine_draw_layer(), or 0 for that of floats. A layer of 8 bits may be
+ * brightened later, as a picture of 16 bits. */
+static unsigned choose_flare_accuracy(struct overlay_file *file,
+                                      bool is_composite)
+{
+    const enum glint_sample sample =
+        get_samples_to_draw_on(file)->colour[0].sample;
+
+    if (sample == GLINT_SAMPLE_U8 && is_composite)
+        return GLINT_ENGINE_CODES;
+    return sample <= GLINT_SAMPLE_U16 && !glint_picture_is_float(file->to)
+               ? GLINT_ENGINE_CODES_16
+               : 0;
+}
+
 /* Draws the flare in linear light into the file's layer. If --layer is
  * composite, adds the layer and the marks of lamps to the samples. */
 static enum glint_status draw_flare_layer(struct overlay_file *file,
@@ -271,10 +282,9 @@ static enum glint_status draw_flare_layer(struct overlay_file *file,
     if (!file->layer)
         return GLINT_E_MEMORY;
     if (is_lit)
-        status = drawing_draw_layer(
-            &drawing->run,
-            has_more_than_8_bits(get_samples_to_draw_on(file)) || !is_composite,
-            file->layer);
+        status = drawing_draw_layer(&drawing->run,
+                                    choose_flare_accuracy(file, is_composite),
+                                    file->layer);
     if (status != GLINT_OK)
         return status;
     if (is_grey)

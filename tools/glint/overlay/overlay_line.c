@@ -33,7 +33,7 @@ static bool measure_layer_light(struct drawing *drawing,
     const struct glint_engine_report report = drawing->run.report;
     float *rgb = malloc(3 * n * sizeof *rgb);
     const bool is_drawn =
-        rgb && drawing_draw_layer(&drawing->run, true, rgb) == GLINT_OK;
+        rgb && drawing_draw_layer(&drawing->run, 0, rgb) == GLINT_OK;
 
     if (is_drawn) {
         glint_response_around(rgb, n, light);

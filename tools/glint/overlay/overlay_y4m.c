@@ -64,8 +64,10 @@ static enum glint_status draw_flare_on_planes(void *ctx,
     if (drawing->run.n_lamps == 0 &&
         !glint_engine_has_veil(drawing->run.engine))
         return GLINT_OK;
-    status =
-        drawing_draw_layer(&drawing->run, y->light.layout.bits > 12, y->layer);
+    status = drawing_draw_layer(
+        &drawing->run,
+        y->light.layout.bits > 12 ? GLINT_ENGINE_CODES_16 : GLINT_ENGINE_CODES,
+        y->layer);
     if (status == GLINT_OK && (drawing_get_exposure_factor(&drawing->run) > 0 ||
                                glint_engine_has_veil(drawing->run.engine)))
         glint_y4m_light_add(&y->light, y->planes, y->layer);

@@ -144,7 +144,7 @@ static enum glint_status add_flare_of_lights(struct frames *f)
         ((c->run.n_lamps == 0 || !(drawing_get_exposure_factor(&c->run) > 0)) &&
          !glint_engine_has_veil(c->run.engine)))
         return status;
-    status = drawing_draw_layer(&c->run, true, f->flare);
+    status = drawing_draw_layer(&c->run, 0, f->flare);
     for (size_t i = 0; status == GLINT_OK && i < n; i++)
         f->r->image.rgb[i] += f->flare[i];
     return status;

@@ -434,7 +434,8 @@ static enum glint_status draw_flare_alone(uint8_t *pixels, int n, float *rgb)
         (!glint_engine_has_veil(web.engine) &&
          (n == 0 || !(glint_engine_exposed(web.engine)->scale > 0))))
         return status;
-    return glint_engine_draw_layer(web.engine, web.lamp, n, GLINT_ENGINE_ALL,
+    return glint_engine_draw_layer(web.engine, web.lamp, n,
+                                   GLINT_ENGINE_ALL | GLINT_ENGINE_CODES_16,
                                    rgb, &report);
 }
 
