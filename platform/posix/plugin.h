@@ -29,11 +29,11 @@ struct glint_plugin {
     const char *target;  /* make target that builds it */
 };
 
-/* Sets FACE to the struct that PLUGIN exports, or to NULL on failure. If the environment variable
- * plugin->setting is set, it names the library's file, and no folder is
- * searched. Otherwise searches three folders: the folder of the program or host
- * plug-in that contains this code; ../lib/glint relative to it; and
- * GLINT_PLUGIN_DIR, if that was defined when compiling. Skips folders that
+/* Sets FACE to the struct that PLUGIN exports, or to NULL on failure. If the
+ * environment variable plugin->setting is set, it names the library's file, and
+ * no folder is searched. Otherwise searches three folders: the folder of the
+ * program or host plug-in that contains this code; ../lib/glint relative to it;
+ * and GLINT_PLUGIN_DIR, if that was defined when compiling. Skips folders that
  * everybody may write to. Returns GLINT_E_UNSUPPORTED if the plug-in is not
  * found, GLINT_E_FORMAT if a file is found that cannot be loaded or is not the
  * plug-in of this version. Not thread-safe. */
