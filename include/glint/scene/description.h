@@ -74,8 +74,8 @@ struct glint_described_camera {
 enum glint_described_source { GLINT_DESCRIBED_SUN, GLINT_DESCRIBED_LAMP };
 
 struct glint_described_light {
-    /* Name that the parser generates: sun, lamp, lamp2, ..., environment,
-     * environment2, ... */
+    /* Name in the text, or one that the parser generates: sun, lamp, lamp2,
+     * ..., environment, environment2, ... */
     char name[GLINT_DESCRIPTION_NAME_BYTES];
     enum glint_described_source kind;
     double at[3]; /* position of a lamp, or unit vector towards a sun */
