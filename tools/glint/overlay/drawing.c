@@ -519,9 +519,46 @@ int drawing_find_removal(const struct drawing *drawing, bool is_found)
     return -1;
 }
 
+/* Returns whether IMAGE is known to have no pixel near GIVEN, a lamp of
+ * --light-at inside it, that is brighter than half a stop below white. At most
+ * SAMPLES pixels per row and column are read. */
+static bool is_on_dark_pixels(const struct drawing *d,
+                              const struct glint_image *image,
+                              const struct glint_engine_lamp *given)
+{
+    enum { SAMPLES = 1024, LEAST_CODE = 219 };
+    const int columns = image->width < SAMPLES ? image->width : SAMPLES;
+    const int rows = image->height < SAMPLES ? image->height : SAMPLES;
+    const double reach_px = image->width / 100.0 + 1;
+    uint8_t *rgb;
+    double at[2];
+    int most = 0;
+
+    glint_view_to_pixel(&d->run.view, get_lens_focal_mm(d), &given->lamp,
+                        &at[0], &at[1]);
+    if (image->format == GLINT_LINEAR_Q20 || !(at[0] >= 0 && at[1] >= 0) ||
+        !(at[0] < image->width && at[1] < image->height))
+        return false;
+    rgb = malloc((size_t)columns * (size_t)rows * 3);
+    if (!rgb)
+        return false;
+    glint_image_sample(image, columns, rows, rgb);
+    for (int i = 0; i < columns * rows; i++) {
+        const int column = i % columns, row = i / columns;
+        const double x = (column + 0.5) * image->width / columns;
+        const double y = (row + 0.5) * image->height / rows;
+
+        if (hypot(x - at[0], y - at[1]) <= reach_px)
+            for (int c = 0; c < 3; c++)
+                most = rgb[3 * i + c] > most ? rgb[3 * i + c] : most;
+    }
+    free(rgb);
+    return most < LEAST_CODE;
+}
+
 /* If a candidate is at the position of GIVEN, a lamp of --light-at, gives GIVEN
- * the candidate's centre, colour and extent. */
-static void snap_to_candidate(const struct drawing *d,
+ * the candidate's centre, colour and extent. Returns whether there is one. */
+static bool snap_to_candidate(const struct drawing *d,
                               struct glint_engine_lamp *given)
 {
     const struct glint_view *const view = &d->run.view;
@@ -542,8 +579,9 @@ static void snap_to_candidate(const struct drawing *d,
         lamp->turn_deg = atan2(-spot.sin_q15, spot.cos_q15) * 180 / GLINT_PI;
         for (int c = 0; c < 3; c++)
             lamp->rgb[c] = spot.rgb_q15[c] / 32768.0;
-        return;
+        return true;
     }
+    return false;
 }
 
 /* Continues AT in a frame with the detected lamps LAMP[N]: updates the place of
@@ -639,10 +677,14 @@ static int add_found_lamps(struct drawing *d, const struct glint_image *image,
             lamp[run->n_found++] = lamp[i];
     n_all = run->n_found;
     for (int i = 0; i < n; i++) {
+        if (i < d->line.n_at)
+            run->at[i].is_on_dark = false;
         if (given[i].id != 0 || is_off(d, i))
             continue;
         if (i < d->line.n_at)
-            snap_to_candidate(d, &given[i]);
+            run->at[i].is_on_dark = !snap_to_candidate(d, &given[i]) &&
+                                    d->line.is_still &&
+                                    is_on_dark_pixels(d, image, &given[i]);
         /* The ids of detected lamps start at 1, so user-defined lamps get other
          * ids, from LAMP_ID_TEXT on. */
         given[i].id = LAMP_ID_TEXT + (uint32_t)i;

@@ -23,6 +23,8 @@ struct drawing_followed {
     uint32_t id;     /* 0: none, the lamp of --light-at stays at its place */
     uint32_t newest; /* max id of all lamps while the lamp existed */
     double x, y;     /* last place, pixels */
+    /* a still picture has neither a lamp nor a bright pixel there */
+    bool is_on_dark;
 };
 
 /* State while frames are drawn */

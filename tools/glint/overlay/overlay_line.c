@@ -329,8 +329,7 @@ void overlay_print_no_lamp_found(const struct drawing *drawing, bool is_copied,
     if (is_next)
         print_lamp_candidates(drawing, to);
     else
-        fprintf(to, "%splace a lamp by --light-at X,Y",
-                is_searched ? "lower --threshold, or " : "");
+        fputs("place a lamp by --light-at X,Y", to);
     if (over_scene_has_lights_without_flare(&drawing->files.scene))
         fputs("; 'flare lights' in the scene file makes its lights visible to "
               "the lens",
@@ -367,6 +366,23 @@ static void print_idle_removal(const struct overlay *o, FILE *to)
                 drawing->line.at[k].is_percent[1] ? "%" : "");
 }
 
+/* Prints a warning for each lamp of --light-at where a picture is dark. */
+static void print_lamps_on_dark(const struct overlay *o, FILE *to)
+{
+    const struct drawing *const drawing = &o->drawing;
+
+    for (int k = 0; k < drawing->line.n_at; k++)
+        if (drawing->run.n_frames == 1 && drawing->run.at[k].is_on_dark)
+            fprintf(to,
+                    "%s: no pixel is bright at %g%s,%g%s, so the lamp of "
+                    "--light-at is not one of the picture; --show lights marks "
+                    "those that are\n",
+                    o->output, drawing->line.at[k].xy[0],
+                    drawing->line.at[k].is_percent[0] ? "%" : "",
+                    drawing->line.at[k].xy[1],
+                    drawing->line.at[k].is_percent[1] ? "%" : "");
+}
+
 /* Prints how many lamps --show lights marked, the options that remove them, and
  * the candidates. */
 static void print_marked_lamps(const struct overlay *o, FILE *to)
@@ -394,6 +410,7 @@ void overlay_print_summary(const struct overlay *o,
     const int n = overlay_count_frames(o);
 
     print_idle_removal(o, to);
+    print_lamps_on_dark(o, to);
     fprintf(to, "%s: ", o->output);
     if (n != 1)
         fprintf(to, "%d frames, %.1f a second, ", n, n / seconds);
