@@ -68,7 +68,7 @@ static void record_barrel_errors(struct meter *b, const struct glint_outputs *o,
         const struct glint_fitted_output *f = &b->fitted->output[k];
         double r;
 
-        if (f->kind < GLINT_OUT_BARREL_0)
+        if (f->kind < GLINT_OUT_BARREL_0 || f->critical)
             continue;
         r = hypot(hits[f->event][0], hits[f->event][1]) /
             b->path.event[f->event].semi_mm;

@@ -20,6 +20,9 @@ struct glint_fitted_output {
      * must not be rounded to 16 bits */
     double grain;
     int event; /* barrels only: index of the barrel among the path's events */
+    /* barrels only: rays end at the event by their angle (critical.h), not at
+     * a rim */
+    bool critical;
     /* energy only: number of times that the polynomial's value is squared to
      * get the energy */
     int roots;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "bake/fit/critical.h"
 #include "base/compiler.h"
 
 STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
@@ -31,6 +32,11 @@ STATIC_ASSERT((int)GLINT_MAX_TERMS == (int)GLINT_MAX_MODEL_TERMS);
 /* The second fit is discarded if its error is above one tolerance and above
  * this many times the first fit's error. */
 #define HARM 1.5
+
+/* CRITICAL: tolerance of the barrel at a critical angle / max tolerance of
+ * barrels. MOST_CRITICAL: max error of such a barrel, in tolerances. */
+#define CRITICAL      0.1
+#define MOST_CRITICAL 5.0
 
 /* ----------------------------------------------------------------- degrees */
 
@@ -173,17 +179,14 @@ static void set_ray_weights(struct fit *f)
     }
 }
 
-/* Returns whether the polynomials transmit ray I although the lens clearly
- * blocks it at this and all neighbouring zoom positions. FIELD_MM: radius of
+/* Returns whether the polynomials transmit the ray at the zone coordinates X to
  * the field. */
-static bool is_leaking_ray(const struct glint_zone_rays *r, int i,
-                           const struct glint_fitted_system *system,
-                           double field_mm)
+static bool is_ray_transmitted(const struct glint_fitted_system *system,
+                               const double x[GLINT_VARIABLES], double field_mm)
 {
-    double x[GLINT_VARIABLES], at[GLINT_OUT_KINDS] = {0};
-    bool passes = r->at[RAY_EXCESS][i] > 1.05;
+    double at[GLINT_OUT_KINDS] = {0};
+    bool passes = true;
 
-    glint_zone_rays_get_coordinates(r, i, x);
     for (int k = 0; k < system->n_outputs && passes; k++) {
         const struct glint_fitted_output *o = &system->output[k];
 
@@ -194,6 +197,20 @@ static bool is_leaking_ray(const struct glint_zone_rays *r, int i,
     }
     return passes && hypot(at[GLINT_OUT_STOP_X], at[GLINT_OUT_STOP_Y]) < 1 &&
            hypot(at[GLINT_OUT_SENSOR_X], at[GLINT_OUT_SENSOR_Y]) < field_mm;
+}
+
+/* Returns whether the polynomials transmit ray I although the lens clearly
+ * blocks it at this and all neighbouring zoom positions. FIELD_MM: radius of
+ * the field. */
+static bool is_leaking_ray(const struct glint_zone_rays *r, int i,
+                           const struct glint_fitted_system *system,
+                           double field_mm)
+{
+    double x[GLINT_VARIABLES];
+
+    glint_zone_rays_get_coordinates(r, i, x);
+    return r->at[RAY_EXCESS][i] > 1.05 &&
+           is_ray_transmitted(system, x, field_mm);
 }
 
 /* Increases the weights of leaking rays, so that the next fit blocks them.
@@ -542,6 +559,98 @@ static enum glint_status fit_all_outputs(struct fit *f,
     return status;
 }
 
+/* ---------------------------------------------------------- critical angles */
+
+/* Min number of leaking invalid rays / number of visible rays for which a
+ * barrel is fitted. */
+#define INVALID 0.002
+
+/* max number of invalid rays that are compared with the polynomials */
+enum { MOST_INVALID = 600 };
+
+/* Lists the invalid rays, every STEP-th, that the polynomials transmit. Returns
+ * their number. */
+static int list_transmitted_rays(const struct fit *f,
+                                 const struct glint_fitted_system *system,
+                                 int step, int index[MOST_INVALID])
+{
+    const struct glint_zone_rays *const r = &f->buffers->rays;
+    int n = 0;
+
+    for (int i = 0; i < r->n_invalid; i += step) {
+        double x[GLINT_VARIABLES];
+
+        for (int k = 0; k < GLINT_VARIABLES; k++)
+            x[k] = r->invalid[k][i];
+        if (is_ray_transmitted(system, x, f->task->visible->field_mm))
+            index[n++] = i;
+    }
+    return n;
+}
+
+/* Fits the barrel that stops rays at the critical angle C. */
+static enum glint_status fit_critical_angle(struct fit *f,
+                                            struct glint_critical c,
+                                            enum glint_channel kind,
+                                            struct glint_fitted_system *system)
+{
+    struct glint_zone_rays *const r = &f->buffers->energies;
+    double worst = 0;
+    enum glint_status status;
+
+    f->buffers->has_energies = false;
+    glint_critical_trace_rays(f->task->zone, f->task->visible,
+                              &f->buffers->rays, c, r);
+    if (r->n == 0)
+        return GLINT_OK;
+    for (int i = 0; i < r->n; i++) {
+        const double r2 = r->radius[0][i] * r->radius[0][i];
+        const double off = (r2 - 1) / 0.3;
+
+        f->buffers->value[i] = 0.5 * (1 + r2);
+        f->buffers->channel_weight[i] =
+            compute_edge_weight(f, r->at[RAY_EXCESS][i]) *
+            fmax(0.05, 1 / (1 + off * off));
+    }
+    system->output[system->n_outputs].event = c.event;
+    system->output[system->n_outputs].critical = true;
+    status = fit_and_append_output(f, r, kind, CRITICAL * f->task->barrel,
+                                   system, &worst);
+    if (status == GLINT_OK && !(worst <= MOST_CRITICAL))
+        free(system->output[--system->n_outputs].coef);
+    return status;
+}
+
+/* Adds barrels for rays that end at critical angles although the polynomials
+ * transmit them. */
+static enum glint_status fit_critical_angles(struct fit *f,
+                                             struct glint_fitted_system *system)
+{
+    const int step = 1 + f->buffers->rays.n_invalid / MOST_INVALID;
+    int index[MOST_INVALID], n_seen = 0;
+    enum glint_status status = GLINT_OK;
+
+    for (int i = 0; i < f->buffers->rays.n; i++)
+        n_seen += glint_zone_rays_is_visible(&f->buffers->rays, i);
+    for (int kind = GLINT_OUT_BARREL_0 + f->buffers->rays.n_barrels;
+         kind < GLINT_OUT_KINDS && status == GLINT_OK; kind++) {
+        const int n = list_transmitted_rays(f, system, step, index);
+        const int n_outputs = system->n_outputs;
+        struct glint_critical c;
+
+        if (n * step <= INVALID * n_seen)
+            break;
+        c = glint_critical_find(f->task->zone, f->task->visible,
+                                &f->buffers->rays, index, n);
+        if (c.event < 0)
+            break;
+        status = fit_critical_angle(f, c, (enum glint_channel)kind, system);
+        if (system->n_outputs == n_outputs)
+            break;
+    }
+    return status;
+}
+
 /* ------------------------------------------------------------------ checks */
 
 /* max RMS error, in tolerances, of rays between the fitted ones */
@@ -621,6 +730,9 @@ enum glint_status glint_zone_fit_outputs(const struct glint_zone_task *task,
     if (status == GLINT_OK && task->visible->far)
         errors->outlines = fmax(errors->outlines,
                                 compute_leaking_ray_ratio(&f, system) / LEAK);
+    if (status == GLINT_OK && !task->zone->skew && !task->visible->shaped &&
+        task->visible->n_beside == 0 && !is_next_step_decided(&f))
+        status = fit_critical_angles(&f, system);
     if (status == GLINT_OK)
         check_rays_between_samples(&f, system);
     return status;

@@ -48,6 +48,15 @@ static void append_zone_ray(const struct glint_visible *h,
     }
 }
 
+static void append_invalid_ray(const double x[GLINT_VARIABLES],
+                               struct glint_zone_rays *rays)
+{
+    const int i = rays->n_invalid++;
+
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        rays->invalid[k][i] = x[k];
+}
+
 /* RAY_EXCESS and RAY_FIELD of each ray of a batch at that neighbouring zoom
  * position where the larger one of both is smallest. */
 struct beside {
@@ -156,7 +165,8 @@ static void trace_pupil_grid(const struct glint_zone *zone,
                              const struct glint_visible *visible, int sine,
                              int wave, int stride, struct glint_zone_rays *rays)
 {
-    const int full = rays->n + GLINT_ZONE_RAYS / (4 * SINES);
+    const int most = GLINT_ZONE_RAYS / (4 * SINES);
+    const int full = rays->n + most, full_invalid = rays->n_invalid + most;
     struct glint_zone_batch t;
     struct pupil_grid g;
     struct beside beside;
@@ -177,8 +187,11 @@ static void trace_pupil_grid(const struct glint_zone *zone,
         for (int i = 0; i < t.n && rays->n < full; i++) {
             const int k = at + i;
 
-            if (t.status[i] != GLINT_RAY_OK)
+            if (t.status[i] != GLINT_RAY_OK) {
+                if (rays->n_invalid < full_invalid)
+                    append_invalid_ray(t.x[i], rays);
                 continue;
+            }
             append_zone_ray(visible, t.path, t.x[i], &t.ray[i],
                             glint_zone_batch_get_hits(&t, i), rays);
             replace_by_nearer_zoom_position(&beside, i, rays);
@@ -209,7 +222,7 @@ static void trace_rays_for_positions(const struct glint_zone *zone,
     static const int shift[] = {0, 3, 5, 8};
 
     for (int stride = 2; stride > 0; stride--) {
-        rays->n = 0;
+        rays->n = rays->n_invalid = 0;
         for (int k = 0; k < 4 * SINES; k++)
             trace_pupil_grid(zone, visible, k / 4,
                              (k / 4 + shift[k % 4]) % GLINT_VISIBLE_WAVES,
@@ -277,7 +290,7 @@ static void trace_scattered_rays(const struct glint_zone *zone,
     enum { PLANES = 132, RAYS = 24, AT_ONCE = RAYS / 3 };
     struct glint_zone_batch t;
 
-    rays->n = 0;
+    rays->n = rays->n_invalid = 0;
     for (int k = 0; k < PLANES * RAYS / AT_ONCE; k++) {
         const int wave = k / 3 % GLINT_VISIBLE_WAVES;
         double plane[GLINT_VARIABLES], x[GLINT_VARIABLES];
@@ -342,7 +355,7 @@ void glint_zone_trace_energies(const struct glint_zone *zone,
     static const int shift[] = {0, 2, 4, 6, 9};
     const bool steep = glint_zone_rays_compute_energy_ratio(rays) > GLINT_STEEP;
 
-    energies->n_barrels = energies->n = 0;
+    energies->n_barrels = energies->n = energies->n_invalid = 0;
     energies->scattered = false;
     for (int k = 0; k < SINES * GLINT_VISIBLE_WAVES && !steep; k++)
         trace_pupil_grid(zone, visible, k / GLINT_VISIBLE_WAVES,

@@ -36,6 +36,9 @@ struct glint_zone_rays {
     bool scattered; /* false: the rays form rows of constant v */
     double x[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     double at[RAY_CHANNELS][GLINT_ZONE_RAYS];
+    /* coordinates of the rays of the grid that do not reach the sensor */
+    int n_invalid;
+    double invalid[GLINT_VARIABLES][GLINT_ZONE_RAYS];
     /* barrels that block rays in this zone, and the relative radius of each ray
      * at each of them */
     int n_barrels;

@@ -428,6 +428,29 @@ TEST(near_second_barrel_needs_a_small_tolerance)
     assert_true(rays.missed_cut <= 2.5e-4);
 }
 
+/* Near total reflection this ghost ends inside all barrels. Checks that its
+ * polynomials do not continue it. */
+TEST(totally_reflected_rays_are_blocked)
+{
+    static struct glint_prescription lens;
+    static bool ghosts[GLINT_MAX_GHOSTS];
+    struct glint_bake_options o;
+    struct glint_error error;
+    struct baked b;
+
+    load_lens(&lens, "wide/double-gauss-canon-28");
+    assert_ok(glint_prescription_set_f_number(&lens, 11, &error));
+    glint_bake_defaults(&o);
+    o.max_deg = 38;
+    o.tolerance = 4;
+    ghosts[13] = true;
+    o.ghosts = ghosts;
+    bake_and_open_model(&b, &lens, &o);
+    print_message("%d of %d rays leak\n", b.report.intruders, b.report.rays);
+    assert_true(b.report.intruders < b.report.rays / 500);
+    free(b.data);
+}
+
 /* A zone is a range of field angles with polynomials of its own. Checks that a
  * zone restricted to a part of its pupil keeps its pupil box, expressed in the
  * coordinates of the part. */
