@@ -48,9 +48,10 @@ static struct fake_display {
                              vertical blank; next 0: no flip is pending */
     uint32_t connectors[2], n_connectors; /* those that the CRTC drives */
     struct kms_mode mode;
-    bool has_event; /* true: a flip's event was not read yet */
-    bool is_off;    /* true: there are no vertical blanks */
-    bool is_old;    /* true: a kernel before 5.8, for a user other than root */
+    bool has_event;    /* true: a flip's event was not read yet */
+    bool is_forbidden; /* true: opening the device fails with EACCES */
+    bool is_off;       /* true: there are no vertical blanks */
+    bool is_old; /* true: a kernel before 5.8, for a user other than root */
     bool has_other_master;
     int n_set_crtc, n_flips, n_fbs, n_dumbs, n_maps;
     int n_calls, fail_at; /* calls so far; the one that fails, from 1 */
@@ -69,6 +70,8 @@ int __wrap_open64(const char *path, int flags, ...)
         return __real_open64(path, flags);
     if (strcmp(path, "/dev/dri/card0") != 0)
         return set_errno_and_fail(ENOENT);
+    if (display.is_forbidden)
+        return set_errno_and_fail(EACCES);
     return display.fd = __real_open64("/dev/null", O_RDWR);
 }
 
@@ -489,5 +492,17 @@ TEST(a_connector_that_is_not_there_is_an_error)
     assert_non_null(strstr(error.text, "no display is connected to HDMI-Z-9; "
                                        "the connectors are HDMI-A-1, "
                                        "HDMI-A-2"));
+    kms.sink.close(&kms.sink);
+}
+
+TEST(a_device_without_permission_names_the_group)
+{
+    struct glint_error error;
+    struct glint_kms kms;
+
+    display.is_forbidden = true;
+    assert_int_equal(glint_kms_open(&kms, NULL, GLINT_PANEL_FIT, &error),
+                     GLINT_E_DEVICE);
+    assert_non_null(strstr(error.text, "usermod -aG video"));
     kms.sink.close(&kms.sink);
 }
