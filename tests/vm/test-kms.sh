@@ -3,6 +3,7 @@
 #
 # test-kms.sh - a scene with lamps -> camera -> glint live -o kms -> display: the
 # display must show, byte for byte, what glint overlay makes of the same frame,
+# after a switch of consoles and with --reconnect after it was unplugged, too,
 # and what it showed before when glint ends or is killed.
 # arch: x86_64 aarch64
 . "$(dirname "$0")/lib.sh"
@@ -34,6 +35,21 @@ kill -9 \$live
 wait \$live
 sleep 1
 shot killed
+\$show --reconnect 2>back >back.stats &
+live=\$!
+wait_for grep -q '"frames":[1-9]' back.stats
+chvt 2
+wait_frames back.stats 3
+shot switched
+chvt 1
+for status in /sys/class/drm/card0-*/status; do echo off >\$status; done
+wait_for grep -q 'was unplugged' back
+for status in /sys/class/drm/card0-*/status; do echo detect >\$status; done
+wait_frames back.stats 3
+shot back
+kill -INT \$live
+wait \$live
+echo "\$?" >>back
 \$show 2>lost >lost.stats &
 live=\$!
 wait_for grep -q '"frames":[1-9]' lost.stats
@@ -54,6 +70,11 @@ END
     expect "$1: and after kill -9" same "$at/killed.ppm" "$at/before.ppm"
     expect "$1: an unplugged display is named" says "$at/lost" 'was unplugged'
     expect "$1: and ends it with 4" says "$at/lost" '^4$'
+    expect "$1: the display still shows it after a switch of consoles" \
+        same "$at/switched.ppm" "$at/expected.ppm"
+    expect "$1: and after it was plugged in again" \
+        same "$at/back.ppm" "$at/expected.ppm"
+    expect "$1: ends with 0 then" says "$at/back" '^0$'
     expect "$1: no display" says "$at/none" 'no display is connected; the connectors are'
 }
 
