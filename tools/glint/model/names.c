@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "model/model_file.h"
+#include "posix/error.h"
 #include "posix/input.h"
 #include "posix/output.h"
 
@@ -76,6 +77,28 @@ static int find_name_in_line(const char *line, int bytes, const char *key,
     return -1;
 }
 
+/* Sets ERROR to "PATH:LINE:COLUMN: CAUSE". The beginning of a long PATH is
+ * omitted so that CAUSE fits. Does not change ERROR if only a few characters of
+ * PATH fit. */
+static void add_place_to_error(const char *path, int line, int column,
+                               const char *cause, struct glint_error *error)
+{
+    enum { LEAST = 16 };
+    const int n_path = (int)strlen(path);
+    const int room = (int)(sizeof error->text - strlen(cause)) - 1 -
+                     snprintf(NULL, 0, ":%d:%d: ", line, column);
+    const int cut = n_path > room ? n_path - room + 3 : 0;
+    int used;
+
+    if (cut && room < LEAST)
+        return;
+    used = snprintf(error->text, sizeof error->text,
+                    "%s%s:%d:%d: ", cut ? "..." : "", path + cut, line, column);
+    snprintf(error->text + used, sizeof error->text - (size_t)used, "%s",
+             cause);
+    glint_utf8_replace_unprintable(error->text);
+}
+
 void tool_add_place_of_name(const char *path, const char *key, const char *name,
                             struct glint_error *error)
 {
@@ -94,8 +117,7 @@ void tool_add_place_of_name(const char *path, const char *key, const char *name,
         const int column = find_name_in_line(start, n, key, name);
 
         if (column >= 0) {
-            snprintf(error->text, sizeof error->text, "%.100s:%d:%d: %.120s",
-                     path, line, column + 1, cause.text);
+            add_place_to_error(path, line, column + 1, cause.text, error);
             break;
         }
         at += (size_t)n + 1;
