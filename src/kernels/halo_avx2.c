@@ -135,9 +135,10 @@ static inline V compute_column_q16(const struct constants *h, V v_q8)
     const int32_t least =
         q_larger(first - range, _mm256_cvtsi256_si32(h->reach_q8));
 
-    return v_sub(compute_log2_q16(x, bit_length((uint64_t)least),
-                                  bit_length((uint64_t)(first + range))),
-                 h->reach_log2_q16);
+    return v_sub(
+        compute_log2_q16(x, bit_length((uint64_t)least),
+                         bit_length((uint64_t)first + (uint64_t)range)),
+        h->reach_log2_q16);
 }
 
 /* Sets SUM to the interpolated entries at the byte offset AT of TABLE and of

@@ -162,19 +162,21 @@ static void divide_distances_into_zones(struct glint_star_lamp *lamp,
 static int compute_halo_reach(const struct glint_star_tables *t,
                               int32_t power_log2_q16, int32_t min_log2_q16)
 {
-    int row = GLINT_STAR_HALO_ROWS - 1;
+    const int last = GLINT_STAR_HALO_ROWS - 1;
 
-    for (; row >= 0; row--) {
-        const int32_t light_log2_q16 =
-            t->halo_log2_q16 + t->halo_max[row] * 32 + power_log2_q16;
-        const int32_t r2_log2_q16 = light_log2_q16 - min_log2_q16;
+    for (int row = last; row >= 0; row--) {
+        /* Row i covers r^2 from 2^(4 + i / 2) on; between rows the table is
+         * interpolated, and the last row covers all larger r^2. */
+        const int32_t max_q11 =
+            q_larger(t->halo_max[row], t->halo_max[q_smaller(row + 1, last)]);
+        const int32_t r2_log2_q16 =
+            t->halo_log2_q16 + max_q11 * 32 + power_log2_q16 - min_log2_q16;
+        const int32_t end_q16 = (4 << 16) + (row + 1) * 32768;
 
-        /* Row i covers r^2 from 2^(4 + i / 2) on; the last row covers all
-         * larger r^2. */
-        if (row == GLINT_STAR_HALO_ROWS - 1 && r2_log2_q16 > (26 << 16))
-            return compute_exp2_ceil(r2_log2_q16 / 2);
-        if (r2_log2_q16 >= (4 << 16) + row * 32768)
-            return compute_exp2_ceil((4 << 15) + (row + 1) * 16384);
+        if (r2_log2_q16 >= end_q16 - 32768)
+            return compute_exp2_ceil(
+                (row < last ? q_smaller(r2_log2_q16, end_q16) : r2_log2_q16) /
+                2);
     }
     return 0;
 }

@@ -22,8 +22,8 @@ struct range {
  */
 static struct range compute_r2_range(int64_t dx_q8, int64_t dy_q8)
 {
-    const int64_t x_q8 = dx_q8 < 0 ? -dx_q8 : dx_q8;
-    const int64_t y_q8 = dy_q8 < 0 ? -dy_q8 : dy_q8;
+    const int64_t x_q8 = (int64_t)q_magnitude(dx_q8);
+    const int64_t y_q8 = (int64_t)q_magnitude(dy_q8);
     const int64_t x0_q8 = x_q8 > HALF_Q8 ? x_q8 - HALF_Q8 : 0;
     const int64_t y0_q8 = y_q8 > HALF_Q8 ? y_q8 - HALF_Q8 : 0;
     const int64_t x1_q8 = x_q8 + HALF_Q8, y1_q8 = y_q8 + HALF_Q8;
