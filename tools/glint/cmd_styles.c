@@ -14,6 +14,7 @@
 #include "model/lens_files.h"
 #include "options/command_line.h"
 #include "overlay/drawing.h"
+#include "overlay/overlay_line.h"
 #include "posix/error.h"
 
 static const char help[] =
@@ -158,8 +159,8 @@ static void copy_image_rows(const struct glint_image *to,
                3 * (size_t)to->width);
 }
 
-/* Draws the input in STYLE as image K of SHEET; the first call opens the
- * sheet. */
+/* Draws the input in STYLE as image K of SHEET. The first call opens the sheet,
+ * and states if the picture has no lamp. */
 static int draw_style_image(struct tool *tool, struct styles_command *c,
                             struct drawing *drawing, const struct style *style,
                             struct sheet *sheet, int k, int n)
@@ -183,6 +184,11 @@ static int draw_style_image(struct tool *tool, struct styles_command *c,
         copy_image_rows(&to, &small);
         write_style_caption(text, style);
         sheet_draw_caption(sheet, k, text);
+    }
+    if (status == GLINT_OK && k == 0 && drawing->run.n_lamps == 0 &&
+        !tool->quiet) {
+        fputs("glint styles: ", stderr);
+        overlay_print_no_lamp_found(drawing, false, stderr);
     }
     free(small.plane[0]);
     return status == GLINT_OK ? EXIT_OK : tool_fail(tool, status, NULL);

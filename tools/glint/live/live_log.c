@@ -210,7 +210,9 @@ static void append_summary_text(struct writer *w,
     append(w, "  %" PRIu64 " dropped %" PRIu64 " late", t->drops, t->late);
     if (t->corrupt)
         append(w, " %" PRIu64 " corrupt", t->corrupt);
-    append(w, "  %d lights %d ghosts", s->most_lights, s->most_ghosts);
+    append(w, "  %d light%s %d ghost%s", s->most_lights,
+           s->most_lights == 1 ? "" : "s", s->most_ghosts,
+           s->most_ghosts == 1 ? "" : "s");
     if (s->frames)
         append(w, "  q %.2f", s->quality / (double)s->frames);
 }
