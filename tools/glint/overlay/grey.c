@@ -4,7 +4,7 @@
 /* Max difference between the channels of a grey pixel, 8-bit codes: for 99 % of
  * the pixels, and for all pixels. Not 0, because JPEG compression and colour
  * profiles add such differences. */
-enum { NEARLY_GREY = 2, AT_MOST_GREY = 8 };
+enum { NEARLY_GREY = 2, AT_MOST_GREY = 12 };
 
 static int get_pixel_bytes(const struct glint_image *image)
 {
