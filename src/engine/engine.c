@@ -184,9 +184,10 @@ static struct glint_view make_camera_view(const struct glint_engine_config *c)
     double mm[2] = {camera->sensor_width_mm, camera->sensor_height_mm};
     struct glint_view view;
 
-    if (!(mm[0] > 0))
+    /* Configurations without a model have both sizes. */
+    if (c->model && !(mm[0] > 0))
         mm[0] = glint_real_value(c->model->header->film_width_mm);
-    if (!(mm[1] > 0))
+    if (c->model && !(mm[1] > 0))
         mm[1] = glint_real_value(c->model->header->film_height_mm);
     view = glint_view_fit(c->width, c->height, mm[0], mm[1]);
     if (camera->projection)
