@@ -115,10 +115,9 @@ static int set_halo_square(struct glint_halo *h, const struct glint_star *star,
     h->width_q8 = find_visible_width(lamp, r2.near_q16);
     if (v_q8 > h->width_q8)
         return 0;
-    /* Beyond the reach of lines, if they have light, light falls with v. It may
-     * rise with r where v is the width of a fan. */
-    if ((v_q8 >= h->reach_q8 || !star->tables->line_max[0]) &&
-        !is_point_visible(star, h, r2.near_q16, v_q8) &&
+    /* Beyond the reach of lines, light falls with v. It may rise with r where v
+     * is the width of a fan. */
+    if (v_q8 >= h->reach_q8 && !is_point_visible(star, h, r2.near_q16, v_q8) &&
         !is_point_visible(star, h, r2.far_q16, v_q8))
         return 0;
     choose_square_lines(h, star->tables, v_q38 + 2 * half_q38);

@@ -299,9 +299,13 @@ try {
     check("a JPEG photograph is saved as JPEG unless another format is chosen", await page.inputValue("#format") === "jpeg");
     check("the style of the defaults is marked", await page.getAttribute('#styles button[data-name="natural"]', "aria-pressed") === "false" &&
         await page.click("#undo").then(() => page.click("#undo")).then(() => page.getAttribute('#styles button[data-name="natural"]', "aria-pressed")) === "true");
+    await page.evaluate(() => {
+        const sign = document.querySelector("#sign");
+        new MutationObserver(() => sign.hidden || (document.body.dataset.drafted = 1)).observe(sign, {attributes: true});
+    });
     await open("tests/data/bridge.jpg");
-    check("a sign tells a draft", await page.isVisible("#sign"));
     await wait(() => document.querySelector("#sign").hidden);
+    check("a sign tells a draft", await page.evaluate(() => document.body.dataset.drafted));
     check("it ends with the whole picture", (await status()).includes("drawn in"));
     await compare("lamps as they are found");
     show("memory of the module that drew this", (await page.evaluate(() => document.body.dataset.memory) / 2 ** 20).toFixed(0) + " MiB");

@@ -380,14 +380,15 @@ static bool set_light_name(struct glint_describer *d,
     if (!glint_name_copy(&d->text, word, light->name, sizeof light->name))
         return false;
     is_used = strcmp(light->name, "camera") == 0 ||
+              strncmp(light->name, "environment", 11) == 0 ||
               find_light_index(s, light, light->name) >= 0;
     for (int i = 0; i < s->n_objects; i++)
         is_used |= strcmp(s->object[i].name, light->name) == 0;
     d->named_lights |= 1u << (light - s->light);
     return !is_used ||
            glint_text_set_error(&d->text, word->place,
-                                "a light or object of this name is already "
-                                "defined");
+                                "the name is that of another light or "
+                                "object, or begins with 'environment'");
 }
 
 static bool read_sun_light(struct glint_describer *d,

@@ -89,6 +89,8 @@ static enum glint_status update_dirt_smear(struct glint_frame *f, bool *is_new)
     return mark ? glint_smear_init(&s->smear, f->setup) : GLINT_OK;
 }
 
+/* Makes the tables if those of the frame do not fit; HAS_CORE: also that of the
+ * core, which later tables keep. */
 static enum glint_status update_star_tables(struct glint_frame *f,
                                             bool has_core)
 {
@@ -100,7 +102,7 @@ static enum glint_status update_star_tables(struct glint_frame *f,
     if (status != GLINT_OK)
         return status;
     optics.smear = s->smear.sum ? &s->smear : NULL;
-    optics.has_core = has_core;
+    optics.has_core = has_core || s->optics.has_core;
     if (s->tables && do_star_optics_include(&s->optics, &optics) && !is_new)
         return GLINT_OK;
     glint_star_tables_free(s->tables);

@@ -54,7 +54,7 @@ static double star_power_at_fade(double power, double seen_px, double level)
 
 /* Checks that the core table, which costs a third of the time for all tables of
  * this stop, is made for the first lamp that the image does not show, and then
- * kept. Must be the first test. */
+ * kept, also with another stop. Must be the first test. */
 TEST(hidden_lamps_need_a_core_table)
 {
     const struct glint_star_tables *tables;
@@ -66,6 +66,10 @@ TEST(hidden_lamps_need_a_core_table)
     tables = frame.star.tables;
     star_power_at_fade(1000, 2, 1);
     assert_true(frame.star.tables == tables);
+    opened.lens.setup.blade_rotation_deg += 5;
+    star_power_at_fade(1000, 2, 1);
+    assert_true(frame.star.tables->core_per_pixel_q16 > 0);
+    opened.lens.setup.blade_rotation_deg -= 5;
 }
 
 static bool is_relatively_near(double a, double b)

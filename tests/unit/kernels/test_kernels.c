@@ -638,5 +638,6 @@ int main(void)
     test_code_kernel_in_c();
     test_kernels_are_identical();
     free_blocks_at_page_end();
+    puts("[       OK ] kernels"); /* as cmocka prints it, for tests/run-one */
     return 0;
 }

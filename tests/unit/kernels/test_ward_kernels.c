@@ -168,5 +168,6 @@ int main(void)
     for (unsigned set = 1; set; set <<= 1)
         if (set & glint_system_sets())
             check_kernel_variant(glint_choose_ward_kernel(set));
+    puts("[       OK ] ward kernels"); /* as cmocka, for tests/run-one */
     return 0;
 }
