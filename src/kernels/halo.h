@@ -71,7 +71,8 @@ struct glint_star_kernels {
 /* Returns the best kernels that the GLINT_SET_ bits SETS allow. */
 const struct glint_star_kernels *glint_choose_star_kernels(unsigned sets);
 
-glint_halo_fn glint_halo_c, glint_halo_avx2;
-glint_move_light_fn glint_move_light_c, glint_move_light_avx2;
+glint_halo_fn glint_halo_c, glint_halo_avx2, glint_halo_neon;
+glint_move_light_fn glint_move_light_c, glint_move_light_avx2,
+    glint_move_light_neon;
 
 #endif
