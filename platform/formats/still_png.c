@@ -180,9 +180,10 @@ static void read_rows(struct call *c, struct still_file *file)
 static bool has_whole_chunks(const struct still_file *file)
 {
     struct still_piece piece = {.name = ""};
+    size_t at = 0;
 
-    for (size_t at = 0; next_piece(&piece, file->data, file->bytes, &at);)
-        continue;
+    while (next_piece(&piece, file->data, file->bytes, &at)) {
+    }
     return strcmp(piece.name, "IEND") == 0;
 }
 

@@ -29,6 +29,10 @@ enum { SOME = 16 };
 enum { X, Y, STOP_X, STOP_Y, BARREL_0, BARREL_1, ENERGY, CHANNELS };
 enum { MOST_SIDE = GLINT_MAX_CELLS + 1 };
 
+/* Smaller weights of samples count as 0: where a weight is 0, its rounding
+ * error depends on the C library, and so would the rays that are invalid. */
+#define LEAST_WEIGHT 1e-6F
+
 #define MOST_SAG (1.0 / 16)
 
 void glint_ray_compute_direction(const struct ray_field_config *cfg,
@@ -925,10 +929,11 @@ static void interpolate_node_row(const struct ray_place *p, int j, float *row,
     memset(invalid, 0, side);
     for (int s = 0; s < f->n_samples; s++) {
         const float w = p->weight[s];
+        const bool has_weight = fabsf(w) > LEAST_WEIGHT;
 
-        for (size_t i = 0; w != 0 && i < side * CHANNELS; i++)
+        for (size_t i = 0; has_weight && i < side * CHANNELS; i++)
             row[i] += w * from[i];
-        for (size_t i = 0; w != 0 && i < side; i++)
+        for (size_t i = 0; has_weight && i < side; i++)
             invalid[i] |= from_invalid[i];
         from += nodes * CHANNELS;
         from_invalid += nodes;
