@@ -15,13 +15,6 @@ static void add_stored_ray(struct glint_zone_batch *batch,
     glint_zone_batch_add_ray(batch, zone, x);
 }
 
-static void get_invalid_ray(const struct glint_zone_rays *rays, int i,
-                            double x[GLINT_VARIABLES])
-{
-    for (int k = 0; k < GLINT_VARIABLES; k++)
-        x[k] = rays->invalid[k][i];
-}
-
 /* Returns where ray K of T, whose path is PATH, ends by its angle. */
 static struct glint_critical find_end(struct glint_zone_batch *t,
                                       const struct glint_path *path, int k)
@@ -63,7 +56,7 @@ struct glint_critical glint_critical_find(const struct glint_zone *zone,
         glint_visible_init_path(visible, w, &path);
         path.places_only = true;
         for (t.n = 0; t.n < GLINT_ZONE_BATCH && i + t.n < n;) {
-            get_invalid_ray(rays, index[i + t.n], x);
+            glint_zone_rays_get_invalid(rays, index[i + t.n], x);
             if (x[GLINT_W] != w)
                 break;
             add_stored_ray(&t, zone, x);
@@ -179,7 +172,7 @@ void glint_critical_trace_rays(const struct glint_zone *zone,
             if (k < rays->n)
                 glint_zone_rays_get_coordinates(rays, k, x);
             else
-                get_invalid_ray(rays, k - rays->n, x);
+                glint_zone_rays_get_invalid(rays, k - rays->n, x);
             if (t.n == 0)
                 sign =
                     init_path_to_event(visible, w = x[GLINT_W], c.event, &path);

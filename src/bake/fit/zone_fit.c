@@ -580,8 +580,7 @@ static int list_transmitted_rays(const struct fit *f,
     for (int i = 0; i < r->n_invalid; i += step) {
         double x[GLINT_VARIABLES];
 
-        for (int k = 0; k < GLINT_VARIABLES; k++)
-            x[k] = r->invalid[k][i];
+        glint_zone_rays_get_invalid(r, i, x);
         if (is_ray_transmitted(system, x, f->task->visible->field_mm))
             index[n++] = i;
     }

@@ -64,6 +64,14 @@ glint_zone_rays_get_coordinates(const struct glint_zone_rays *r, int i,
         x[k] = r->x[k][i];
 }
 
+/* Sets X to the zone coordinates of the invalid ray I. */
+static inline void glint_zone_rays_get_invalid(const struct glint_zone_rays *r,
+                                               int i, double x[GLINT_VARIABLES])
+{
+    for (int k = 0; k < GLINT_VARIABLES; k++)
+        x[k] = r->invalid[k][i];
+}
+
 /* Returns whether rays I and J have the same direction and wavelength. */
 static inline bool
 glint_zone_rays_have_same_light(const struct glint_zone_rays *r, int i, int j)
