@@ -95,7 +95,7 @@ for (let k = +first; k < +first + +count; k++) {
     state = (k + 1) * 2654435761 >>> 0;
     const w = whole(33, 160), h = whole(25, 120), rgba = picture(w, h), o = options(), deep = k % 4 === 3;
     if (draw() < 0.3)
-        o.ghosts = `${whole(0, 8)} mute\n${whole(0, 8)} gain ${within(0, 3).toFixed(2)} tint 1,${within(0, 2).toFixed(2)},0.5\n${draw() < 0.3 ? "8 solo\n" : ""}`;
+        o.ghosts = `${whole(0, 7)} mute\n${whole(0, 8)} gain ${within(0, 3).toFixed(2)} tint 1,${within(0, 2).toFixed(2)},0.5\n${draw() < 0.3 ? "8 solo\n" : ""}`;
     const line = ["overlay", input, "-o", output, "-q", "--rays", "exact",
         ...Object.entries(o).flatMap(([key, value]) => value === "yes" ? ["--" + key] : ["--" + key, key === "ghosts" ? txt : value])];
     fs.writeFileSync(input, makePpm(rgba, w, h, deep));
